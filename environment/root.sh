@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# Make the private Debian 13 root that environment/run enters, and print its path.
+#
+# The root lives in the user's cache folder under a name that holds a hash of the package list, is built
+# beside its final place and renamed when whole: an interrupted build leaves nothing that looks finished,
+# and a lock keeps two builds apart. Nothing outside the cache folder changes, except that missing build
+# tools are installed with apt when root runs this.
+set -euo pipefail
+
+suite=trixie
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+cache=${XDG_CACHE_HOME:-$HOME/.cache}/fingerpad
+need_gb=6  # the root and, for a moment, mmdebstrap's own copy of it
+
+stop() { echo "fingerpad: $*" >&2; exit 1; }
+say() { echo "fingerpad: $*" >&2; }
+
+packages=$(awk '!/^#/ && NF && $2 != "-" { print $2 }' "$here/packages.txt" | sort | paste -sd,)
+# Documentation and translations are left out: a sixth of the size, and nobody reads them in there.
+options=(--variant=apt --components=main
+    --dpkgopt='path-exclude=/usr/share/doc/*' --dpkgopt='path-exclude=/usr/share/man/*'
+    --dpkgopt='path-exclude=/usr/share/locale/*' --aptopt='Apt::Install-Recommends "false"')
+key=$(printf '%s\n' "$suite" "$packages" "${options[@]}" | sha256sum | cut -c1-12)
+root=$cache/$suite-$key
+
+if [ -d "$root" ]; then echo "$root"; exit 0; fi
+
+mkdir -p "$cache" 2>/dev/null || stop "cannot write to $cache; set XDG_CACHE_HOME to a folder you may write to."
+exec 9>"$cache/build.lock"
+flock -n 9 || { say "another build is running, waiting for it"; flock 9; }
+if [ -d "$root" ]; then echo "$root"; exit 0; fi
+
+# Under the lock whatever else is here is a leftover of a build that was killed.
+rm -rf --one-file-system "$cache"/build.????????
+
+free_gb=$(($(df --output=avail -k "$cache" | tail -n 1) / 1024 / 1024))
+[ "$free_gb" -ge "$need_gb" ] ||
+    stop "$cache has $free_gb GB free and the environment needs $need_gb GB; free some, or set XDG_CACHE_HOME to a larger disk."
+
+tools=(mmdebstrap bubblewrap uidmap debian-archive-keyring tar util-linux ca-certificates)
+missing=()
+for tool in "${tools[@]}"; do
+    dpkg-query -W -f='${Status}' "$tool" 2>/dev/null | grep -q 'ok installed' || missing+=("$tool")
+done
+if [ ${#missing[@]} -gt 0 ]; then
+    [ "$(id -u)" = 0 ] ||
+        stop "${missing[*]} missing: ask an administrator for 'apt-get install ${missing[*]}', or use the conda environment (README)."
+    say "installing ${missing[*]} with apt"
+    { apt-get update && apt-get install -y --no-install-recommends "${missing[@]}"; } >"$cache/apt.log" 2>&1 ||
+        stop "apt could not install ${missing[*]} ($(grep -m 1 -E '^E:' "$cache/apt.log" || echo 'no message')); is there a network? All of it: $cache/apt.log"
+fi
+
+mode=root
+if [ "$(id -u)" != 0 ]; then
+    mode=unshare
+    grep -q "^$(id -un):" /etc/subuid 2>/dev/null ||
+        stop "user $(id -un) has no line in /etc/subuid: ask an administrator for 'usermod --add-subuids 100000-165535 --add-subgids 100000-165535 $(id -un)'."
+fi
+
+build=$(mktemp -d "$cache/build.XXXXXXXX")
+trap 'rm -rf "$build" 2>/dev/null || true' EXIT
+chmod 755 "$build"
+mkdir -m 1777 "$build/tmp"
+
+say "making a private Debian 13 with dolfinx in $cache (once; about 3 minutes and 3 GB)"
+start=$SECONDS
+# mmdebstrap's user namespace owns files by other ids; through tar they become the caller's.
+if ! TMPDIR=$build/tmp mmdebstrap --quiet --mode=$mode --format=tar "${options[@]}" --include="$packages" "$suite" - \
+        2>"$cache/build.log" | { mkdir "$build/root" && tar -x -C "$build/root" --no-same-owner --exclude='./dev/*' 2>>"$cache/build.log"; }; then
+    stop "the build failed: $(grep -E '^E:' "$cache/build.log" | tail -n 1 || true); is there a network? All of it: $cache/build.log"
+fi
+touch "$build/root/etc/resolv.conf"
+mv "$build/root" "$root"
+say "made in $((SECONDS - start)) s"
+echo "$root"

@@ -1,0 +1,1 @@
+"""Cross-sections of fingertips and of small verification bodies, meshed with gmsh."""

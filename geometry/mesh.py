@@ -1,0 +1,68 @@
+"""From a gmsh model, built on rank 0, to a distributed dolfinx mesh in metres. The only dolfinx code here."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import dolfinx
+import gmsh
+import numpy as np
+from mpi4py import MPI
+
+try:  # dolfinx 0.10 renamed the module
+    from dolfinx.io import gmsh as gmshio
+except ImportError:
+    from dolfinx.io import gmshio
+
+from geometry import tags
+from geometry.profiles import GeometryError
+
+
+@dataclass(frozen=True)
+class TaggedMesh:
+    """A mesh (coordinates in m) with tags of its cells and facets."""
+
+    mesh: dolfinx.mesh.Mesh
+    cell_tags: dolfinx.mesh.MeshTags
+    facet_tags: dolfinx.mesh.MeshTags
+
+    def ridges(self) -> list[int]:
+        """Return the numbers of the ridges that can touch, in order, the same on every rank."""
+        here = {tags.ridge_index(int(tag)) for tag in np.unique(self.facet_tags.values) if tag >= 500}
+        return sorted(set().union(*self.mesh.comm.allgather(here)))
+
+
+def load(comm: MPI.Comm, build: Callable[[], float], needed: Iterable[int] = ()) -> TaggedMesh:
+    """Build a gmsh model on rank 0 and distribute its mesh.
+
+    Args:
+        comm: communicator of the mesh.
+        build: meshes in the current gmsh session and returns the length of its unit in m.
+        needed: tags of cells or facets that must exist.
+
+    Raises:
+        GeometryError: what ``build`` refuses, on every rank; or a needed tag without any entity.
+    """
+    unit, failure = 1.0, None
+    if comm.rank == 0:
+        gmsh.initialize(interruptible=False)
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.model.add("body")
+        try:
+            unit = build()
+        except Exception as error:  # whatever it is, the other ranks must not wait for a mesh
+            failure = error
+    failure = comm.bcast(failure)
+    try:
+        if failure is not None:
+            raise failure
+        unit = comm.bcast(unit)
+        mesh, cell_tags, facet_tags = gmshio.model_to_mesh(gmsh.model, comm, 0, gdim=2)[:3]
+    finally:
+        if comm.rank == 0:
+            gmsh.finalize()
+    mesh.geometry.x[:] *= unit
+    for tag in needed:
+        count = comm.allreduce(int(np.sum(cell_tags.values == tag)) + int(np.sum(facet_tags.values == tag)))
+        if count == 0:
+            raise GeometryError(f"the mesh has no cell or facet with tag {tag}")
+    return TaggedMesh(mesh, cell_tags, facet_tags)

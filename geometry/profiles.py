@@ -1,0 +1,212 @@
+"""Curves of the fingertip's cross-section as plain NumPy functions.
+
+Every curve is a depth below the elliptical outline, measured along its inward normal, as a function of the
+arc length s from the lowest point (positive towards x > 0). The phase of a ridge is theta = 2 pi s / wavelength,
+so all interfaces have the same number of periods (Table 1's three wavelengths are the one of the outline,
+mapped to deeper offset curves).
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.integrate import cumulative_simpson
+
+from geometry.parameters import Fingertip
+
+Array = NDArray[np.float64]
+
+
+class GeometryError(ValueError):
+    """A set of parameters that describes no fingertip; the message names the parameter at fault."""
+
+
+@dataclass(frozen=True)
+class Profiles:
+    """Outline, interfaces and receptor sites of a fingertip; lengths in m."""
+
+    finger: Fingertip
+
+    # -- outline ---------------------------------------------------------------------------------------
+    @cached_property
+    def _arc_table(self) -> tuple[Array, Array]:
+        a, b = self.finger.width / 2, self.finger.height / 2
+        phi = np.linspace(0.0, np.pi, 20001)
+        speed = np.sqrt((a * np.cos(phi)) ** 2 + (b * np.sin(phi)) ** 2)
+        return phi, cumulative_simpson(speed, x=phi, initial=0.0)
+
+    def _angle(self, s: ArrayLike) -> Array:
+        phi, arc = self._arc_table
+        s = np.asarray(s, dtype=float)
+        return np.sign(s) * np.interp(np.abs(s), arc, phi)
+
+    def arc_length(self, x: float) -> float:
+        """Return the arc length of the dorsal point of the outline at abscissa ``x`` >= 0."""
+        phi, arc = self._arc_table
+        return float(np.interp(np.pi - np.arcsin(x / (self.finger.width / 2)), phi, arc))
+
+    def point(self, s: ArrayLike, depth: ArrayLike = 0.0) -> Array:
+        """Return the points at arc length ``s`` and ``depth`` below the outline; shape (n, 2)."""
+        a, b = self.finger.width / 2, self.finger.height / 2
+        phi = self._angle(s)
+        normal = np.stack([-np.sin(phi) / a, np.cos(phi) / b], axis=-1)
+        normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+        outline = np.stack([a * np.sin(phi), b * (1 - np.cos(phi))], axis=-1)
+        return np.asarray(outline + np.asarray(depth, dtype=float)[..., None] * normal, dtype=float)
+
+    @property
+    def half_perimeter(self) -> float:
+        """Arc length from the lowest to the highest point of the outline."""
+        return float(self._arc_table[1][-1])
+
+    @property
+    def nail_arc(self) -> float:
+        """Arc length from the lowest point to the nail's edge; the skin's layers end there."""
+        return self.arc_length(self.finger.nail_half_width)
+
+    @property
+    def ridged_arc(self) -> float:
+        """Arc length from the lowest point to the groove beyond the last full ridge."""
+        return self.finger.ridge_count * self.finger.ridge_wavelength / 2
+
+    # -- depths ----------------------------------------------------------------------------------------
+    def _window(self, s: ArrayLike) -> Array:
+        """One where there are ridges, falling smoothly to zero over the period beyond the last one."""
+        t = np.clip((np.abs(s) - self.ridged_arc) / self.finger.ridge_wavelength, 0.0, 1.0)
+        return np.asarray(1 - t**3 * (10 - 15 * t + 6 * t**2), dtype=float)
+
+    @cached_property
+    def _ridge_series(self) -> Array:
+        """Cosine coefficients of the ridge's height above its mean, with the given peak-to-peak amplitude."""
+        c = np.asarray(self.finger.ridge_profile, dtype=float)
+        theta = np.linspace(0, np.pi, 2001)
+        shape = np.cos(np.outer(theta, np.arange(1, len(c) + 1))) @ c
+        return c * self.finger.ridge_amplitude / np.ptp(shape)
+
+    def _ridge_height(self, s: ArrayLike) -> Array:
+        theta = 2 * np.pi * np.asarray(s, dtype=float) / self.finger.ridge_wavelength
+        harmonics = np.arange(1, len(self._ridge_series) + 1)
+        return np.asarray(np.cos(theta[..., None] * harmonics) @ self._ridge_series * self._window(s), dtype=float)
+
+    @property
+    def _mean_depth(self) -> float:
+        """Depth of the skin's mean line: the tips are on the outline."""
+        return float(self._ridge_series.sum())
+
+    def skin(self, s: ArrayLike) -> Array:
+        """Return the depth of the outer surface."""
+        return self._mean_depth - self._ridge_height(s)
+
+    def sc_ve(self, s: ArrayLike) -> Array:
+        """Return the depth of the junction of stratum corneum and viable epidermis, parallel to the skin."""
+        return self._mean_depth + self.finger.sc_thickness - self._ridge_height(s)
+
+    def ve_d(self, s: ArrayLike) -> Array:
+        """Return the depth of the junction of viable epidermis and dermis.
+
+        Intermediate ridges under the papillary ridges' centres, limiting ridges under the grooves, dermal
+        papillae between. *Assumption* as a shape: two half-waves of the heights in Table 1.
+        """
+        f = self.finger
+        theta = 2 * np.pi * np.asarray(s, dtype=float) / f.ridge_wavelength
+        height = np.where(np.cos(theta) >= 0, f.intermediate_ridge_height, f.limiting_ridge_height)
+        mean = (f.intermediate_ridge_height + f.limiting_ridge_height) / 4
+        wave = height / 2 * (1 + np.cos(2 * theta)) - mean
+        return self._mean_depth + f.sc_thickness + f.ve_thickness + wave * self._window(s)
+
+    def d_sub(self, s: ArrayLike) -> Array:
+        """Return the depth of the junction of dermis and subcutaneous tissue, a smooth offset curve."""
+        f = self.finger
+        total = f.sc_thickness + f.ve_thickness + f.dermis_thickness
+        return np.full_like(np.asarray(s, dtype=float), self._mean_depth + total)
+
+    def bone(self, phi: ArrayLike) -> Array:
+        """Return points of the bone's rim at angle ``phi`` from its lowest point; shape (n, 2)."""
+        f = self.finger
+        x = f.bone_width / 2 * np.sin(phi)
+        return np.stack([x, f.bone_centre - f.bone_height / 2 * np.cos(phi)], axis=-1)
+
+    # -- receptors -------------------------------------------------------------------------------------
+    @property
+    def ridges(self) -> range:
+        """Numbers of the ridges, along the arc; 0 is centred on x = 0."""
+        half = (self.finger.ridge_count - 1) // 2
+        return range(-half, half + 1)
+
+    def merkel_sites(self) -> Array:
+        """Return one site a ridge, above the intermediate ridge's tip; shape (ridge_count, 2)."""
+        s = np.array(self.ridges) * self.finger.ridge_wavelength
+        return self.point(s, self.ve_d(s) - self.finger.merkel_offset)
+
+    def meissner_sites(self) -> Array:
+        """Return two sites a ridge, in the papillae beside it; shape (2 ridge_count, 2)."""
+        centres = np.array(self.ridges, dtype=float)[:, None]
+        s = ((centres + np.array([-0.25, 0.25])) * self.finger.ridge_wavelength).ravel()
+        return self.point(s, self.ve_d(s) + self.finger.meissner_offset)
+
+    # -- refusals --------------------------------------------------------------------------------------
+    def check(self) -> None:
+        """Refuse a set of parameters that describes no fingertip.
+
+        Raises:
+            GeometryError: layers touch or cross, the ridges do not fit, or the bone is not inside the
+                subcutaneous tissue; the message names the parameters.
+        """
+        f = self.finger
+        if self.ridged_arc + f.ridge_wavelength > self.nail_arc:
+            raise GeometryError(
+                f"ridge_count {f.ridge_count} of ridge_wavelength {f.ridge_wavelength:g} m do not fit between "
+                f"the nail's edges; at most {int(2 * self.nail_arc / f.ridge_wavelength - 2)} do"
+            )
+        s = np.linspace(-self.nail_arc, self.nail_arc, 64 * f.ridge_count + 1)
+        curves = [("skin", self.skin), ("SC-VE junction", self.sc_ve)]
+        curves += [("VE-D junction", self.ve_d), ("D-subcutis junction", self.d_sub)]
+        thickness = ["sc_thickness", "ve_thickness", "dermis_thickness"]
+        for (upper, above), (lower, below), name in zip(curves, curves[1:], thickness, strict=False):
+            gap = float((below(s) - above(s)).min())
+            if gap <= 0:
+                raise GeometryError(
+                    f"{upper} and {lower} cross by {-gap:.3g} m; "
+                    f"{name} is {getattr(f, name):g} m and must exceed {getattr(f, name) - gap:.3g} m"
+                )
+        a, b = f.width / 2, f.height / 2
+        sharpest = min(a**2 / b, b**2 / a)
+        if float(self.d_sub(0.0)) >= sharpest:
+            raise GeometryError(
+                f"the skin layers are {float(self.d_sub(0.0)):.3g} m deep, more than the outline's radius of "
+                f"curvature, {sharpest:.3g} m: reduce dermis_thickness or make width and height more alike"
+            )
+        self._check_bone()
+
+    def _check_bone(self) -> None:
+        f = self.finger
+        rim = self.bone(np.linspace(-np.pi, np.pi, 721))
+        s = np.linspace(-self.nail_arc, self.nail_arc, 2001)
+        nearest, distance = _signed_distance(rim, self.point(s, self.d_sub(s)), self.point(s, self.d_sub(s) + 1e-6))
+        between_ends = (nearest > 0) & (nearest < len(s) - 1)
+        touching = between_ends & (distance <= 0)
+        if touching.any():
+            x, y = rim[np.flatnonzero(touching)[0]]
+            raise GeometryError(
+                f"the bone touches the skin's layers at x = {x:.3g} m, y = {y:.3g} m: change bone_width "
+                f"({f.bone_width:g} m), bone_height ({f.bone_height:g} m) or bone_centre ({f.bone_centre:g} m)"
+            )
+        s = np.linspace(self.nail_arc, self.half_perimeter, 501)
+        nearest, distance = _signed_distance(
+            rim[rim[:, 0] >= 0], self.point(s, f.nail_thickness), self.point(s, f.nail_thickness + 1e-6)
+        )
+        if distance.min() <= 0:
+            raise GeometryError(
+                f"the bone reaches the nail: its top, bone_centre + bone_height / 2, is at {rim[:, 1].max():.3g} m "
+                f"and must stay below the nail's inner face at {f.height - f.nail_thickness:.3g} m"
+            )
+
+
+def _signed_distance(points: Array, curve: Array, inward: Array) -> tuple[NDArray[np.intp], Array]:
+    """Return the index of the nearest curve point and the distance, positive on the side of ``inward``."""
+    step = points[:, None, :] - curve[None, :, :]
+    nearest = np.argmin((step**2).sum(axis=-1), axis=1)
+    step = step[np.arange(len(points)), nearest]
+    side = (step * (inward - curve)[nearest]).sum(axis=-1)
+    return nearest, np.sign(side) * np.linalg.norm(step, axis=-1)

@@ -1,0 +1,225 @@
+"""From load to load: adaptive steps with cutback, first touch, snap-off, and accepted states.
+
+History (friction anchors, air gaps, displacement) is written in :meth:`Continuation._accept` and nowhere else;
+a rejected attempt restores the last accepted state.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from variational.coupling import Coupling
+from variational.solver import Control, NotConverged, Solver
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Target:
+    """A load to reach from the present one; what is None stays as it is.
+
+    Exactly one of ``f_ext`` (N/m) and ``bone_height`` (m, change of height from the unloaded position, negative when pressed)
+    may be given: it also says which of the two is prescribed from then on.
+    """
+
+    name: str
+    f_ext: float | None = None
+    bone_height: float | None = None
+    voltage: float | None = None
+    bone_x: float | None = None
+    until_full_slip: bool = False
+    """Stop as soon as every point in contact slips one way."""
+
+
+@dataclass(frozen=True)
+class StepSizes:
+    """Parts of a target (0 to 1) or lengths: how far a step may go."""
+
+    first: float = 0.25
+    largest: float = 0.5
+    smallest: float = 1e-3
+    few_iterations: int = 10
+    """A step that took no more Newton iterations lets the next one grow."""
+
+
+class StepFailed(RuntimeError):
+    """A target that could not be reached; names step, load and reason."""
+
+
+@dataclass
+class Attempt:
+    """How a step was solved."""
+
+    newton: int = 0
+    factorisations: int = 0
+    sweeps: int = 0
+    changes: list[float] = field(default_factory=list)
+    cutbacks: list[str] = field(default_factory=list)
+    pseudo_transient: int = 0
+    """Solves that full Newton steps did not manage: as a rule, parts of the skin jumped."""
+
+
+@dataclass
+class _Accepted:
+    x: Array
+    u: Array
+    anchor: Array
+    d_eq: Array
+    control: Control
+    voltage: float
+
+
+class Continuation:
+    """Leads a coupled problem along targets.
+
+    Attributes:
+        load: (bone x in m, bone height in m, f_ext in N/m, voltage in V) of the accepted state.
+        steps: accepted steps so far.
+    """
+
+    def __init__(
+        self,
+        coupling: Coupling,
+        on_accept: Callable[[Target, float, Attempt], None] = lambda target, part, attempt: None,
+        touch_depth: float = 20e-6,
+    ) -> None:
+        """Start from the unloaded body.
+
+        Args:
+            coupling: solves at fixed loads.
+            on_accept: called with the target, the part of it reached and how, after each accepted step.
+            touch_depth: how far the bone is lowered by displacement before force takes over (m).
+        """
+        self.coupling, self.solver = coupling, coupling.solver
+        self.problem, self.observer = self.solver.problem, coupling.observer
+        self.on_accept, self.touch_depth = on_accept, touch_depth
+        self.steps = 0
+        self._history = self.observer.state().anchor
+        self._now = self._snapshot()
+
+    # -- accepted states -------------------------------------------------------------------------------
+    def _snapshot(self) -> _Accepted:
+        return _Accepted(
+            self.solver.x.array_r.copy(),
+            self.problem.u.x.array.copy(),
+            self._history.copy(),
+            self.coupling.d_eq.copy(),
+            replace(self.solver.control),
+            float(self.problem.voltage.value),
+        )
+
+    def _restore(self) -> None:
+        a = self._now
+        self.solver.x.array_w[:] = a.x
+        self.problem.u.x.array[:] = a.u
+        self.coupling.set_air_gaps(a.d_eq.copy())
+        self.solver.control = replace(a.control)
+        self.problem.voltage.value = a.voltage
+
+    def _accept(self) -> None:
+        self._history = self.observer.state().anchor
+        self.problem.surface.set_history(self.problem.anchor, self._history)
+        self._now = self._snapshot()
+        self.steps += 1
+
+    # -- targets ---------------------------------------------------------------------------------------
+    def run(self, targets: Sequence[Target], sizes: Sequence[StepSizes]) -> None:
+        """Reach targets one after the other.
+
+        Raises:
+            StepFailed: the load reached and why the next step was not.
+        """
+        for target, size in zip(targets, sizes, strict=True):
+            if target.f_ext is not None and self._now.control.y is not None:
+                self._touch(target)
+            self._reach(target, size)
+
+    def _touch(self, target: Target) -> None:
+        """Lower the bone by displacement until the screen bears it: without contact, force control is singular."""
+        start = self._now.control.y or 0.0
+        depth = self.touch_depth
+        while self.solver.reaction[1] <= 0 or self.steps == 0:
+            step = Target(target.name, bone_height=start - depth)
+            self._reach(step, StepSizes(first=1.0, largest=1.0), report_part=0.0)
+            depth += self.touch_depth
+        self.solver.control.y = None
+        self.solver.control.force = float(self.solver.reaction[1])
+        self._now = self._snapshot()
+
+    def _loads(self, target: Target) -> Callable[[float], tuple[Control, float]]:
+        """Return control and voltage as functions of the part of the target reached."""
+        a = self._now
+        x1 = a.control.x if target.bone_x is None else target.bone_x
+        u1 = a.voltage if target.voltage is None else target.voltage
+
+        def at(part: float) -> tuple[Control, float]:
+            c = Control(a.control.x + part * (x1 - a.control.x), a.control.y, a.control.force)
+            if target.bone_height is not None:
+                y0 = self.solver_height(a)
+                c.y = y0 + part * (target.bone_height - y0)
+            elif target.f_ext is not None:
+                # equal steps of the root: nearly equal steps of the indentation
+                f0 = max(a.control.force, 0.0)
+                c.y, c.force = None, (np.sqrt(f0) + part * (np.sqrt(target.f_ext) - np.sqrt(f0))) ** 2
+            # equal steps of U^2, which the attraction follows
+            return c, float(np.sqrt(a.voltage**2 + part * (u1**2 - a.voltage**2)))
+
+        return at
+
+    def solver_height(self, a: _Accepted) -> float:
+        """Return the bone's height (m, change from unloaded) of an accepted state."""
+        return float(self.solver.bone[1]) if a.control.y is None else a.control.y
+
+    def _reach(self, target: Target, sizes: StepSizes, report_part: float | None = None) -> None:
+        at = self._loads(target)
+        part, step = 0.0, sizes.first
+        while part < 1:
+            step = min(step, 1 - part)
+            if 1 - part - step < 0.05 * step:
+                step = 1 - part
+            attempt = Attempt()
+            while True:
+                # A first failure may be a step too large. A second one in a row is likely a jump, which no
+                # step is small enough for.
+                creep = len(attempt.cutbacks) > 0
+                try:
+                    self._try(at(part + step), attempt, creep)
+                    break
+                except NotConverged as failure:
+                    self._restore()
+                    attempt.cutbacks.append(f"{failure} at part {part + step:.4g}")
+                    step /= 2
+                    if step < sizes.smallest:
+                        raise StepFailed(self._describe(target, part, failure)) from failure
+            self._accept()
+            part += step
+            self.on_accept(target, part if report_part is None else report_part, attempt)
+            if target.until_full_slip and self.observer.slip(self.observer.state())[1]:
+                return
+            if attempt.newton <= sizes.few_iterations:
+                step = min(1.5 * step, sizes.largest)
+            step = min(step, sizes.largest)
+
+    def _describe(self, target: Target, part: float, failure: NotConverged) -> str:
+        c = self._now.control
+        load = f"f_ext {c.force:.4g} N/m" if c.y is None else f"bone height {c.y:.4g} m"
+        return (
+            f"step {self.steps + 1} ({target.name}, {100 * part:.1f} % done) found no equilibrium beyond "
+            f"{load}, {self._now.voltage:.4g} V, bone x {c.x:.4g} m: {failure}"
+        )
+
+    # -- one step --------------------------------------------------------------------------------------
+    def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool) -> None:
+        counts = self.solver.counts
+        newton, factorisations, shifted = counts.newton, counts.factorisations, counts.pseudo_transient
+        self.solver.control, self.problem.voltage.value = load
+        try:
+            self.coupling.solve(creep)
+        finally:
+            attempt.newton += counts.newton - newton
+            attempt.factorisations += counts.factorisations - factorisations
+            attempt.pseudo_transient += counts.pseudo_transient - shifted
+            attempt.sweeps = len(self.coupling.history.changes)
+            attempt.changes = self.coupling.history.changes

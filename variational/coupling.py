@@ -1,0 +1,106 @@
+"""The two scales meet: a fixed point over the ridges' mean contact pressures.
+
+At given air gaps the macroscale gives each ridge's mean contact pressure, the closure turns it into a new
+air gap. With r(d) = closure(p_c(d)) - d the loop takes d + r, and from the second sweep on the secant step of each
+ridge by itself (Aitken; ridges hardly feel each other's air gap): it needs fewer sweeps where the loop
+contracts, and where a ridge's gain exceeds one it takes half the plain step instead.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from variational.quantities import Observer
+from variational.roughness.closure import Closure
+from variational.solver import NotConverged, Solver
+
+Array = NDArray[np.float64]
+_LARGEST_GAIN = 0.8
+
+
+@dataclass
+class CouplingHistory:
+    """Sweeps of one loop."""
+
+    changes: list[float] = field(default_factory=list)
+    """Largest |closure(p_c) - d_eq| / d_eq of each sweep."""
+    ridges: list[int] = field(default_factory=list)
+    """Number of the ridge it belongs to."""
+
+
+class Coupling:
+    """Solves macroscale and closure together.
+
+    Attributes:
+        d_eq: equivalent air gap of each ridge (m).
+        history: sweeps of the last solve.
+    """
+
+    def __init__(
+        self, solver: Solver, observer: Observer, closure: Closure, tolerance: float = 1e-6, cap: int = 30, by_gap: bool = False
+    ) -> None:
+        """Start from ridges without contact.
+
+        Args:
+            solver: the macroscale.
+            observer: evaluates its surface.
+            closure: the microscale.
+            tolerance: relative change of d_eq at which the loop ends.
+            cap: most sweeps.
+            by_gap: take the length below d_eq, not the length under pressure, as L_R of Eq. 4.
+        """
+        self.solver, self.observer, self.closure = solver, observer, closure
+        self.tolerance, self.cap, self.by_gap = tolerance, cap, by_gap
+        self.history = CouplingHistory()
+        self.d_eq = closure(np.zeros(len(observer.surface.names))).d_eq
+
+    def set_air_gaps(self, d_eq: Array) -> None:
+        """Impose air gaps (m), shape (ridges,)."""
+        self.d_eq = d_eq
+        self.solver.problem.set_air_gaps(d_eq)
+
+    def _sweep(self, creep: bool) -> Array:
+        """Solve at the current air gaps and return what the closure makes of the pressures (m)."""
+        self.solver.solve(creep)
+        with self.solver.timings.phase("coupling"):
+            return self.closure(self.observer.ridge_loads(by_gap=self.by_gap).p_c).d_eq
+
+    def solve(self, creep: bool = False) -> None:
+        """Find the state in which air gaps and pressures agree.
+
+        Args:
+            creep: see :meth:`variational.solver.Solver.solve`.
+
+        Raises:
+            NotConverged: the macroscale's, or ``COUPLING_CAP`` with the ridge that moved most.
+        """
+        self.history = CouplingHistory()
+        self.set_air_gaps(self.d_eq)
+        if float(self.solver.problem.voltage.value) == 0.0:
+            self.set_air_gaps(self._sweep(creep))  # no attraction: the air gaps do not act
+            return
+        previous: tuple[Array, Array] | None = None
+        for _ in range(self.cap):
+            d = self.d_eq
+            r = self._sweep(creep) - d
+            worst = int(np.argmax(np.abs(r) / d))
+            self.history.changes.append(float(np.abs(r[worst]) / d[worst]))
+            self.history.ridges.append(self.observer.surface.names[worst])
+            if self.history.changes[-1] <= self.tolerance:
+                return
+            self.set_air_gaps(d + self._step(d, r, previous))
+            previous = d, r
+        worst_ridge = self.history.ridges[-1]
+        raise NotConverged(f"COUPLING_CAP at ridge {worst_ridge}", False)
+
+    @staticmethod
+    def _step(d: Array, r: Array, previous: tuple[Array, Array] | None) -> Array:
+        if previous is None:
+            return r
+        moved = d - previous[0]
+        gain = 1 + np.divide(r - previous[1], moved, out=np.full_like(r, -1.0), where=np.abs(moved) > 1e-12 * d)
+        step = r / (1 - np.clip(gain, -1.0, _LARGEST_GAIN))
+        step = np.where(gain > 1, r / 2, step)
+        # A secant over a ridge's coming or going is no derivative: at most twice the plain step, and inside d.
+        return np.clip(step, -np.minimum(2 * np.abs(r), d / 2), np.minimum(2 * np.abs(r), d))

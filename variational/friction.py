@@ -1,0 +1,38 @@
+r"""Coulomb friction on the screen by return mapping (Forsbach et al. 2023, Eqs. 6 and 7).
+
+.. math:: t^{tr} = -\epsilon_t (u_x - s_n), \qquad
+          t_t = t^{tr} \min\left(1, \mu_f p_n / |t^{tr}|\right), \qquad s_{n+1} = u_x + t_t / \epsilon_t
+
+per reference area (Simo and Laursen 1992, doi 10.1016/0045-7949(92)90540-G). The one history variable is
+the anchor s, where the tangential spring would be slack; a point without contact carries its anchor along.
+The virtual work is :math:`\int t_t v_x \,dS`. Where a point slips, its derivative with respect to the
+pressure makes the tangent unsymmetric.
+"""
+
+import ufl
+
+# A point that slipped sits on the cone to roundoff when its next step starts; it counts as slipping until the
+# iteration finds otherwise, which is the better first guess.
+_ON_CONE = 1 - 1e-9
+
+
+def traction(u_x, anchor, p_n, eps_t, mu_f):
+    """Return the tangential traction on the skin (Pa of reference area).
+
+    Args:
+        u_x: tangential displacement (m).
+        anchor: accepted anchor s_n (m).
+        p_n: contact pressure (Pa of reference area).
+        eps_t: tangential penalty stiffness (Pa/m).
+        mu_f: friction coefficient.
+    """
+    trial = -eps_t * (u_x - anchor)
+    limit = mu_f * p_n
+    slipping = ufl.conditional(ufl.gt(trial, 0.0), limit, -limit)
+    return ufl.conditional(ufl.gt(abs(trial), _ON_CONE * limit), slipping, trial)
+
+
+def new_anchor(u_x, t_t, eps_t):
+    """Return the anchor that a step leaves when it is accepted (m)."""
+    return u_x + t_t / eps_t
+

@@ -1,0 +1,65 @@
+r"""First-order Ogden solid in plane strain (Forsbach et al. 2023, Eqs. 1 and 2).
+
+.. math:: W = \frac{2 G_0}{a^2} (\bar\lambda_1^a + \bar\lambda_2^a + \bar\lambda_3^a - 3) + \frac1D (J - 1)^2,
+          \qquad D = \frac{3 (1 - 2\nu)}{G_0 (1 + \nu)}
+
+with :math:`\bar\lambda_i = J^{-1/3} \lambda_i` and :math:`\lambda_3 = 1`. The paper prints the exponent
+:math:`a = -\alpha`; Abaqus's own Ogden form has :math:`a = +\alpha`.
+
+The in-plane stretches are the roots of a quadratic whose derivatives are singular where they coincide, at
+F = I for one. With :math:`\lambda_{1,2} = \sqrt J e^{\pm\eta}` and
+
+.. math:: y = \sinh^2\eta = \frac{(F_{11} - F_{22})^2 + (F_{12} + F_{21})^2}{4J}
+
+the sum of powers is :math:`\lambda_1^a + \lambda_2^a = 2 J^{a/2} \cosh(a \eta)`, and
+:math:`\cosh(a\,\mathrm{asinh}\sqrt y)` is an entire function's restriction, analytic in y at 0: its Taylor
+series is used below ``SERIES_BELOW`` and the closed form above.
+"""
+
+import ufl
+
+SERIES_BELOW = 0.01
+SERIES_TERMS = 9  # leaves 3e-14 in the tangent at a = 14.53, y = 0.01; seven would leave 2e-8
+
+
+def bulk_modulus(shear_modulus, poisson):
+    """Return K = 2/D (Pa) of Eq. 2 for an initial shear modulus (Pa) and Poisson's ratio."""
+    return 2 * shear_modulus * (1 + poisson) / (3 * (1 - 2 * poisson))
+
+
+def exponent(alpha, convention: str):
+    """Return a, the power of the stretches, for the parameter alpha.
+
+    Args:
+        alpha: the table's exponent.
+        convention: ``"printed"`` for the paper's -alpha, ``"abaqus"`` for +alpha.
+    """
+    return {"printed": -1, "abaqus": 1}[convention] * alpha
+
+
+def cosh_of_asinh(a, y):
+    """Return cosh(a asinh(sqrt(y))) for y >= 0, smooth at y = 0."""
+    term, series = 1.0, 1.0
+    for k in range(SERIES_TERMS - 1):
+        term = term * (a**2 - 4 * k**2) / ((2 * k + 1) * (2 * k + 2)) * y
+        series = series + term
+    near = ufl.lt(y, SERIES_BELOW)
+    guarded = ufl.conditional(near, 1.0, y)
+    eta = ufl.ln(ufl.sqrt(guarded) + ufl.sqrt(1 + guarded))
+    return ufl.conditional(near, series, (ufl.exp(a * eta) + ufl.exp(-a * eta)) / 2)
+
+
+def energy(F, shear_modulus, a, bulk):
+    """Return the strain energy density W (J/m^3 of reference volume).
+
+    Args:
+        F: deformation gradient, (2, 2).
+        shear_modulus: initial shear modulus G_0 (Pa).
+        a: power of the stretches, see :func:`exponent`.
+        bulk: bulk modulus 2/D (Pa).
+    """
+    J = ufl.det(F)
+    y = ((F[0, 0] - F[1, 1]) ** 2 + (F[0, 1] + F[1, 0]) ** 2) / (4 * J)
+    log_J = ufl.ln(J)
+    powers = 2 * ufl.exp(a * log_J / 6) * cosh_of_asinh(a, y) + ufl.exp(-a * log_J / 3)
+    return 2 * shear_modulus / a**2 * (powers - 3) + bulk / 2 * (J - 1) ** 2

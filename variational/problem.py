@@ -1,0 +1,152 @@
+r"""The weak form of a layered body pressed and dragged over a charged rigid screen.
+
+Find u, equal to the bone's translation on its rim, with for all v alike
+
+.. math:: \int P(F) : \nabla v \,dX - \int p_n v_y \,dS - \int t_t v_x \,dS
+          - \int p_{el}\, \mathrm{cof} F N \cdot v \,dS + f_{ext} v_y^{bone} = 0
+
+written with the attraction's potential. P = dW/dF: :mod:`~variational.ogden`, :mod:`~variational.saint_venant`; p_n: :mod:`~variational.penalty`; t_t:
+:mod:`~variational.friction`; p_el: :mod:`~variational.electroadhesion`. Friction makes the derivative
+unsymmetric. The derivative may carry a shift :math:`\int \eta\, du \cdot v \,dS`, which is no part of the equations
+but of pseudo-transient continuation (:mod:`~variational.solver`). This module adds up forms and never solves.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import dolfinx
+import numpy as np
+import ufl
+from dolfinx import fem
+
+from variational import electroadhesion, friction, kinematics, ogden, penalty, saint_venant
+from variational.surface import Surface
+
+
+@dataclass(frozen=True)
+class Ogden:
+    """Ogden solid: initial shear modulus (Pa), exponent, Poisson's ratio, sign convention of the exponent."""
+
+    shear_modulus: float
+    alpha: float
+    poisson: float
+    convention: str = "printed"
+
+
+@dataclass(frozen=True)
+class SaintVenant:
+    """Saint Venant-Kirchhoff solid: Young's modulus (Pa) and Poisson's ratio."""
+
+    young: float
+    poisson: float
+
+
+@dataclass(frozen=True)
+class Interface:
+    """Laws of the contact with the screen."""
+
+    eps_n: float
+    """Normal penalty stiffness (Pa/m of reference area)."""
+    eps_t: float
+    """Tangential penalty stiffness (Pa/m)."""
+    mu_f: float
+    """Friction coefficient."""
+    h_0: float
+    """Effective insulator thickness (m)."""
+
+
+class Problem:
+    """Forms, and the fields and constants they read.
+
+    Attributes:
+        u: displacement (m).
+        voltage, eta: constants (V; Pa/m, the shift of the Jacobian).
+        d_eq: equivalent air gap (m), one value a cell, read on the ridges.
+        anchor: accepted friction history (m), see :mod:`variational.friction`.
+        residual, jacobian: compiled forms.
+    """
+
+    def __init__(
+        self,
+        mesh: dolfinx.mesh.Mesh,
+        cell_tags: dolfinx.mesh.MeshTags,
+        surface: Surface,
+        solids: Mapping[int, Ogden | SaintVenant],
+        interface: Interface,
+        degree: int = 2,
+    ) -> None:
+        """Add up the forms.
+
+        Args:
+            mesh: the body (m).
+            cell_tags: tags of its layers.
+            surface: the skin that can touch.
+            solids: material of each layer's tag.
+            interface: laws of the contact.
+            degree: polynomial degree of the displacement.
+        """
+        self.mesh, self.surface, self.interface = mesh, surface, interface
+        self.V = fem.functionspace(mesh, ("Lagrange", degree, (2,)))
+        cellwise = fem.functionspace(mesh, ("Discontinuous Lagrange", 0))
+        self.u = fem.Function(self.V, name="displacement")
+        self.d_eq = fem.Function(cellwise)
+        self.anchor = fem.Function(surface.history_space)
+
+        def constant(value: float) -> fem.Constant:
+            return fem.Constant(mesh, np.float64(value))
+
+        self.voltage, self.eta = constant(0.0), constant(0.0)
+        mu_f, h_0 = constant(interface.mu_f), constant(interface.h_0)
+        eps_n, eps_t = constant(interface.eps_n), constant(interface.eps_t)
+
+        u, v = self.u, ufl.TestFunction(self.V)
+        F = kinematics.deformation_gradient(u)
+        energy = 0
+        # Strains are of degree p - 1: 2 (p - 1) integrates linear elasticity exactly and keeps the order.
+        dx = ufl.Measure("dx", mesh, subdomain_data=cell_tags, metadata={"quadrature_degree": max(2 * (degree - 1), 1)})
+        self.densities = {}
+        for tags, density in self._densities(F, cell_tags, solids, cellwise):
+            energy += density * dx(tags)
+            self.densities[tags] = density
+
+        self.y = kinematics.current_height(mesh, u)
+        self.p_n = penalty.pressure(self.y, eps_n)
+        self.t_t = friction.traction(u[0], self.anchor, self.p_n, eps_t, mu_f)
+        self.new_anchor = friction.new_anchor(u[0], self.t_t, eps_t)
+        self.p_el = electroadhesion.attraction(self.y, self.d_eq, self.voltage, h_0)
+        self.area = kinematics.cofactor(F) * ufl.FacetNormal(mesh)  # current per reference area, a vector
+        dS = surface.measure
+        energy += -electroadhesion.potential(self.y, self.d_eq, self.voltage, h_0) * self.area[1] * dS
+        residual = ufl.derivative(energy, u, v) - ufl.dot(ufl.as_vector([self.t_t, self.p_n]), v) * dS
+        du = ufl.TrialFunction(self.V)
+        jacobian = ufl.derivative(residual, u, du) + self.eta * ufl.dot(du, v) * dS
+        jit = {"timeout": 300}
+        self.energy = fem.form(energy, jit_options=jit)
+        self.residual = fem.form(residual, jit_options=jit)
+        self.jacobian = fem.form(jacobian, jit_options=jit)
+
+    def _densities(self, F, cell_tags, solids, cellwise):
+        """Yield (tags, energy density), one kernel a law: parameters are fields with one value a cell."""
+
+        def field(values: Mapping[int, float]) -> fem.Function:
+            f = fem.Function(cellwise)
+            for tag, value in values.items():
+                f.x.array[cell_tags.find(tag)] = value
+            f.x.scatter_forward()
+            return f
+
+        skins = {tag: solid for tag, solid in solids.items() if isinstance(solid, Ogden)}
+        if skins:
+            shear = field({tag: s.shear_modulus for tag, s in skins.items()})
+            bulk = field({tag: ogden.bulk_modulus(s.shear_modulus, s.poisson) for tag, s in skins.items()})
+            a = field({tag: ogden.exponent(s.alpha, s.convention) for tag, s in skins.items()})
+            yield tuple(skins), ogden.energy(F, shear, a, bulk)
+        stiff = {tag: saint_venant.lame_constants(s.young, s.poisson) for tag, s in solids.items() if isinstance(s, SaintVenant)}
+        if stiff:
+            lame, shear = (field({tag: pair[k] for tag, pair in stiff.items()}) for k in (0, 1))
+            yield tuple(stiff), saint_venant.energy(F, lame, shear)
+
+    def set_air_gaps(self, d_eq: np.ndarray) -> None:
+        """Give each ridge its equivalent air gap (m), shape (ridges,)."""
+        self.d_eq.x.array[self.surface.pairs[:, 0]] = d_eq[self.surface.ridge]
+        self.d_eq.x.scatter_forward()

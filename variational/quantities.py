@@ -1,0 +1,100 @@
+"""What a tribologist looks at, reduced over the surface and all ranks."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import ufl
+from numpy.typing import NDArray
+
+from variational.problem import Problem
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RidgeLoads:
+    """Resultants of each ridge, shape (ridges,) each, the same on every rank."""
+
+    f_contact: Array
+    """Contact force per length (N/m)."""
+    f_friction: Array
+    """Friction on the skin (N/m), positive towards x > 0."""
+    f_attraction: Array
+    """Downward resultant of the attraction (N/m)."""
+    f_attraction_x: Array
+    length: Array
+    """Current length in contact, p_n > 0 (m); its ends are located inside facets."""
+
+    @property
+    def p_c(self) -> Array:
+        """Mean contact pressure over the length in contact (Pa of current area), zero without contact."""
+        return np.divide(self.f_contact, self.length, out=np.zeros_like(self.length), where=self.length > 0)
+
+
+@dataclass(frozen=True)
+class SurfaceState:
+    """Values at this rank's Gauss points, shape (facets, points)."""
+
+    x: Array
+    y: Array
+    anchor: Array
+    p_n: Array
+    t_t: Array
+    p_el: Array
+    area_x: Array
+    area_y: Array
+
+
+class Observer:
+    """Evaluates the surface of a problem."""
+
+    def __init__(self, problem: Problem) -> None:
+        """Compile what is evaluated."""
+        self.problem, self.surface = problem, problem.surface
+        x = ufl.SpatialCoordinate(problem.mesh)[0] + problem.u[0]
+        self._compiled = self.surface.compile(
+            [x, problem.y, problem.new_anchor, problem.p_n, problem.t_t, problem.p_el, problem.area[0], problem.area[1]]
+        )
+
+    def state(self) -> SurfaceState:
+        """Evaluate the surface in the problem's current state."""
+        return SurfaceState(*self.surface.evaluate(self._compiled))
+
+    def ridge_loads(self, state: SurfaceState | None = None, by_gap: bool = False) -> RidgeLoads:
+        """Return the ridges' resultants.
+
+        Args:
+            state: an evaluated surface; by default the current one.
+            by_gap: count as contact what is lower than the ridge's d_eq, not what bears pressure.
+        """
+        s = state or self.state()
+        level = np.zeros(len(s.y))
+        if by_gap:
+            level = self.problem.d_eq.x.array[self.surface.pairs[:, 0]]
+        integrate = self.surface.per_ridge
+        return RidgeLoads(
+            f_contact=integrate(s.p_n),
+            f_friction=integrate(s.t_t),
+            f_attraction=-integrate(s.p_el * s.area_y),
+            f_attraction_x=integrate(s.p_el * s.area_x),
+            length=self.surface.sum_over_facets(self.surface.length_below(s.x, s.y, level)),
+        )
+
+    def slip(self, state: SurfaceState) -> tuple[float, bool]:
+        """Return the part of the contact points at the friction cone, and whether all slip one way."""
+        mu_f = self.problem.interface.mu_f
+        loaded = state.p_n > 0
+        # The law gives plus or minus mu_f p_n where it slips; the factor covers roundoff alone.
+        forth = loaded & (state.t_t >= mu_f * state.p_n * (1 - 1e-8))
+        back = loaded & (-state.t_t >= mu_f * state.p_n * (1 - 1e-8))
+        count = np.array([loaded.sum(), forth.sum(), back.sum()])
+        total = np.empty_like(count)
+        self.problem.mesh.comm.Allreduce(count, total)
+        if total[0] == 0:
+            return 0.0, False
+        return float((total[1] + total[2]) / total[0]), bool(total[0] in (total[1], total[2]))
+
+    def lowest_outside(self, height: Array) -> float:
+        """Return the lowest current height (m) among given ones of all ranks."""
+        lowest = float(height.min()) if len(height) else np.inf
+        return float(np.min(self.problem.mesh.comm.allgather(lowest)))

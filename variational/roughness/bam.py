@@ -1,0 +1,136 @@
+r"""Bearing area model of a rough ridge (Forsbach et al. 2023, Eqs. 9 to 15; Ciavarella and Papangelo 2020).
+
+The repulsion is Persson's for intermediate separations, the attraction a constant stress over the area in
+which the surfaces are closer than h_0:
+
+.. math:: p_c = \beta E^* q_0 h_{rms} e^{-\bar u / (\gamma h_{rms})}, \qquad
+          p_{ext} = p_c - \sigma_0 A_{att} / A_0
+
+The equivalent air gap :math:`d_{eq}(\bar u)` follows from equating attractions (Eq. 13). Keyed on the mean
+contact pressure p_c it is closed form, single valued and free of the voltage.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
+from scipy.special import erfc
+
+from variational.roughness.closure import AirGap
+
+Array = NDArray[np.float64]
+_EPS_0 = 8.854e-12  # F/m, Table 3
+
+
+@dataclass(frozen=True)
+class BearingArea:
+    """A self-affine Gaussian roughness on stratum corneum (Table 3); SI units."""
+
+    h_0: float
+    """Effective insulator thickness (m), the range of the attraction."""
+    h_rms: float = 3.1e-6
+    wavelength: float = 100e-6
+    """Largest wavelength lambda_0 (m); q_0 = 2 pi / lambda_0."""
+    young: float = 1e6
+    """Elastic modulus of the stratum corneum on the microscale (Pa)."""
+    gamma: float = 0.5
+    beta: float = 1.0
+    """Prefactor of the repulsion: 1 in Eq. 9; Eq. 15 takes 3/4."""
+    p_floor: float = 1e3
+    """Pressure (Pa) below which d_eq is held. *Assumption*: it keeps a ridge that is let go from
+    following d_eq to infinity."""
+
+    @property
+    def full_pressure(self) -> float:
+        """Contact pressure (Pa) at zero mean separation, where the repulsion law ends."""
+        return self.beta * 4 / 3 * self.young * 2 * np.pi / self.wavelength * self.h_rms
+
+    def separation(self, p_c: ArrayLike) -> Array:
+        """Return the mean separation u_bar (m) at contact pressure ``p_c`` (Pa), inverse of Eq. 9's first term."""
+        return np.asarray(-self.gamma * self.h_rms * np.log(np.asarray(p_c, dtype=float) / self.full_pressure))
+
+    def contact_pressure(self, u_bar: ArrayLike) -> Array:
+        """Return the repulsion (Pa) at mean separation ``u_bar`` (m), first term of Eq. 9."""
+        return np.asarray(self.full_pressure * np.exp(-np.asarray(u_bar, dtype=float) / (self.gamma * self.h_rms)))
+
+    def _twice_area(self, u_bar: ArrayLike) -> tuple[Array, Array]:
+        """Return 2 A_att / A_0 (Eq. 11) and its derivative with respect to u_bar (1/m)."""
+        u_bar = np.asarray(u_bar, dtype=float)
+        width = np.sqrt(2) * self.h_rms
+        near, far = (u_bar - self.h_0) / width, u_bar / width
+        slope = -2 / np.sqrt(np.pi) / width * (np.exp(-(near**2)) - np.exp(-(far**2)))
+        return np.asarray(erfc(near) - erfc(far)), np.asarray(slope)
+
+    def air_gap(self, u_bar: ArrayLike) -> Array:
+        """Return d_eq (m) at mean separation ``u_bar`` (m), Eq. 13."""
+        area, _ = self._twice_area(u_bar)
+        return np.asarray(self.h_0 * (np.sqrt(2 / area) - 1))
+
+    def external_pressure(self, u_bar: ArrayLike, voltage: float) -> Array:
+        """Return p_ext (Pa) at mean separation ``u_bar`` (m) and ``voltage`` (V), Eq. 9."""
+        area, _ = self._twice_area(u_bar)
+        return np.asarray(self.contact_pressure(u_bar) - _EPS_0 * voltage**2 / (4 * self.h_0**2) * area)
+
+    def __call__(self, p_c: ArrayLike) -> AirGap:
+        """Return the air gap at mean contact pressures (Pa), held below p_floor and above full_pressure."""
+        p_c = np.asarray(p_c, dtype=float)
+        held = np.clip(p_c, self.p_floor, self.full_pressure)
+        u_bar = self.separation(held)
+        area, slope = self._twice_area(u_bar)
+        d_eq = self.h_0 * (np.sqrt(2 / area) - 1)
+        gradient = -self.h_0 / 2 * np.sqrt(2 / area) / area * slope * (-self.gamma * self.h_rms / held)
+        return AirGap(d_eq, np.where(held == p_c, gradient, 0.0))
+
+    def state(self, p_c: float, voltage: float) -> str:
+        """Say where a ridge is on the closure: at one of its ends, past its pull-off fold, or nothing to say."""
+        if p_c <= 0:
+            return ""
+        if p_c < self.p_floor:
+            return "below p_floor"
+        if p_c > self.full_pressure:
+            return "beyond zero separation"
+        fold = self.pull_off_fold(voltage)
+        return "past the fold" if fold is not None and p_c < self.contact_pressure(fold) else ""
+
+    def pull_off_fold(self, voltage: float) -> float | None:
+        """Return u_bar (m) of the least p_ext on the branch that starts at u_bar = 0, None if there is none."""
+        u = np.linspace(0, 8 * self.h_rms, 4001)
+        p = self.external_pressure(u, voltage)
+        rising = np.flatnonzero(np.diff(p) > 0)
+        if not len(rising) or rising[0] == 0:
+            return None
+        return float(brentq(lambda v: self._external_slope(v, voltage), u[rising[0] - 1], u[rising[0] + 1], xtol=1e-13))
+
+    def _external_slope(self, u_bar: float, voltage: float) -> float:
+        _, slope = self._twice_area(u_bar)
+        repulsion = -self.contact_pressure(u_bar) / (self.gamma * self.h_rms)
+        return float(repulsion - _EPS_0 * voltage**2 / (4 * self.h_0**2) * slope)
+
+    def air_gap_at_external(self, p_ext: float, voltage: float) -> float:
+        """Return d_eq (m) on the branch in contact at external pressure ``p_ext`` (Pa).
+
+        Raises:
+            ValueError: no equilibrium on that branch.
+        """
+        fold = self.pull_off_fold(voltage)
+        end = 20 * self.h_rms if fold is None else fold
+        highest, lowest = self.external_pressure(0.0, voltage), self.external_pressure(end, voltage)
+        if not lowest < p_ext <= highest:
+            raise ValueError(f"p_ext is {p_ext:g} Pa; at {voltage:g} V contact needs {lowest:.4g} to {highest:.4g} Pa")
+        u_bar = brentq(lambda v: float(self.external_pressure(v, voltage)) - p_ext, 0.0, end, xtol=1e-15)
+        return float(self.air_gap(u_bar))
+
+    def threshold(self, approximate: bool = False) -> float:
+        """Return the voltage (V) of macroscopic stickiness.
+
+        Args:
+            approximate: Eq. 15's estimate instead of minimising Eq. 9.
+        """
+        if approximate:
+            return 1.8 * self.h_rms * float(np.sqrt(self.h_0 * 4 / 3 * self.young / (_EPS_0 * self.wavelength)))
+
+        def least(voltage: float) -> float:
+            return float(self.external_pressure(np.linspace(0, 8 * self.h_rms, 4001), voltage).min())
+
+        return float(brentq(least, 1.0, 1e4, xtol=1e-6))

@@ -1,0 +1,251 @@
+r"""Newton's method by PETSc SNES on the displacement and the bone's translation together.
+
+Full steps first: with a stiff penalty the iteration is an active-set method, whose residual rises before the
+right points are in contact, and backtracking only slows it. A factorisation serves as long as the residual falls
+to a third an iteration. Where it cycles, a part of the skin is about to
+jump on or off the screen and the tangent has a negative direction. Then the same solve is repeated as
+pseudo-transient continuation (Kelley and Keyes 1998, doi 10.1137/S0036142996304796): the tangent gets a shift
+:math:`\eta` on the touching skin, an implicit Euler step of :math:`\eta \dot u = -r(u)`, and eta falls as the residual falls.
+It creeps away from the equilibrium that is lost and ends in one of the unchanged equations.
+"""
+
+import os
+from dataclasses import dataclass
+
+import numpy as np
+from dolfinx import fem
+from dolfinx.fem import petsc as fem_petsc
+from numpy.typing import NDArray
+from petsc4py import PETSc
+
+from variational.layout import RigidRimLayout
+from variational.problem import Problem
+from variational.timing import Timings
+
+Array = NDArray[np.float64]
+PREFIX = "fingerpad_"
+# MUMPS, an LU of an unsymmetric matrix; full Newton steps, see above.
+DEFAULTS = {
+    "snes_type": "newtonls",
+    "snes_linesearch_type": "basic",
+    "snes_max_it": "60",
+    "snes_rtol": "0",
+    "snes_stol": "0",
+    "ksp_type": "preonly",
+    "pc_type": "lu",
+    "pc_factor_mat_solver_type": "mumps",
+}
+_OUTSIDE = 1e30  # N/m: norm of the residual where J <= 0 somewhere
+_PATIENCE = 5  # full Newton steps without a new least residual
+_CONTRACTS = 0.3  # reduction of the residual an iteration below which a factorisation is kept
+_SHIFT = 1e10  # Pa/m, eta at the start
+_SHIFT_FALL, _SHIFT_RISE = 0.4, 4.0  # of eta an iteration
+_REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
+
+
+class NotConverged(RuntimeError):
+    """A solve without an equilibrium; ``reason`` is SNES's name for why."""
+
+    def __init__(self, reason: str, inverted: bool) -> None:
+        self.reason = reason
+        self.inverted = inverted
+        super().__init__(reason + (", elements inverted (J <= 0) on the way" if inverted else ""))
+
+
+@dataclass
+class Control:
+    """What is prescribed of the bone: its translation in x, and in y either a translation or a force."""
+
+    x: float = 0.0
+    """Translation (m)."""
+    y: float | None = 0.0
+    """Translation (m), or None under force control."""
+    force: float = 0.0
+    """External force per length pressing down (N/m), where y is None."""
+
+
+@dataclass
+class Counts:
+    """Work done, for reports."""
+
+    newton: int = 0
+    factorisations: int = 0
+    solves: int = 0
+    pseudo_transient: int = 0
+    """Solves that full Newton steps did not manage."""
+
+
+class Solver:
+    """Solves a :class:`Problem` for given loads; owns the vectors SNES works on.
+
+    Attributes:
+        control: what is prescribed of the bone.
+        counts: work done so far.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        rim_facets: NDArray[np.int32],
+        force_scale: float,
+        tolerance: float = 1e-9,
+        fixed: list[tuple[NDArray[np.int32], float]] = (),  # type: ignore[assignment]
+    ) -> None:
+        """Set SNES up.
+
+        Args:
+            problem: forms.
+            rim_facets: the facets glued to the bone.
+            force_scale: force per length (N/m) in which residuals are measured.
+            tolerance: norm of the nodal forces' imbalance (N/m) at convergence, over ``force_scale``.
+            fixed: further prescribed unknowns: (local indices, displacement in m).
+        """
+        self.problem, self.control, self.counts = problem, Control(), Counts()
+        self.layout = RigidRimLayout(problem.V, rim_facets)
+        self.timings = Timings()
+        self._fixed_rows = np.concatenate([self.layout.rows[dofs] for dofs, _ in fixed]) if fixed else np.empty(0, PETSc.IntType)
+        self._fixed_values = np.concatenate([np.full(len(dofs), value) for dofs, value in fixed]) if fixed else np.empty(0)
+        first = int(self.layout.create_vector().getOwnershipRange()[0])
+        mine = (self._fixed_rows >= first) & (self._fixed_rows < first + self.layout.local_size)
+        self._fixed_rows, self._fixed_values = self._fixed_rows[mine], self._fixed_values[mine]
+        self._first_row = first
+        self.reaction = np.zeros(2)
+        self._inverted = self._shifted = False
+        self._control_rows = False
+        self._stale = True  # whether the factorisation must be made anew before it is used
+        self._norms: list[float] = []
+        self._stiffness = 1e5  # Pa: what a prescribed row's metre is worth in N/m
+        self._nodal = np.zeros_like(problem.u.x.array)
+        self.x = self.layout.create_vector()
+        self._f = self.layout.create_vector()
+        self._A = self.layout.create_matrix()
+        self._snes = self._create_snes(force_scale * tolerance)
+
+    def _create_snes(self, imbalance: float) -> PETSc.SNES:
+        options = PETSc.Options()
+        for name, value in DEFAULTS.items():
+            if not options.hasName(PREFIX + name):
+                options.setValue(PREFIX + name, value)
+        if not options.hasName(PREFIX + "snes_atol"):
+            options.setValue(PREFIX + "snes_atol", repr(imbalance))
+        snes = PETSc.SNES().create(self.layout.comm)
+        snes.setOptionsPrefix(PREFIX)
+        snes.setFunction(self._residual, self._f)
+        snes.setJacobian(self._jacobian, self._A)
+        snes.setConvergenceTest(self._test)
+        snes.setFromOptions()
+        return snes
+
+    # -- callbacks -------------------------------------------------------------------------------------
+    def _prescribed(self) -> tuple[NDArray[np.int64], Array]:
+        """Return this rank's prescribed rows (global) and their values (m)."""
+        rows, values = self._fixed_rows, self._fixed_values
+        if self.layout.owns_rigid:
+            bone = [self.control.x] if self.control.y is None else [self.control.x, self.control.y]
+            rows = np.concatenate([rows, self.layout.rigid_rows[: len(bone)]])
+            values = np.concatenate([values, bone])
+        return rows, values
+
+    def _residual(self, snes: PETSc.SNES | None, x: PETSc.Vec, f: PETSc.Vec) -> None:
+        with self.timings.phase("assembly"):
+            self.layout.to_nodes(x, self.problem.u.x.array)
+            self._nodal[:] = 0.0
+            fem.assemble_vector(self._nodal, self.problem.residual)
+            f.set(0.0)
+            self.layout.add_to_unknowns(self._nodal, f)
+            finite = self.layout.comm.allreduce(bool(np.isfinite(f.array_r).all()), op=_logical_and)
+            if not finite:
+                self._inverted = True
+                f.set(_OUTSIDE / np.sqrt(self.layout.global_size))
+                return
+            self.reaction = -self.layout.rigid_part(f)
+            if self.layout.owns_rigid and self.control.y is None:
+                f.array_w[-1] += self.control.force
+            rows, values = self._prescribed()
+            local = rows - self._first_row
+            f.array_w[local] = self._stiffness * (x.array_r[local] - values)
+
+    def _jacobian(self, snes: PETSc.SNES | None, x: PETSc.Vec, A: PETSc.Mat, P: PETSc.Mat) -> None:
+        if not (self._stale or self._shifted):
+            return
+        with self.timings.phase("assembly"):
+            A.zeroEntries()
+            fem_petsc.assemble_matrix(A, self.problem.jacobian)
+            A.assemble()
+            A.zeroRows(self._prescribed()[0], diag=self._stiffness)
+        self.counts.factorisations += 1
+        self._stale = False
+
+    def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
+        """Judge an iterate by its residual alone, and set the next shift."""
+        reason, eta = PETSc.SNES.ConvergedReason, self.problem.eta
+        _, atol, _, most = snes.getTolerances()
+        if iteration == 0:
+            self._norms = []
+            eta.value = _SHIFT if self._shifted else 0.0
+        previous = self._norms[-1] if self._norms else np.inf
+        self._norms.append(norm := norms[2])
+        if norm <= atol:
+            return reason.CONVERGED_FNORM_ABS
+        if norm >= _OUTSIDE / 2:
+            return reason.DIVERGED_FUNCTION_DOMAIN
+        if iteration >= most:
+            return reason.DIVERGED_MAX_IT
+        if iteration > 0:
+            self._stale = norm > _CONTRACTS * previous
+        if self._shifted and iteration > 0:
+            eta.value *= min(norm / previous, _SHIFT_RISE) if norm > previous else _SHIFT_FALL
+        if not self._shifted and len(self._norms) - 1 - int(np.argmin(self._norms[1:] or [0])) - 1 >= _PATIENCE:
+            return reason.DIVERGED_LOCAL_MIN  # cycles
+        return reason.ITERATING
+
+    # -- use -------------------------------------------------------------------------------------------
+    def solve(self, creep: bool = False) -> None:
+        """Find the equilibrium near ``x`` for the current loads and leave it in ``x`` and the problem's u.
+
+        Args:
+            creep: repeat as pseudo-transient continuation what full Newton steps do not manage.
+
+        Raises:
+            NotConverged: with SNES's reason; ``x`` is then the last iterate.
+        """
+        start = self.x.array_r.copy()
+        self.counts.solves += 1
+        self._inverted = False
+        reason = self._run(shifted=False)
+        if reason <= 0 and creep:
+            self.counts.pseudo_transient += 1
+            self.x.array_w[:] = start
+            reason = self._run(shifted=True)
+        if reason <= 0:
+            raise NotConverged(_REASONS.get(reason, str(reason)), self._inverted)
+
+    def _run(self, shifted: bool) -> int:
+        self._shifted = shifted
+        self._stale |= shifted or self._control_rows != (self.control.y is None)
+        self._control_rows = self.control.y is None
+        assembly = self.timings.seconds["assembly"]
+        with self.timings.phase("factorisation"):
+            self._snes.solve(None, self.x)
+        self.timings.seconds["factorisation"] -= self.timings.seconds["assembly"] - assembly
+        self.counts.newton += self._snes.getIterationNumber()
+        self._stale |= shifted
+        self.problem.eta.value = 0.0
+        self._residual(None, self.x, self._f)  # the last evaluation need not have been the accepted iterate's
+        return int(self._snes.getConvergedReason())
+
+    @property
+    def bone(self) -> Array:
+        """The bone's translation (m), shape (2,)."""
+        return self.layout.rigid_part(self.x)
+
+    @property
+    def memory_mb(self) -> float:
+        """Peak memory (MB) of this process."""
+        import resource
+
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+def _logical_and(a: bool, b: bool) -> bool:
+    return a and b

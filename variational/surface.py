@@ -1,0 +1,166 @@
+"""The skin that can touch: its facets, quadrature points, history, integrals and contact patches."""
+
+from collections.abc import Mapping
+
+import basix
+import dolfinx
+import numpy as np
+import ufl
+from dolfinx import fem
+from numpy.polynomial import Polynomial
+from numpy.typing import NDArray
+
+from variational import compat
+
+Array = NDArray[np.float64]
+
+
+class Surface:
+    """Facets of a set of tags, grouped in ridges, with Gauss points on each.
+
+    Attributes:
+        ridge: position of each facet's ridge in ``names``, shape (facets,).
+        names: the ridges' numbers.
+        length: reference length of each facet (m).
+        weights: Gauss weights on [0, 1], shape (points,).
+    """
+
+    def __init__(
+        self,
+        mesh: dolfinx.mesh.Mesh,
+        facet_tags: dolfinx.mesh.MeshTags,
+        ridges: Mapping[int, int],
+        points: int = 4,
+    ) -> None:
+        """Collect the facets that this rank integrates over.
+
+        Args:
+            mesh: straight-sided triangles.
+            facet_tags: tags of facets.
+            ridges: facet tag of each ridge's number.
+            points: Gauss points on a facet; n of them integrate degree 2n - 1.
+
+        Raises:
+            ValueError: a cell has two facets on the surface, which leaves no place for their history.
+        """
+        self.mesh = mesh
+        self.names = list(ridges)
+        self.degree = 2 * points - 1
+        tag_list = list(ridges.values())
+        self.measure = ufl.Measure(
+            "ds", mesh, subdomain_data=facet_tags, subdomain_id=tuple(tag_list), metadata={"quadrature_degree": self.degree}
+        )
+        gauss, weights = basix.make_quadrature(basix.CellType.interval, self.degree)
+        self.points, self.weights = np.asarray(gauss), np.asarray(weights)
+        if len(self.weights) != points:
+            raise ValueError(f"degree {self.degree} takes {len(self.weights)} points, not {points}")
+
+        topology = mesh.topology
+        topology.create_connectivity(1, 2)
+        topology.create_connectivity(2, 1)
+        to_cells, to_facets = topology.connectivity(1, 2), topology.connectivity(2, 1)
+        owned_cells = topology.index_map(2).size_local
+        pairs, ridge = [], []
+        position = {tag: k for k, tag in enumerate(tag_list)}
+        for facet, tag in zip(facet_tags.indices, facet_tags.values, strict=True):
+            if int(tag) in position:
+                cell = to_cells.links(facet)[0]
+                if cell < owned_cells:
+                    pairs.append((cell, int(np.flatnonzero(to_facets.links(cell) == facet)[0])))
+                    ridge.append(position[int(tag)])
+        self.pairs = np.array(pairs, dtype=np.int32).reshape(-1, 2)
+        self.ridge = np.array(ridge, dtype=np.int64)
+        doubled = len(np.unique(self.pairs[:, 0])) < len(self.pairs)
+        if mesh.comm.allreduce(doubled):
+            raise ValueError("a cell has two facets on the touching surface; use smaller surface elements")
+
+        vertices = compat.cell_geometry(mesh)[self.pairs[:, 0]]
+        ends = np.array([[1, 2], [0, 2], [0, 1]])[self.pairs[:, 1]]
+        xy = mesh.geometry.x[np.take_along_axis(vertices, ends, axis=1)] if len(pairs) else np.zeros((0, 2, 3))
+        self.length = np.linalg.norm(xy[:, 1] - xy[:, 0], axis=1)
+        # Powers of the facet coordinate at the points: interpolation is exact for the traces of elements
+        # of a degree below the number of points.
+        self._to_powers = np.linalg.inv(np.vander(self.points[:, 0], increasing=True))
+        self._history_maps()
+
+    # -- history ---------------------------------------------------------------------------------------
+    def _history_maps(self) -> None:
+        """Matrices from values at a facet's points to the degrees of freedom of a discontinuous polynomial.
+
+        A polynomial of degree n - 1 has n values on a facet, fixed by n Gauss points; the form evaluates it
+        at the same points and gets the same values back.
+        """
+        self.history_space = fem.functionspace(self.mesh, ("Discontinuous Lagrange", len(self.weights) - 1))
+        element = self.history_space.element.basix_element
+        vertices = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+        self._closure, self._inverse = [], []
+        for a, b in ((1, 2), (0, 2), (0, 1)):
+            on_facet = vertices[a] + self.points * (vertices[b] - vertices[a])
+            basis = element.tabulate(0, on_facet)[0, :, :, 0]
+            dofs = np.flatnonzero(np.abs(basis).max(axis=0) > 1e-12)
+            self._closure.append(dofs)
+            self._inverse.append(np.linalg.inv(basis[:, dofs]))
+
+    def set_history(self, history: fem.Function, values: Array) -> None:
+        """Write values at the Gauss points, shape (facets, points), into a function of ``history_space``."""
+        dofmap = self.history_space.dofmap.list
+        for local in range(3):
+            mine = self.pairs[:, 1] == local
+            cells = self.pairs[mine, 0]
+            history.x.array[dofmap[cells][:, self._closure[local]]] = values[mine] @ self._inverse[local].T
+        history.x.scatter_forward()
+
+    def compile(self, expressions: list) -> fem.Expression:
+        """Compile scalar UFL expressions for evaluation at the Gauss points."""
+        return fem.Expression(ufl.as_vector(expressions), self.points)
+
+    def evaluate(self, compiled: fem.Expression) -> Array:
+        """Return values at this rank's Gauss points, shape (expressions, facets, points)."""
+        values = compat.evaluate_on_facets(compiled, self.mesh, self.pairs)
+        shape = (len(self.pairs), len(self.weights), -1)
+        if not len(self.pairs):
+            return np.zeros((int(np.prod(compiled.ufl_expression.ufl_shape)), 0, len(self.weights)))
+        return np.moveaxis(values.reshape(shape), 2, 0)
+
+    # -- integrals -------------------------------------------------------------------------------------
+    def per_ridge(self, density: Array) -> Array:
+        """Integrate a density per reference length over each ridge, summed over ranks; shape (ridges,)."""
+        return self.sum_over_facets((density @ self.weights) * self.length)
+
+    def sum_over_facets(self, values: Array) -> Array:
+        """Sum one value a facet over each ridge and all ranks; shape (ridges,)."""
+        mine = np.bincount(self.ridge, weights=values, minlength=len(self.names))
+        total = np.empty_like(mine)
+        self.mesh.comm.Allreduce(mine, total)
+        return total
+
+    def length_below(self, x: Array, y: Array, level: Array) -> Array:
+        """Return the current length of each facet that lies below ``level``.
+
+        The facet's current curve is the polynomial through its points; the ends of the part below are its
+        roots, so the length is located inside the facet and converges with the displacement's order.
+
+        Args:
+            x: current abscissae at the points (m), shape (facets, points).
+            y: current heights at the points (m), likewise.
+            level: height (m) of each facet below which it counts, shape (facets,).
+        """
+        lengths = np.zeros(len(x))
+        near = y.min(axis=1, initial=np.inf) - level < 4 * (np.ptp(y, axis=1) if len(y) else 0)
+        gauss, weights = np.polynomial.legendre.leggauss(6)
+        for k in np.flatnonzero(near):
+            height = Polynomial(self._to_powers @ (y[k] - level[k]))
+            slope_x, slope_y = Polynomial(self._to_powers @ x[k]).deriv(), height.deriv()
+            roots = height.roots()
+            inside = np.sort(roots[np.abs(np.imag(roots)) < 1e-12].real)
+            cuts = np.concatenate([[0.0], inside[(inside > 0) & (inside < 1)], [1.0]])
+            for a, b in zip(cuts, cuts[1:], strict=False):
+                if height((a + b) / 2) < 0:
+                    xi = (a + b) / 2 + (b - a) / 2 * gauss
+                    lengths[k] += (b - a) / 2 * float(weights @ np.hypot(slope_x(xi), slope_y(xi)))
+        return lengths
+
+    def gather(self, values: Array) -> Array | None:
+        """Bring values at the points, shape (n, facets, points), to rank 0 as (n, all facets, points)."""
+        parts = self.mesh.comm.gather(values)
+        return None if parts is None else np.concatenate(parts, axis=1)
