@@ -10,6 +10,7 @@ from geometry.profiles import GeometryError, Profiles
 
 _MM = 1e3  # gmsh's tolerances suit models in mm
 _SAMPLES = 32  # spline points a ridge
+_SHARP_SAMPLES = 128  # of the VE-D junction, whose tips have a radius of some um
 
 
 def touching_ridges(finger: Fingertip, size: MeshSize) -> range:
@@ -72,12 +73,14 @@ def _spline(points: NDArray[np.float64], first: int, last: int) -> int:
     return int(gmsh.model.geo.addSpline([first, *(_point(xy) for xy in points[1:-1]), last]))
 
 
-def _chain(p: Profiles, depth, stations: NDArray[np.float64], ends: tuple[int, int]) -> list[int]:
+def _chain(
+    p: Profiles, depth, stations: NDArray[np.float64], ends: tuple[int, int], samples: int = _SAMPLES
+) -> list[int]:
     """Return splines through the curve of given depth, broken at the stations (arc lengths)."""
     knots = [ends[0], *(_point(p.point(s, depth(s))) for s in stations[1:-1]), ends[1]]
     chain = []
     for k, (a, b) in enumerate(zip(stations, stations[1:], strict=False)):
-        count = max(3, int(np.ceil(_SAMPLES * (b - a) / p.finger.ridge_wavelength)) + 1)
+        count = max(3, int(np.ceil(samples * (b - a) / p.finger.ridge_wavelength)) + 1)
         s = np.linspace(a, b, count)
         chain.append(_spline(p.point(s, depth(s)), knots[k], knots[k + 1]))
     return chain
@@ -111,8 +114,11 @@ def _curves(p: Profiles, touching: range) -> _Curves:
         c.ridges[j] = [curve]
         if j in touching:
             c.touching.append(curve)
-    for name, depth in (("sc_ve", p.sc_ve), ("ve_d", p.ve_d), ("d_sub", p.d_sub)):
+    for name, depth in (("sc_ve", p.sc_ve), ("d_sub", p.d_sub)):
         c.interfaces[name] = _chain(p, depth, stations, corners[name])
+    # A node on each tip and papilla: facets that cut them off would leave receptor sites in the wrong layer.
+    tips = np.concatenate([[-end], np.linspace(grooves[0], grooves[-1], 4 * f.ridge_count + 1), [end]])
+    c.interfaces["ve_d"] = _chain(p, p.ve_d, tips, corners["ve_d"], _SHARP_SAMPLES)
     c.wavy = c.skin[1:-1] + c.interfaces["sc_ve"][1:-1] + c.interfaces["ve_d"][1:-1]
 
     # Dorsal faces of the nail, from the right edge over the top to the left one.

@@ -4,14 +4,14 @@ History (friction anchors, air gaps, displacement) is written in :meth:`Continua
 a rejected attempt restores the last accepted state.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from variational.coupling import Coupling
-from variational.solver import Control, NotConverged, Solver
+from variational.solver import Control, NotConverged
 
 Array = NDArray[np.float64]
 
@@ -33,15 +33,10 @@ class Target:
     """Stop as soon as every point in contact slips one way."""
 
 
-@dataclass(frozen=True)
-class StepSizes:
-    """Parts of a target (0 to 1) or lengths: how far a step may go."""
-
-    first: float = 0.25
-    largest: float = 0.5
-    smallest: float = 1e-3
-    few_iterations: int = 10
-    """A step that took no more Newton iterations lets the next one grow."""
+# How far one step may go: parts of sqrt(f_ext) and of U^2, and metres of the bone.
+_FORCE, _VOLTAGE, _SINK, _SLIDE = 0.05, 0.2, 40e-6, 50e-6
+_SMALLEST = 1e-3  # step below which a load is given up, over the largest
+_FEW = 6  # factorisations; a step that took no more lets the next one grow
 
 
 class StepFailed(RuntimeError):
@@ -75,15 +70,16 @@ class Continuation:
     """Leads a coupled problem along targets.
 
     Attributes:
-        load: (bone x in m, bone height in m, f_ext in N/m, voltage in V) of the accepted state.
         steps: accepted steps so far.
+        surface_state: the skin in the accepted state, as solved, before its friction history moved on.
+        slip: part of its contact points at the friction cone, and whether all slip one way.
     """
 
     def __init__(
         self,
         coupling: Coupling,
         on_accept: Callable[[Target, float, Attempt], None] = lambda target, part, attempt: None,
-        touch_depth: float = 20e-6,
+        touch_depth: float = 5e-6,
     ) -> None:
         """Start from the unloaded body.
 
@@ -96,7 +92,9 @@ class Continuation:
         self.problem, self.observer = self.solver.problem, coupling.observer
         self.on_accept, self.touch_depth = on_accept, touch_depth
         self.steps = 0
-        self._history = self.observer.state().anchor
+        self.surface_state = self.observer.state()
+        self.slip = (0.0, False)
+        self._history = self.surface_state.anchor
         self._now = self._snapshot()
 
     # -- accepted states -------------------------------------------------------------------------------
@@ -119,30 +117,30 @@ class Continuation:
         self.problem.voltage.value = a.voltage
 
     def _accept(self) -> None:
-        self._history = self.observer.state().anchor
+        self.surface_state = self.observer.state()
+        self.slip = self.observer.slip(self.surface_state)
+        self._history = self.surface_state.anchor
         self.problem.surface.set_history(self.problem.anchor, self._history)
         self._now = self._snapshot()
         self.steps += 1
 
     # -- targets ---------------------------------------------------------------------------------------
-    def run(self, targets: Sequence[Target], sizes: Sequence[StepSizes]) -> None:
-        """Reach targets one after the other.
+    def run(self, target: Target) -> None:
+        """Reach a target.
 
         Raises:
             StepFailed: the load reached and why the next step was not.
         """
-        for target, size in zip(targets, sizes, strict=True):
-            if target.f_ext is not None and self._now.control.y is not None:
-                self._touch(target)
-            self._reach(target, size)
+        if target.f_ext is not None and self._now.control.y is not None:
+            self._touch(target)
+        self._reach(target)
 
     def _touch(self, target: Target) -> None:
         """Lower the bone by displacement until the screen bears it: without contact, force control is singular."""
         start = self._now.control.y or 0.0
         depth = self.touch_depth
         while self.solver.reaction[1] <= 0 or self.steps == 0:
-            step = Target(target.name, bone_height=start - depth)
-            self._reach(step, StepSizes(first=1.0, largest=1.0), report_part=0.0)
+            self._reach(Target("touch", bone_height=start - depth))
             depth += self.touch_depth
         self.solver.control.y = None
         self.solver.control.force = float(self.solver.reaction[1])
@@ -150,14 +148,13 @@ class Continuation:
 
     def _loads(self, target: Target) -> Callable[[float], tuple[Control, float]]:
         """Return control and voltage as functions of the part of the target reached."""
-        a = self._now
+        a, y0 = self._now, self._height()
         x1 = a.control.x if target.bone_x is None else target.bone_x
         u1 = a.voltage if target.voltage is None else target.voltage
 
         def at(part: float) -> tuple[Control, float]:
             c = Control(a.control.x + part * (x1 - a.control.x), a.control.y, a.control.force)
             if target.bone_height is not None:
-                y0 = self.solver_height(a)
                 c.y = y0 + part * (target.bone_height - y0)
             elif target.f_ext is not None:
                 # equal steps of the root: nearly equal steps of the indentation
@@ -168,22 +165,38 @@ class Continuation:
 
         return at
 
-    def solver_height(self, a: _Accepted) -> float:
-        """Return the bone's height (m, change from unloaded) of an accepted state."""
-        return float(self.solver.bone[1]) if a.control.y is None else a.control.y
+    def _height(self) -> float:
+        """Return the bone's height (m, change from unloaded) of the accepted state."""
+        y = self._now.control.y
+        return float(self.solver.bone[1]) if y is None else y
 
-    def _reach(self, target: Target, sizes: StepSizes, report_part: float | None = None) -> None:
-        at = self._loads(target)
-        part, step = 0.0, sizes.first
+    def _largest_step(self, target: Target) -> float:
+        """Return the largest part of a target that one step may cover."""
+        a, steps = self._now, [1.0]
+        if target.f_ext is not None:
+            change = abs(np.sqrt(target.f_ext) - np.sqrt(max(a.control.force, 0.0)))
+            steps.append(_FORCE * np.sqrt(max(target.f_ext, a.control.force)) / max(change, 1e-300))
+        if target.voltage is not None:
+            change = abs(target.voltage**2 - a.voltage**2)
+            steps.append(_VOLTAGE * max(target.voltage, a.voltage, 1e-300) ** 2 / max(change, 1e-300))
+        if target.bone_height is not None:
+            steps.append(_SINK / max(abs(target.bone_height - self._height()), 1e-300))
+        if target.bone_x is not None:
+            steps.append(_SLIDE / max(abs(target.bone_x - a.control.x), 1e-300))
+        return float(min(steps))
+
+    def _reach(self, target: Target) -> None:
+        at, largest = self._loads(target), self._largest_step(target)
+        part, step = 0.0, largest
         while part < 1:
             step = min(step, 1 - part)
             if 1 - part - step < 0.05 * step:
                 step = 1 - part
             attempt = Attempt()
             while True:
-                # A first failure may be a step too large. A second one in a row is likely a jump, which no
-                # step is small enough for.
-                creep = len(attempt.cutbacks) > 0
+                # One or two failures may be a step too large. More in a row are a jump, which no step is small
+                # enough for.
+                creep = len(attempt.cutbacks) > 1
                 try:
                     self._try(at(part + step), attempt, creep)
                     break
@@ -191,16 +204,15 @@ class Continuation:
                     self._restore()
                     attempt.cutbacks.append(f"{failure} at part {part + step:.4g}")
                     step /= 2
-                    if step < sizes.smallest:
+                    if step < _SMALLEST * largest:
                         raise StepFailed(self._describe(target, part, failure)) from failure
             self._accept()
             part += step
-            self.on_accept(target, part if report_part is None else report_part, attempt)
-            if target.until_full_slip and self.observer.slip(self.observer.state())[1]:
+            self.on_accept(target, part, attempt)
+            if target.until_full_slip and self.slip[1]:
                 return
-            if attempt.newton <= sizes.few_iterations:
-                step = min(1.5 * step, sizes.largest)
-            step = min(step, sizes.largest)
+            if attempt.factorisations <= _FEW:
+                step = min(2 * step, largest)
 
     def _describe(self, target: Target, part: float, failure: NotConverged) -> str:
         c = self._now.control

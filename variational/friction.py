@@ -16,18 +16,16 @@ import ufl
 _ON_CONE = 1 - 1e-9
 
 
-def traction(u_x, anchor, p_n, eps_t, mu_f):
+def traction(u_x, anchor, limit, eps_t):
     """Return the tangential traction on the skin (Pa of reference area).
 
     Args:
         u_x: tangential displacement (m).
         anchor: accepted anchor s_n (m).
-        p_n: contact pressure (Pa of reference area).
+        limit: radius of the friction cone, mu_f p_n (Pa of reference area).
         eps_t: tangential penalty stiffness (Pa/m).
-        mu_f: friction coefficient.
     """
     trial = -eps_t * (u_x - anchor)
-    limit = mu_f * p_n
     slipping = ufl.conditional(ufl.gt(trial, 0.0), limit, -limit)
     return ufl.conditional(ufl.gt(abs(trial), _ON_CONE * limit), slipping, trial)
 

@@ -19,7 +19,7 @@ import numpy as np
 import ufl
 from dolfinx import fem
 
-from variational import electroadhesion, friction, kinematics, ogden, penalty, saint_venant
+from variational import electroadhesion, friction, kinematics, ogden, penalty, saint_venant, stress
 from variational.surface import Surface
 
 
@@ -85,7 +85,7 @@ class Problem:
             interface: laws of the contact.
             degree: polynomial degree of the displacement.
         """
-        self.mesh, self.surface, self.interface = mesh, surface, interface
+        self.mesh, self.cell_tags, self.surface, self.interface = mesh, cell_tags, surface, interface
         self.V = fem.functionspace(mesh, ("Lagrange", degree, (2,)))
         cellwise = fem.functionspace(mesh, ("Discontinuous Lagrange", 0))
         self.u = fem.Function(self.V, name="displacement")
@@ -104,14 +104,14 @@ class Problem:
         energy = 0
         # Strains are of degree p - 1: 2 (p - 1) integrates linear elasticity exactly and keeps the order.
         dx = ufl.Measure("dx", mesh, subdomain_data=cell_tags, metadata={"quadrature_degree": max(2 * (degree - 1), 1)})
-        self.densities = {}
-        for tags, density in self._densities(F, cell_tags, solids, cellwise):
+        self.laws = dict(self._laws(solids, cellwise))
+        self.densities = {tags: law.energy(F) for tags, law in self.laws.items()}
+        for tags, density in self.densities.items():
             energy += density * dx(tags)
-            self.densities[tags] = density
 
         self.y = kinematics.current_height(mesh, u)
         self.p_n = penalty.pressure(self.y, eps_n)
-        self.t_t = friction.traction(u[0], self.anchor, self.p_n, eps_t, mu_f)
+        self.t_t = friction.traction(u[0], self.anchor, mu_f * self.p_n, eps_t)
         self.new_anchor = friction.new_anchor(u[0], self.t_t, eps_t)
         self.p_el = electroadhesion.attraction(self.y, self.d_eq, self.voltage, h_0)
         self.area = kinematics.cofactor(F) * ufl.FacetNormal(mesh)  # current per reference area, a vector
@@ -125,13 +125,13 @@ class Problem:
         self.residual = fem.form(residual, jit_options=jit)
         self.jacobian = fem.form(jacobian, jit_options=jit)
 
-    def _densities(self, F, cell_tags, solids, cellwise):
-        """Yield (tags, energy density), one kernel a law: parameters are fields with one value a cell."""
+    def _laws(self, solids, cellwise):
+        """Yield (tags, law), one kernel a law: parameters are fields with one value a cell."""
 
         def field(values: Mapping[int, float]) -> fem.Function:
             f = fem.Function(cellwise)
             for tag, value in values.items():
-                f.x.array[cell_tags.find(tag)] = value
+                f.x.array[self.cell_tags.find(tag)] = value
             f.x.scatter_forward()
             return f
 
@@ -140,11 +140,11 @@ class Problem:
             shear = field({tag: s.shear_modulus for tag, s in skins.items()})
             bulk = field({tag: ogden.bulk_modulus(s.shear_modulus, s.poisson) for tag, s in skins.items()})
             a = field({tag: ogden.exponent(s.alpha, s.convention) for tag, s in skins.items()})
-            yield tuple(skins), ogden.energy(F, shear, a, bulk)
+            yield tuple(skins), stress.ogden_law(shear, a, bulk)
         stiff = {tag: saint_venant.lame_constants(s.young, s.poisson) for tag, s in solids.items() if isinstance(s, SaintVenant)}
         if stiff:
             lame, shear = (field({tag: pair[k] for tag, pair in stiff.items()}) for k in (0, 1))
-            yield tuple(stiff), saint_venant.energy(F, lame, shear)
+            yield tuple(stiff), stress.saint_venant_law(lame, shear)
 
     def set_air_gaps(self, d_eq: np.ndarray) -> None:
         """Give each ridge its equivalent air gap (m), shape (ridges,)."""

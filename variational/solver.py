@@ -2,14 +2,14 @@ r"""Newton's method by PETSc SNES on the displacement and the bone's translation
 
 Full steps first: with a stiff penalty the iteration is an active-set method, whose residual rises before the
 right points are in contact, and backtracking only slows it. A factorisation serves as long as the residual falls
-to a third an iteration. Where it cycles, a part of the skin is about to
+to half an iteration. Where it cycles, a part of the skin is about to
 jump on or off the screen and the tangent has a negative direction. Then the same solve is repeated as
 pseudo-transient continuation (Kelley and Keyes 1998, doi 10.1137/S0036142996304796): the tangent gets a shift
 :math:`\eta` on the touching skin, an implicit Euler step of :math:`\eta \dot u = -r(u)`, and eta falls as the residual falls.
 It creeps away from the equilibrium that is lost and ends in one of the unchanged equations.
 """
 
-import os
+import resource
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,8 +37,8 @@ DEFAULTS = {
 }
 _OUTSIDE = 1e30  # N/m: norm of the residual where J <= 0 somewhere
 _PATIENCE = 5  # full Newton steps without a new least residual
-_CONTRACTS = 0.3  # reduction of the residual an iteration below which a factorisation is kept
-_SHIFT = 1e10  # Pa/m, eta at the start
+_CONTRACTS = 0.5  # reduction of the residual an iteration below which a factorisation is kept
+_SHIFT = 2e9  # Pa/m, eta at the start
 _SHIFT_FALL, _SHIFT_RISE = 0.4, 4.0  # of eta an iteration
 _REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
 
@@ -212,7 +212,12 @@ class Solver:
         start = self.x.array_r.copy()
         self.counts.solves += 1
         self._inverted = False
+        fresh = self._stale
         reason = self._run(shifted=False)
+        if reason <= 0 and not fresh:  # the factorisation kept from the last solve may have led astray
+            self.x.array_w[:] = start
+            self._stale = True
+            reason = self._run(shifted=False)
         if reason <= 0 and creep:
             self.counts.pseudo_transient += 1
             self.x.array_w[:] = start
@@ -239,12 +244,10 @@ class Solver:
         """The bone's translation (m), shape (2,)."""
         return self.layout.rigid_part(self.x)
 
-    @property
-    def memory_mb(self) -> float:
-        """Peak memory (MB) of this process."""
-        import resource
 
-        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+def memory_mb() -> float:
+    """Return the peak memory (MB) of this process."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
 def _logical_and(a: bool, b: bool) -> bool:

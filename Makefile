@@ -1,0 +1,18 @@
+# make demo   press, charge and slide the default finger; results in results/demo
+# make test   all tests, then those marked mpi on two ranks
+#
+# Both need nothing but Debian 12, root, apt and PyPI: environment/run finds or makes what they run in.
+
+run := environment/run
+
+.PHONY: help demo test
+
+help:
+	@sed -n 's/^# make/make/p' Makefile
+
+demo:
+	$(run) python3 demos/demo_fingerpad.py --out results/demo
+
+test:
+	$(run) python3 -m pytest -q tests
+	$(run) mpirun -n 2 python3 -m pytest -q -p no:cacheprovider tests -m mpi

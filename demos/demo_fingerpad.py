@@ -1,0 +1,48 @@
+# # Press, charge, slide
+#
+# A rigid bone presses a layered, ridged fingerpad on a rigid screen with a prescribed force per length, the
+# voltage is switched on, and the bone slides sideways until every ridge slips (Forsbach, Heß and Papangelo 2023,
+# doi 10.3389/fmech.2022.1074393). The macroscale is plane strain at finite strain with Coulomb friction and
+# electrostatic attraction on the deformed gap; the roughness on each ridge enters through the equivalent air gap
+# of a bearing area model.
+#
+#     python3 demos/demo_fingerpad.py [--scene scene.toml] [--f-ext 75] [--voltage 200] [--contact-size 5e-6]
+#                                     [--friction 0.25] [--out results] [-fingerpad_snes_monitor …]
+#     mpirun -n 2 python3 demos/demo_fingerpad.py …
+#
+# The folder of results holds `steps.csv`, `ridges.csv`, `receptors.csv`, `coupling.csv`, `summary.json`,
+# `run.log`, pictures, and `displacement.bp`, `stress.bp`, `sed.bp` for ParaView.
+
+import argparse
+import sys
+
+import petsc4py
+from mpi4py import MPI
+
+from fingerpad.scene import add_arguments, command_line
+
+
+def main(comm: MPI.Comm, argv: list[str] | None = None) -> int:
+    """Run a scene; return the exit code."""
+    parser = argparse.ArgumentParser(description="Press, charge and slide a fingerpad.", add_help=True)
+    add_arguments(parser)
+    scene, args, petsc = command_line(parser, argv, quiet=comm.rank != 0)
+    petsc4py.init([sys.argv[0], *petsc])
+
+    # PETSc has its options from here on.
+    from fingerpad.run import run
+
+    result = run(scene, args.out, comm)
+
+    # What must hold in every run: the bone's load is what the screen bears less the attraction, and at full slip
+    # the friction is mu_0 times the contact force, exactly.
+    if result["full_slip"]:
+        balance = result["slip_f_contact"] - result["slip_f_electrostatic"] - result["f_ext"]
+        assert abs(balance) <= 1e-6 * result["f_ext"], balance
+        friction = abs(result["slip_f_t"]) - scene.friction * result["slip_f_contact"]
+        assert abs(friction) <= 1e-6 * abs(result["slip_f_t"]), friction
+    return 1 if "failure" in result else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(MPI.COMM_WORLD))

@@ -1,0 +1,1 @@
+"""The main job: press, charge and slide a fingerpad, from a scene to tables and pictures."""

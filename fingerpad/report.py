@@ -1,0 +1,269 @@
+"""What a run leaves: printed steps, tables, fields, summary, log and a progress bar; rank 0 alone writes text."""
+
+import csv
+import json
+import logging
+import time
+from pathlib import Path
+from typing import Any, TextIO
+
+import numpy as np
+from mpi4py import MPI
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from fingerpad import pictures
+from fingerpad.scene import Scene
+from fingerpad.simulation import Simulation, Step
+from variational.output import Fields, Snapshot, gather_mesh
+from variational.receptors import Receptors
+from variational.solver import memory_mb
+
+_NAMED = ("f_t", "mu_app", "f_electrostatic", "f_contact", "bone_height", "ridges_in_contact", "contact_length")
+_PROFILE = ("x", "y", "p_n", "t_t", "p_el", "area_x", "area_y")
+_HEADER = "step load     f_ext    U  bone x   bone y      f_T  mu_app    f_el ridges  contact newton fact."
+_UNITS = "               N/m     V      mm       mm      N/m             N/m             mm"
+
+
+class Report:
+    """Writes a run into a folder; every accepted step is on disk before the next one starts.
+
+    Attributes:
+        rows: accepted steps, on every rank.
+    """
+
+    def __init__(self, scene: Scene, folder: Path, comm: MPI.Comm) -> None:
+        """Open the log and the tables.
+
+        Args:
+            scene: what is run.
+            folder: made if need be; files of an earlier run in it are overwritten.
+            comm: communicator of the run.
+        """
+        self.scene, self.folder, self.comm = scene, folder, comm
+        self.rows: list[dict[str, Any]] = []
+        self.seconds = 0.0
+        self._start = time.perf_counter()
+        self._simulation: Simulation | None = None
+        self._profiles: list[dict[str, Any]] = []
+        self._kept: dict[str, tuple[Snapshot | None, Any]] = {}
+        self._tables: dict[str, tuple[TextIO, Any]] = {}
+        self._written = 0
+        self.log = logging.getLogger("fingerpad")
+        if comm.rank == 0:
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / "summary.json").unlink(missing_ok=True)
+        comm.barrier()
+        self._progress = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TextColumn("{task.percentage:3.0f} %"),
+            TimeElapsedColumn(),
+            TimeRemainingColumn(),
+            disable=comm.rank != 0,
+            transient=True,
+        )
+        self._progress.disable |= not self._progress.console.is_terminal
+        self._task = self._progress.add_task("meshing the finger", total=1.0)
+        if comm.rank == 0:
+            handler = logging.FileHandler(folder / "run.log", mode="w", encoding="utf-8")
+            handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
+            self.log.handlers = [handler]
+            self.log.setLevel(logging.INFO)
+            self.log.info("scene %s", scene.model_dump_json())
+        self._progress.start()
+
+    def say(self, text: str) -> None:
+        """Print a line on rank 0, above the progress bar."""
+        if self.comm.rank == 0:
+            self._progress.console.print(text, highlight=False, soft_wrap=True, markup=False)
+
+    def open(self, simulation: Simulation) -> None:
+        """Meet the simulation, once it is set up."""
+        self._simulation = simulation
+        self._fields = Fields(simulation.problem, self.folder)
+        self._sites = Receptors(simulation.problem, simulation.profiles.merkel_sites())
+        self.say(f"{simulation.unknowns} unknowns, {len(simulation.problem.surface.names)} ridges that can touch")
+        self.say(_HEADER)
+        self.say(_UNITS)
+
+    # -- steps -----------------------------------------------------------------------------------------
+    def step(self, step: Step, done: float) -> None:
+        """Report an accepted step; collective."""
+        start = time.perf_counter()
+        assert self._simulation is not None
+        new_load = bool(self.rows) and step.row["load"] != self.rows[-1]["load"]
+        if new_load and self.rows[-1]["load"] != "touch":
+            self._finish_load()
+        self.rows.append(step.row)
+        surface = self._simulation.problem.surface
+        stacked = np.stack([getattr(step.surface, name) for name in _PROFILE])
+        gathered, ridge = surface.gather(stacked), surface.gather(surface.ridge[None, :, None])
+        sed = self._sites.sed()
+        # The state is kept in case the next step belongs to another load: then it was this load's last.
+        self._kept["last"] = (gather_mesh(self._simulation.problem), self._sites.positions())
+        if self.comm.rank == 0:
+            assert gathered is not None and ridge is not None
+            self._profiles.append({"ridge": ridge[0, :, 0], "values": gathered, "d_eq": step.d_eq, "row": step.row})
+            self._table("steps", step.row)
+            for k, j in enumerate(surface.names):
+                if step.ridges.length[k] > 0:
+                    self._table("ridges", self._ridge_row(step, k, j))
+            for site, value in zip(self._simulation.profiles.ridges, sed, strict=True):
+                self._table("receptors", {"step": step.row["step"], "ridge": site, "merkel_sed": value})
+            for sweep, change in enumerate(step.attempt.changes):
+                self._table("coupling", {"step": step.row["step"], "sweep": sweep + 1, "change": change})
+            self._print(step, done)
+        self.seconds += time.perf_counter() - start
+
+    def _print(self, step: Step, done: float) -> None:
+        r = step.row
+        self.say(
+            f"{r['step']:4d} {r['load'][:7]:7s} {r['f_ext']:7.3f} {r['voltage']:5.1f} {r['bone_x'] * 1e3:7.4f} "
+            f"{r['bone_height'] * 1e3:8.5f} {r['f_t']:8.4f} {r['mu_app']:7.4f} {r['f_electrostatic']:7.3f} "
+            f"{r['ridges_in_contact']:6d} {r['contact_length'] * 1e3:8.4f} {r['newton_iterations']:6d} "
+            f"{r['factorisations']:5d}{'  jump' if r['jump'] else ''}"
+        )
+        self.log.info("step %s sweeps %s", json.dumps(r), step.attempt.changes)
+        for cut in step.attempt.cutbacks:
+            self.log.warning("step %d cut: %s", r["step"], cut)
+        notes = [f"ridge {j} {s}" for j, s in zip(self._names, step.states, strict=True) if s]
+        if notes:
+            self.log.warning("step %d closure: %s", r["step"], ", ".join(notes))
+        state = f"{r['load']}: {r['f_ext']:.1f} N/m, {r['voltage']:.0f} V, x {r['bone_x'] * 1e3:.2f} mm, µ {r['mu_app']:.3f}"
+        self._progress.update(self._task, completed=done, description=state)
+
+    @property
+    def _names(self) -> list[int]:
+        assert self._simulation is not None
+        return self._simulation.problem.surface.names
+
+    def _ridge_row(self, step: Step, k: int, j: int) -> dict[str, Any]:
+        values = step.ridges
+        return {
+            "step": step.row["step"],
+            "ridge": j,
+            "contact_length": values.length[k],
+            "f_contact": values.f_contact[k],
+            "f_friction": values.f_friction[k],
+            "f_electrostatic": values.f_attraction[k],
+            "p_c": values.p_c[k],
+            "d_eq": step.d_eq[k],
+            "state": step.states[k],
+        }
+
+    def _table(self, name: str, row: dict[str, Any]) -> None:
+        if name not in self._tables:
+            file = (self.folder / f"{name}.csv").open("w", newline="", encoding="utf-8")
+            writer = csv.DictWriter(file, list(row))
+            writer.writeheader()
+            self._tables[name] = (file, writer)
+        file, writer = self._tables[name]
+        writer.writerow(row)
+        file.flush()
+
+    def _finish_load(self) -> None:
+        """Keep the accepted state at the end of a load; the problem holds the next load's first step by now."""
+        self._kept[self.rows[-1]["load"]] = self._kept["last"]
+
+    def fields(self) -> None:
+        """Write the present state for ParaView; collective."""
+        start = time.perf_counter()
+        if self.rows and self._written != self.rows[-1]["step"]:
+            self._fields.write(float(self.rows[-1]["step"]))
+            self._written = self.rows[-1]["step"]
+        self.seconds += time.perf_counter() - start
+
+    # -- the end ---------------------------------------------------------------------------------------
+    def summary(self, failure: str = "") -> dict[str, Any]:
+        """Write ``summary.json`` and return it."""
+        assert self._simulation is not None
+        solver, rows = self._simulation.solver, self.rows
+        last: dict[str, Any] = rows[-1] if rows else {}
+        seconds = dict(solver.timings.seconds) | {"output": self.seconds}
+        peak = self.comm.allreduce(memory_mb())
+        result: dict[str, Any] = {
+            "f_ext": last.get("f_ext", 0.0),
+            "voltage": last.get("voltage", 0.0),
+            "full_slip": self._simulation.full_slip,
+            "newton_iterations": solver.counts.newton,
+            "factorisations": solver.counts.factorisations,
+            "unknowns": self._simulation.unknowns,
+            "wall_seconds": time.perf_counter() - self._start,
+            "steps": len(rows),
+            "jumps": sum(row["jump"] for row in rows),
+            "cutbacks": sum(row["cutbacks"] for row in rows),
+            "memory_mb": peak,
+            "ranks": self.comm.size,
+            **{f"seconds_{phase}": value for phase, value in seconds.items()},
+        }
+        normal, slip = self._named_rows()
+        for prefix, row in (("normal", normal), ("slip", slip)):
+            result |= {f"{prefix}_{name}": None if row is None else row[name] for name in _NAMED}
+        if failure:
+            result["failure"] = failure
+        result["parameters"] = self.scene.parameters()
+        if self.comm.rank == 0:
+            partial = self.folder / "summary.json.part"
+            partial.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
+            partial.replace(self.folder / "summary.json")
+        return result
+
+    def _named_rows(self) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:
+        """Return the rows of normal contact (the last before the bone first moves) and of full slip."""
+        still = [row for row in self.rows if row["bone_x"] == 0.0]
+        full = [row for row in self.rows if row["all_slip"]] if self._simulation and self._simulation.full_slip else []
+        return (still[-1] if still else None), (full[0] if full else None)
+
+    def draw(self) -> None:
+        """Draw the run on rank 0; collective."""
+        start = time.perf_counter()
+        if self.rows:
+            self._finish_load()
+            if self.comm.rank == 0:
+                self._draw()
+        self.seconds += time.perf_counter() - start
+
+    def _draw(self) -> None:
+        normal, slip = self._named_rows()
+        mu_0 = self.scene.friction
+        for load, (snapshot, sites) in self._kept.items():
+            if load == "last" or snapshot is None:
+                continue
+            row = [row for row in self.rows if row["load"] == load][-1]
+            title = f"After {load}: {pictures.conditions(row['f_ext'], row['voltage'], mu_0)}"
+            pictures.finger(self.folder / f"finger_{load.replace(' ', '_')}.png", snapshot, sites, title)
+        sliding = [row for row in self.rows if row["bone_x"] != 0.0]
+        if normal is None or not sliding:
+            return
+        end = slip or sliding[-1]
+        partial = min(sliding, key=lambda row: abs(row["slipping"] - 0.5))
+        named = {"Normal contact": normal, "Partial slip": partial, "Full slip" if slip else "Last state": end}
+        states = [self._profile(name, row) for name, row in named.items()]
+        conditions = pictures.conditions(end["f_ext"], end["voltage"], mu_0)
+        pictures.surface(self.folder / "surface.png", states, conditions)
+        pictures.history(self.folder / "history.png", self.rows, conditions, mu_0)
+
+    def _profile(self, title: str, row: dict[str, Any]) -> pictures.SurfaceProfile:
+        kept = next(k for k in self._profiles if k["row"] is row)
+        x, y, p_n, t_t, p_el, area_x, area_y = kept["values"]
+        ridge, d_eq = kept["ridge"], kept["d_eq"]
+        stretch = np.hypot(area_x, area_y)
+        columns: list[list[Any]] = [[] for _ in range(6)]
+        for k in np.unique(ridge):
+            mine = ridge == k
+            order = np.argsort(x[mine], axis=None)
+            parts = (x, y, p_n / stretch, t_t / stretch, p_el, np.broadcast_to(d_eq[ridge][:, None], x.shape))
+            for column, part in zip(columns, parts, strict=True):
+                column += [part[mine].ravel()[order], [np.nan]]
+        arrays = [np.concatenate(column) for column in columns]
+        return pictures.SurfaceProfile(title, *arrays, row["f_ext"], row["contact_length"])
+
+    def close(self) -> None:
+        """Close every file."""
+        if self._simulation is not None:
+            self._fields.close()
+        for file, _ in self._tables.values():
+            file.close()
+        self._progress.stop()
+        for handler in self.log.handlers:
+            handler.close()

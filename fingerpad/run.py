@@ -1,0 +1,46 @@
+"""Run a scene into a folder."""
+
+from pathlib import Path
+from typing import Any
+
+from mpi4py import MPI
+
+from fingerpad.report import Report
+from fingerpad.scene import Scene
+from fingerpad.simulation import Simulation
+from variational.continuation import StepFailed
+
+
+def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
+    """Reach every load of a scene, reporting into ``folder``.
+
+    Returns:
+        The summary, the same on every rank; with a key ``failure`` if a load could not be reached, in which
+        case every step before is in the folder all the same.
+    """
+    report = Report(scene, folder, comm)
+    failure = ""
+    try:
+        simulation = Simulation(scene, comm, report.step, report.fields)
+        report.open(simulation)
+        try:
+            simulation.run()
+        except StepFailed as error:
+            failure = str(error)
+            report.say(f"fingerpad: {failure}")
+            report.log.error(failure)
+        report.fields()
+        report.draw()
+        summary = report.summary(failure)
+        report.say(_sentence(summary, folder))
+        return summary
+    finally:
+        report.close()
+
+
+def _sentence(s: dict[str, Any], folder: Path) -> str:
+    end = "full slip" if s["full_slip"] else "no full slip"
+    if s["slip_mu_app"] is not None:
+        end += f" at mu_app {s['slip_mu_app']:.4f}, f_T {s['slip_f_t']:.3f} N/m, contact length {s['slip_contact_length'] * 1e3:.3f} mm"
+    work = f"{s['newton_iterations']} Newton iterations, {s['factorisations']} factorisations, {s['memory_mb']:.0f} MB"
+    return f"{end}; {work}, {s['wall_seconds']:.0f} s; results in {folder}"

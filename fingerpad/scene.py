@@ -1,0 +1,394 @@
+"""Scenes: everything a run needs, read from TOML and the command line, and refused in one sentence if impossible."""
+
+import argparse
+import contextlib
+import io
+import json
+import re
+import sys
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from fingerpad.sentences import first_error, qualify, show
+from geometry.parameters import Fingertip, MeshSize
+from geometry.profiles import GeometryError
+from variational.electroadhesion import insulator_thickness
+from variational.roughness.bam import BearingArea
+
+Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)]
+NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0)]
+Permittivity = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1)]
+Poisson = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=-1, lt=0.5)]
+Tolerance = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, lt=1)]
+
+
+class SceneError(ValueError):
+    """A scene that cannot be run; one sentence that names the key, its value and what is allowed."""
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Load(_Part):
+    """A load to reach from the present one; what is left out stays as it is."""
+
+    name: str
+    f_ext: Positive | None = None
+    """External normal force on the bone (N/m)."""
+    bone_height: Finite | None = None
+    """Change of the bone's height from the unloaded position (m), negative when pressed."""
+    voltage: NonNegative | None = None
+    """Instantaneous voltage U (V)."""
+    bone_x: Finite | None = None
+    """Horizontal position of the bone (m), zero when unloaded."""
+    until_full_slip: Annotated[bool, Field(strict=True)] = False
+    """Stop as soon as every point in contact slips one way."""
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Load":
+        if self.f_ext is not None and self.bone_height is not None:
+            raise ValueError(
+                f"f_ext is {show(self.f_ext)} and bone_height is {show(self.bone_height)}; "
+                "at most one of the two can be prescribed"
+            )
+        if {self.f_ext, self.bone_height, self.voltage, self.bone_x} == {None}:
+            raise ValueError(
+                f"name is {show(self.name)} and nothing else is given; "
+                "it must come with at least one of f_ext, bone_height, voltage and bone_x"
+            )
+        return self
+
+
+class Skin(_Part):
+    """Ogden solid (Eqs. 1 and 2)."""
+
+    shear_modulus: Positive
+    """Initial shear modulus G_0 (Pa)."""
+    alpha: Finite
+    poisson: Poisson = 0.48
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Skin":
+        if self.alpha == 0:
+            raise ValueError("alpha is 0; it must be another number, positive or negative")
+        return self
+
+
+class Stiff(_Part):
+    """Saint Venant-Kirchhoff solid: linear elastic at finite rotation (*assumption*; the paper: linear elastic)."""
+
+    young: Positive
+    """Young's modulus (Pa)."""
+    poisson: Poisson = 0.3
+
+
+class Materials(_Part):
+    """Materials of the layers (Table 2). A table that gives some keys of a layer keeps the others' defaults."""
+
+    subcutis: Skin = Skin(shear_modulus=25e3, alpha=5.0)
+    dermis: Skin = Skin(shear_modulus=2.55e3, alpha=-14.53)
+    viable_epidermis: Skin = Skin(shear_modulus=61.75e3, alpha=-14.53)
+    stratum_corneum: Skin = Skin(shear_modulus=86.76e3, alpha=-14.53)
+    nail: Stiff = Stiff(young=170e6)
+    nail_bed: Stiff = Stiff(young=1e6)
+    exponent: Literal["printed", "abaqus"] = "printed"
+    """Power of the stretches: ``"printed"`` for the paper's -alpha, ``"abaqus"`` for +alpha.
+    *Assumption*: the paper computed with Abaqus but prints -alpha."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _complete(cls, data: Any) -> Any:
+        if not isinstance(data, dict):
+            return data
+        defaults = {name: field.default for name, field in cls.model_fields.items()}
+        return {
+            name: defaults[name].model_dump() | given
+            if isinstance(given, dict) and isinstance(defaults.get(name), BaseModel)
+            else given
+            for name, given in data.items()
+        }
+
+
+class Electric(_Part):
+    """Insulators between finger and electrode (Table 3)."""
+
+    eps_sc: Permittivity = 1650.0
+    """Relative permittivity of the stratum corneum, at 3 kHz."""
+    d_i: Positive = 1e-6
+    """Thickness of the screen's insulating layer (m)."""
+    eps_i: Permittivity = 3.9
+    """Relative permittivity of that layer."""
+
+    def h_0(self, d_sc: float) -> float:
+        """Return the effective insulator thickness (m) under stratum corneum of thickness ``d_sc`` (m)."""
+        return insulator_thickness(d_sc, self.eps_sc, self.d_i, self.eps_i)
+
+
+class Roughness(_Part):
+    """Roughness of a ridge (Table 3), see :class:`variational.roughness.bam.BearingArea`."""
+
+    h_rms: Positive = 3.1e-6
+    """Root mean square height (m)."""
+    wavelength: Positive = 100e-6
+    """Largest wavelength lambda_0 (m)."""
+    young: Positive = 1e6
+    """Elastic modulus of the stratum corneum on the microscale (Pa)."""
+    gamma: Positive = 0.5
+    beta: Positive = 1.0
+    """Prefactor of the repulsion: 1 in Eq. 9; Eq. 15 takes 3/4. *Assumption*: Eq. 9 is meant."""
+    p_floor: Positive = 1e3
+    """Pressure (Pa) below which the air gap is held (*assumption*)."""
+
+    def bearing_area(self, h_0: float) -> BearingArea:
+        """Return the closure for an effective insulator thickness ``h_0`` (m)."""
+        return BearingArea(h_0, **self.model_dump())
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Roughness":
+        full = self.bearing_area(1.0).full_pressure
+        if self.p_floor >= full:
+            raise ValueError(
+                f"p_floor is {show(self.p_floor)}; it must be below the pressure at zero separation, {full:.4g} Pa"
+            )
+        return self
+
+
+class Contact(_Part):
+    """Numerical stiffness of the contact, and what is called contact."""
+
+    eps_n: Positive = 1.5e12
+    """Normal penalty stiffness (Pa/m of reference area). *Assumption*: penetration stays below a tenth of d_eq."""
+    eps_t: Positive = 1.5e11
+    """Tangential penalty stiffness (Pa/m of reference area) (*assumption*)."""
+    length: Literal["pressure", "gap"] = "pressure"
+    """What counts as ridge length L_R in Eq. 4: where there is contact pressure, or where the gap is below d_eq.
+    *Assumption*: the former; the domain printed in Eq. 4 is the whole boundary."""
+
+
+class Numerics(_Part):
+    """Discretisation and tolerances."""
+
+    degree: Annotated[int, Field(strict=True, ge=1, le=3)] = 2
+    """Polynomial degree of the displacement."""
+    quadrature_points: Annotated[int, Field(strict=True, ge=2, le=8)] = 4
+    """Gauss points on a surface facet."""
+    tolerance: Tolerance = 1e-9
+    """Residual of the equilibrium over f_ext at which Newton's method ends."""
+    coupling_tolerance: Tolerance = 1e-6
+    """Relative change of d_eq at which the loop over the scales ends."""
+    coupling_cap: Annotated[int, Field(strict=True, ge=1)] = 30
+    """Most sweeps of that loop."""
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Numerics":
+        if self.degree >= self.quadrature_points:
+            raise ValueError(f"degree is {self.degree}; it must be below quadrature_points, {self.quadrature_points}")
+        return self
+
+
+class Scene(_Part):
+    """Everything a run needs; SI units, forces per out-of-plane length.
+
+    Without ``history`` the bone is pressed with ``f_ext``, the voltage is switched on, and the bone slides until
+    every ridge slips. With ``history`` the loads say it all and the three keys of the default one are refused.
+    """
+
+    f_ext: Positive = 75.0
+    """External normal force on the bone (N/m)."""
+    voltage: NonNegative = 200.0
+    """Instantaneous voltage U (V). *Assumption*: Eq. 3's, not Table 3's peak to peak."""
+    slide_length: Positive = 5e-3
+    """Farthest the bone slides (m) on its way to full slip (*assumption*)."""
+    history: Annotated[tuple[Load, ...], Field(min_length=1)] | None = None
+    """Loads one after the other, in place of the default press, charge and slide."""
+    friction: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=2)] = 0.25
+    """Friction coefficient mu_0 of skin on the screen."""
+    width: Positive = 20e-3
+    """Out-of-plane width of the contact (m) that turns N/m into N, for reports only (*assumption*)."""
+    geometry: Fingertip = Fingertip()
+    mesh: MeshSize = MeshSize()
+    materials: Materials = Materials()
+    electric: Electric = Electric()
+    roughness: Roughness = Roughness()
+    contact: Contact = Contact()
+    numerics: Numerics = Numerics()
+
+    @model_validator(mode="after")
+    def _one_history(self) -> "Scene":
+        if self.history is None:
+            return self
+        for name in _DEFAULT_HISTORY:
+            if name in self.model_fields_set:
+                raise ValueError(
+                    f"{name} is {show(getattr(self, name))} and history is given too; "
+                    "with a history each load states its own values"
+                )
+        first = self.history[0]
+        if first.f_ext is None and first.bone_height is None:
+            raise ValueError(
+                f"history[0].name is {show(first.name)}, with neither f_ext nor bone_height; "
+                "the first load must give one of them"
+            )
+        return self
+
+    @property
+    def h_0(self) -> float:
+        """Effective insulator thickness (m)."""
+        return self.electric.h_0(self.geometry.sc_thickness)
+
+    def loads(self) -> tuple[Load, ...]:
+        """Return the loads to reach one after the other."""
+        if self.history is not None:
+            return self.history
+        return (
+            Load(name="press", f_ext=self.f_ext),
+            Load(name="charge", voltage=self.voltage),
+            Load(name="slide", bone_x=self.slide_length, until_full_slip=True),
+        )
+
+    def parameters(self) -> dict[str, Any]:
+        """Return every parameter in use, ready for JSON; as a scene it gives the same run again."""
+        unused = {"history"} if self.history is None else set(_DEFAULT_HISTORY)
+        return self.model_dump(mode="json", exclude=unused)
+
+
+_DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
+_OPTIONS = {"f_ext": "f_ext", "voltage": "voltage", "contact_size": "mesh.contact", "friction": "friction"}
+
+
+# -- files ---------------------------------------------------------------------------------------------
+def load(path: Path | None = None, overrides: Mapping[str, Any] | None = None) -> Scene:
+    """Read a scene.
+
+    Args:
+        path: TOML file; None for the default scene.
+        overrides: values by dotted key (``{"mesh.contact": 5e-6}``), which win over the file's.
+
+    Raises:
+        SceneError: the file cannot be read, or the first key at fault.
+    """
+    data: dict[str, Any] = {}
+    if path is not None:
+        try:
+            data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        except OSError as error:
+            raise SceneError(f"scene file {path} cannot be read: {error.strerror or error}") from None
+        except ValueError as error:  # of the encoding or of TOML
+            raise SceneError(f"scene file {path} is not TOML: {error}") from None
+    for key, value in (overrides or {}).items():
+        _put(data, key.split("."), value)
+    return from_data(data)
+
+
+def from_data(data: Mapping[str, Any]) -> Scene:
+    """Validate a scene given as nested tables.
+
+    Raises:
+        SceneError: the first key at fault.
+    """
+    try:
+        # As JSON, because there a list is a tuple and a table is a model even under strict rules.
+        return Scene.model_validate_json(json.dumps(data, default=str), strict=True)
+    except ValidationError as error:
+        raise SceneError(first_error(error, Scene)) from None
+
+
+def check(scene: Scene) -> None:
+    """Refuse a scene whose finger cannot be built or meshed.
+
+    Raises:
+        SceneError: layers touch or cross, ridges do not fit, the bone touches the skin, or elements are too large.
+    """
+    from geometry import fingertip  # gmsh: not for those who only read scenes
+
+    try:
+        fingertip.check(scene.geometry, scene.mesh)
+    except GeometryError as error:
+        message = re.sub(r"\bcontact size (\S+) m is", r"mesh.contact is \1 m,", str(error))
+        raise SceneError(qualify(message, "geometry.", Fingertip.model_fields)) from None
+
+
+def _put(data: dict[str, Any], keys: Sequence[str], value: Any) -> None:
+    for depth, key in enumerate(keys[:-1], start=1):
+        data = data.setdefault(key, {})
+        if not isinstance(data, dict):
+            raise SceneError(f"{'.'.join(keys[:depth])} is {show(data)}; it must be a table of keys")
+    data[keys[-1]] = value
+
+
+# -- command line --------------------------------------------------------------------------------------
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options every run has: a scene, four overrides, and where results go."""
+    parser.add_argument("--scene", type=Path, metavar="FILE", help="scene in TOML (default: press, charge, slide)")
+    parser.add_argument("--f-ext", metavar="N/m", help="external normal force per length")
+    parser.add_argument("--voltage", metavar="V", help="instantaneous voltage")
+    parser.add_argument("--contact-size", metavar="M", help="size of surface elements where ridges can touch")
+    parser.add_argument("--friction", metavar="MU", help="friction coefficient")
+    parser.add_argument("--out", type=Path, metavar="DIR", default=Path("results"), help="folder of the results")
+
+
+def from_arguments(args: argparse.Namespace) -> Scene:
+    """Return the checked scene that parsed options of :func:`add_arguments` ask for.
+
+    Raises:
+        SceneError: the first key at fault.
+    """
+    given = {key: getattr(args, name) for name, key in _OPTIONS.items()}
+    scene = load(args.scene, {key: _number(text) for key, text in given.items() if text is not None})
+    check(scene)
+    return scene
+
+
+def petsc_options(rest: Sequence[str]) -> list[str]:
+    """Return arguments no option claimed, if they can be PETSc's: ``-name`` or ``-name value``.
+
+    Raises:
+        SceneError: the first argument that cannot.
+    """
+    value_allowed = False
+    for word in rest:
+        is_value = not re.match(r"-[A-Za-z-]", word)
+        if word.startswith("--") or (is_value and not value_allowed):
+            raise SceneError(
+                f"{word} is not an option; options are --scene, --f-ext, --voltage, --contact-size, --friction, "
+                "--out, and PETSc's own with one dash"
+            )
+        value_allowed = not is_value
+    return list(rest)
+
+
+def command_line(
+    parser: argparse.ArgumentParser, argv: Sequence[str] | None = None, quiet: bool = False
+) -> tuple[Scene, argparse.Namespace, list[str]]:
+    """Read scene, options and PETSc's options, or exit with code 2 and one sentence.
+
+    Args:
+        parser: has the options of :func:`add_arguments` and perhaps more.
+        argv: arguments; the process's own if None.
+        quiet: print nothing, for all ranks but one.
+    """
+    silence = io.StringIO()
+    with contextlib.ExitStack() as stack:
+        if quiet:
+            stack.enter_context(contextlib.redirect_stdout(silence))
+            stack.enter_context(contextlib.redirect_stderr(silence))
+        args, rest = parser.parse_known_args(argv)
+        try:
+            petsc = petsc_options(rest)
+            return from_arguments(args), args, petsc
+        except SceneError as error:
+            print(f"fingerpad: {error}", file=sys.stderr)
+            sys.exit(2)
+
+
+def _number(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text

@@ -1,0 +1,191 @@
+"""One scene from mesh to accepted steps: joins geometry, mechanics and roughness, and reports as it goes."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+from numpy.typing import NDArray
+
+from fingerpad.scene import Load, Scene
+from geometry import fingertip, mesh, tags
+from geometry.profiles import Profiles
+from variational.continuation import Attempt, Continuation, StepFailed, Target
+from variational.coupling import Coupling
+from variational.problem import Interface, Ogden, Problem, SaintVenant
+from variational.quantities import Observer, RidgeLoads, SurfaceState
+from variational.solver import Solver
+from variational.surface import Surface
+
+Array = NDArray[np.float64]
+_SLIDE_ON = 0.2e-3  # m, further sliding that must not change f_t at full slip
+_STEADY = 1e-6  # relative change of f_t that it may cause
+
+
+@dataclass(frozen=True)
+class Step:
+    """An accepted step; ``row`` is flat and in SI, the ridges' values have shape (ridges,)."""
+
+    row: dict[str, Any]
+    ridges: RidgeLoads
+    d_eq: Array
+    states: list[str]
+    """What is to be known of each ridge's place on the closure, mostly nothing."""
+    attempt: Attempt
+    surface: SurfaceState
+
+
+class Simulation:
+    """A scene's finger and the path of its loads.
+
+    Attributes:
+        full_slip: whether full slip was reached, and held over a further 0.2 mm.
+        unknowns: number of unknowns.
+    """
+
+    def __init__(
+        self, scene: Scene, comm: MPI.Comm, on_step: Callable[[Step, float], None], on_load: Callable[[], None]
+    ) -> None:
+        """Mesh the finger and set the solver up.
+
+        Args:
+            scene: a checked scene.
+            comm: communicator of the mesh.
+            on_step: called on every rank after each accepted step with the part of the whole history that is done.
+            on_load: called on every rank when a load has been reached.
+        """
+        self.scene, self.on_step, self.on_load = scene, on_step, on_load
+        self.profiles = Profiles(scene.geometry)
+        self.body = mesh.load(comm, lambda: fingertip.build(scene.geometry, scene.mesh), tags.LAYERS.values())
+        body, contact, numerics = self.body, scene.contact, scene.numerics
+        ridges = {j: tags.ridge(j) for j in body.ridges()}
+        surface = Surface(body.mesh, body.facet_tags, ridges, numerics.quadrature_points)
+        interface = Interface(contact.eps_n, contact.eps_t, scene.friction, scene.h_0)
+        self.problem = Problem(body.mesh, body.cell_tags, surface, _solids(scene), interface, numerics.degree)
+        force = max((load.f_ext for load in scene.loads() if load.f_ext), default=1.0)
+        rim = body.facet_tags.find(tags.BONE_RIM)
+        self.solver = Solver(self.problem, rim, force, numerics.tolerance)
+        self.observer = Observer(self.problem)
+        self.closure = scene.roughness.bearing_area(scene.h_0)
+        self.coupling = Coupling(
+            self.solver,
+            self.observer,
+            self.closure,
+            numerics.coupling_tolerance,
+            numerics.coupling_cap,
+            by_gap=contact.length == "gap",
+        )
+        self.continuation = Continuation(self.coupling, self._accepted)
+        self.unknowns = self.solver.layout.global_size
+        self.full_slip = False
+        self._load, self._loads_done = "", 0.0
+        self._other_skin = _skin_nodes(self.problem, body.facet_tags.find(tags.OUTER_SKIN))
+
+    def run(self) -> None:
+        """Reach every load of the scene.
+
+        Raises:
+            StepFailed: a load that could not be reached; everything accepted before was reported.
+        """
+        loads = self.scene.loads()
+        for k, load in enumerate(loads):
+            self._load, self._loads_done = load.name, float(k)
+            self.continuation.run(_target(load))
+            while load.until_full_slip and self.continuation.slip[1]:
+                if self._slides_on(load):
+                    break
+                self.continuation.run(_target(load))
+            self.on_load()
+
+    def _slides_on(self, load: Load) -> bool:
+        """Slide a little further: full slip is steady, since the screen looks the same everywhere."""
+        before, x = self.solver.reaction[0], self.solver.control.x
+        direction = np.sign((load.bone_x or 0.0) - x) or 1.0
+        self.continuation.run(Target(load.name, bone_x=x + direction * _SLIDE_ON))
+        steady = bool(abs(self.solver.reaction[0] - before) <= _STEADY * abs(before))
+        self.full_slip = steady and self.continuation.slip[1]
+        return self.full_slip
+
+    # -- reports ---------------------------------------------------------------------------------------
+    def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
+        state = self.continuation.surface_state
+        loads = self.observer.ridge_loads(state)
+        states = [self.closure.state(float(p), self._voltage) for p in loads.p_c]
+        step = Step(self._row(target, loads, attempt), loads, self.coupling.d_eq, states, attempt, state)
+        whole = len(self.scene.loads())
+        self.on_step(step, min((self._loads_done + (0.0 if target.name == "touch" else part)) / whole, 1.0))
+        self._check_zone(loads)
+
+    @property
+    def _voltage(self) -> float:
+        return float(self.problem.voltage.value)
+
+    def _row(self, target: Target, loads: RidgeLoads, attempt: Attempt) -> dict[str, Any]:
+        bone, reaction = self.solver.bone, self.solver.reaction
+        slipping, full = self.continuation.slip
+        f_ext, f_t = float(reaction[1]), -float(reaction[0])
+        return {
+            "step": self.continuation.steps,
+            "load": self._load if target.name != "touch" else "touch",
+            "f_ext": f_ext,
+            "voltage": self._voltage,
+            "bone_x": float(bone[0]),
+            "bone_height": float(bone[1]),
+            "f_t": f_t,
+            "mu_app": f_t / f_ext if f_ext > 0 else 0.0,
+            "f_contact": float(loads.f_contact.sum()),
+            "f_electrostatic": float(loads.f_attraction.sum()),
+            "ridges_in_contact": int((loads.length > 0).sum()),
+            "contact_length": float(loads.length.sum()),
+            "slipping": slipping,
+            "all_slip": full,
+            "newton_iterations": attempt.newton,
+            "factorisations": attempt.factorisations,
+            "sweeps": attempt.sweeps,
+            "cutbacks": len(attempt.cutbacks),
+            "jump": attempt.pseudo_transient > 0,
+        }
+
+    def _check_zone(self, loads: RidgeLoads) -> None:
+        """Stop if the skin touches where it was not expected to."""
+        names = self.problem.surface.names
+        if loads.length[0] > 0 or loads.length[-1] > 0:
+            j = names[0] if loads.length[0] > 0 else names[-1]
+            raise StepFailed(
+                f"step {self.continuation.steps} ({self._load}): ridge {j}, the last one that is meshed to touch, is in contact; "
+                f"mesh.touching_half_arc is {self.scene.mesh.touching_half_arc:g} m and must be larger"
+            )
+        nodes = self._other_skin
+        height = self.problem.V.tabulate_dof_coordinates()[nodes, 1] + self.problem.u.x.array.reshape(-1, 2)[nodes, 1]
+        lowest = self.observer.lowest_outside(height)
+        if lowest < 0:
+            raise StepFailed(
+                f"step {self.continuation.steps} ({self._load}): skin beyond the ridges that are meshed to touch is "
+                f"{-lowest:.3g} m below the screen; mesh.touching_half_arc is {self.scene.mesh.touching_half_arc:g} m "
+                "and must be larger"
+            )
+
+
+def _target(load: Load) -> Target:
+    return Target(load.name, load.f_ext, load.bone_height, load.voltage, load.bone_x, load.until_full_slip)
+
+
+def _solids(scene: Scene) -> dict[int, Ogden | SaintVenant]:
+    m = scene.materials
+    skins = {
+        tags.SUBCUTIS: m.subcutis,
+        tags.DERMIS: m.dermis,
+        tags.VIABLE_EPIDERMIS: m.viable_epidermis,
+        tags.STRATUM_CORNEUM: m.stratum_corneum,
+    }
+    stiff = {tags.NAIL: m.nail, tags.NAIL_BED: m.nail_bed}
+    solids: dict[int, Ogden | SaintVenant] = {tag: SaintVenant(s.young, s.poisson) for tag, s in stiff.items()}
+    solids |= {tag: Ogden(s.shear_modulus, s.alpha, s.poisson, m.exponent) for tag, s in skins.items()}
+    return solids
+
+
+def _skin_nodes(problem: Problem, facets: NDArray[np.int32]) -> NDArray[np.int32]:
+    from dolfinx import fem
+
+    return np.asarray(fem.locate_dofs_topological(problem.V, 1, facets))

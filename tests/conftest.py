@@ -1,0 +1,37 @@
+"""Small meshes, shared by the tests, and tests on several ranks."""
+
+from functools import partial
+
+import pytest
+from mpi4py import MPI
+
+from geometry import fingertip
+from geometry.benchmarks import block
+from geometry.mesh import TaggedMesh, load
+from geometry.parameters import Fingertip, MeshSize
+
+
+def pytest_collection_modifyitems(items):
+    """Leave out, under mpirun, what is written for one rank."""
+    if MPI.COMM_WORLD.size > 1:
+        for item in items:
+            if item.get_closest_marker("mpi") is None:
+                item.add_marker(pytest.mark.skip(reason="written for one rank"))
+
+
+@pytest.fixture(scope="session")
+def square() -> TaggedMesh:
+    """A block 1 mm wide and high, 8 x 8 x 2 cells, its bottom on the screen."""
+    return load(MPI.COMM_WORLD, partial(block, 1e-3, 1e-3, 0.125e-3))
+
+
+@pytest.fixture(scope="session")
+def coarse() -> MeshSize:
+    """Element sizes of a fingertip that is meshed in seconds; nine ridges can touch."""
+    return MeshSize(contact=30e-6, receptor=80e-6, interface=120e-6, growth=0.5, touching_half_arc=2.0e-3)
+
+
+@pytest.fixture(scope="session")
+def finger_mesh(coarse) -> TaggedMesh:
+    """The default fingertip on a coarse mesh."""
+    return load(MPI.COMM_WORLD, partial(fingertip.build, Fingertip(), coarse))

@@ -1,0 +1,172 @@
+"""A body glued to a rigid one: the numbering is T, which gives all rim nodes one translation."""
+
+import numpy as np
+import pytest
+import ufl
+from dolfinx import fem, mesh
+from dolfinx.fem.petsc import assemble_matrix
+from mpi4py import MPI
+from numpy.testing import assert_allclose
+
+from variational.layout import RigidRimLayout
+
+pytestmark = pytest.mark.mpi
+CELLS = 4
+
+
+@pytest.fixture(params=[1, 2], ids=["linear", "quadratic"])
+def space(request) -> fem.FunctionSpace:
+    """Vectors on a unit square."""
+    domain = mesh.create_unit_square(MPI.COMM_WORLD, CELLS, CELLS)
+    return fem.functionspace(domain, ("Lagrange", request.param, (2,)))
+
+
+@pytest.fixture
+def layout(space) -> RigidRimLayout:
+    """The top of the square is rigid."""
+    return RigidRimLayout(space, rim(space.mesh))
+
+
+def rim(domain):
+    return mesh.locate_entities_boundary(domain, 1, lambda x: np.isclose(x[1], 1))
+
+
+def bilinear(space):
+    """Return a form without any symmetry, and free of stress under translation."""
+    u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
+    x = ufl.SpatialCoordinate(space.mesh)
+    skew = ufl.as_matrix([[1, 3], [-2, 5]])
+    return ufl.inner(ufl.grad(u) * skew + (1 + x[0]) * ufl.grad(u).T, ufl.grad(v)) * ufl.dx
+
+
+def smooth(space) -> fem.Function:
+    """Return a field that is (0.7, -0.4) on the rim."""
+    f = fem.Function(space)
+    f.interpolate(
+        lambda x: np.stack([0.7 + (1 - x[1]) * np.sin(3 * x[0]), -0.4 + (1 - x[1]) * np.cos(2 * x[0] + x[1])])
+    )
+    return f
+
+
+def unknowns(layout, f):
+    """Return the vector of unknowns of a field that is (0.7, -0.4) on the rim."""
+    x = layout.create_vector()
+    layout.from_nodes(f.x.array, np.array([0.7, -0.4]), x)
+    return x
+
+
+def matrix(layout, space):
+    A = layout.create_matrix()
+    fem.petsc.assemble_matrix(A, fem.form(bilinear(space)))
+    A.assemble()
+    return A
+
+
+def test_size(space, layout):
+    """Every node that is not on the rim has its own two unknowns; the rim has two together."""
+    degree = space.element.basix_element.degree
+    line = degree * CELLS + 1
+    assert layout.global_size == 2 * (line * (line - 1) + 1)
+    assert space.mesh.comm.allreduce(layout.local_size) == layout.global_size
+
+
+def test_round_trip(space, layout):
+    """Nodal values survive the way to the unknowns and back, ghosts included."""
+    f, back = smooth(space), np.empty_like(smooth(space).x.array)
+    layout.to_nodes(unknowns(layout, f), back)
+    np.testing.assert_array_equal(back, np.where(np.repeat(layout.is_rim, 2), np.tile([0.7, -0.4], len(back) // 2), back))
+    assert_allclose(back, f.x.array, rtol=0, atol=1e-15)
+
+
+def test_rim_moves_as_one(space, layout):
+    """A unit of the rigid unknowns moves all nodes of the rim, ghosts included, and no other."""
+    x = layout.create_vector()
+    for component in (0, 1):
+        x.set(0.0)
+        if layout.owns_rigid:
+            x.array_w[-2 + component] = 1.0
+        nodal = np.empty(len(layout.rows))
+        layout.to_nodes(x, nodal)
+        on_top = np.isclose(space.tabulate_dof_coordinates()[:, 1], 1)
+        expected = np.zeros((len(on_top), 2))
+        expected[on_top, component] = 1.0
+        np.testing.assert_array_equal(nodal.reshape(-1, 2), expected)
+
+
+def test_rigid_part_is_known_to_every_rank(space, layout):
+    """Read back as written."""
+    np.testing.assert_array_equal(layout.rigid_part(unknowns(layout, smooth(space))), [0.7, -0.4])
+
+
+def test_forces_of_the_rim_add_up(space, layout):
+    """The rigid body's rows of a load are the load on the rim's nodes: of unity over the top, one. Tolerance: roundoff."""
+    v = ufl.TestFunction(space)
+    facets = rim(space.mesh)
+    top = mesh.meshtags(space.mesh, 1, np.sort(facets), np.full(len(facets), 1, dtype=np.int32))
+    ds = ufl.Measure("ds", space.mesh, subdomain_data=top)
+    nodal = fem.assemble_vector(fem.form((2 * v[0] - 3 * v[1]) * ds(1))).array
+    f = layout.create_vector()
+    f.set(0.0)
+    layout.add_to_unknowns(nodal, f)
+    assert_allclose(layout.rigid_part(f), [2, -3], rtol=1e-13)
+
+
+def test_matrix_is_the_reduced_one(space, layout):
+    """The matrix times the unknowns of u is T^T times the action on u. Tolerance: roundoff of some thirty terms."""
+    A, f = matrix(layout, space), smooth(space)
+    nodal = fem.assemble_vector(fem.form(ufl.action(bilinear(space), f))).array
+    expected, product = layout.create_vector(), layout.create_vector()
+    expected.set(0.0)
+    layout.add_to_unknowns(nodal, expected)
+    A.mult(unknowns(layout, f), product)
+    assert_allclose(product.array_r, expected.array_r, rtol=0, atol=1e-13 * expected.norm(3))
+
+
+def test_transposed_matrix_is_the_reduced_one(space, layout):
+    """The same for the rows: the product of the transposed matrix and the action of the adjoint form."""
+    A, f = matrix(layout, space), smooth(space)
+    nodal = fem.assemble_vector(fem.form(ufl.action(ufl.adjoint(bilinear(space)), f))).array
+    expected, product = layout.create_vector(), layout.create_vector()
+    expected.set(0.0)
+    layout.add_to_unknowns(nodal, expected)
+    A.multTranspose(unknowns(layout, f), product)
+    assert_allclose(product.array_r, expected.array_r, rtol=0, atol=1e-13 * expected.norm(3))
+
+
+def test_every_entry(space, layout):
+    """On one rank: the matrix is T^T A T of the plain one, entry by entry. Tolerance: roundoff."""
+    if space.mesh.comm.size > 1:
+        pytest.skip("the plain matrix is compared as a whole")
+    plain = assemble_matrix(fem.form(bilinear(space)))
+    plain.assemble()
+    n = plain.getSize()[0]
+    T = np.zeros((n, layout.global_size))
+    T[np.arange(n), layout.rows] = 1
+    every = range(layout.global_size)
+    reduced = T.T @ plain.getValues(range(n), range(n)) @ T
+    entries = matrix(layout, space).getValues(every, every)
+    assert_allclose(entries, reduced, rtol=0, atol=1e-14 * np.abs(reduced).max())
+
+
+def test_rows_sum_to_zero(space, layout):
+    """Translating body and rim together costs no force. Tolerance: roundoff."""
+    A = matrix(layout, space)
+    x, y = A.createVecs()
+    x.set(1.0)
+    A.mult(x, y)
+    assert y.norm(3) < 1e-13 * A.norm()
+
+
+def test_assembling_again_gives_the_same(space, layout):
+    """Zeroed and filled again, with rows taken out in between, as in every iteration of a solve."""
+    A = matrix(layout, space)
+    x, once, twice = layout.create_vector(), layout.create_vector(), layout.create_vector()
+    x.set(1.0)
+    x.array_w[:] += np.arange(len(x.array_r))
+    A.mult(x, once)
+    A.zeroRows(layout.rigid_rows if layout.owns_rigid else np.empty(0, layout.rigid_rows.dtype), diag=7.0)
+    A.zeroEntries()
+    fem.petsc.assemble_matrix(A, fem.form(bilinear(space)))
+    A.assemble()
+    A.mult(x, twice)
+    np.testing.assert_allclose(twice.array_r, once.array_r, rtol=1e-14, atol=1e-14 * once.norm(3))

@@ -1,0 +1,204 @@
+"""Fields, cell means and receptor sites against closed forms under homogeneous deformation."""
+
+from pathlib import Path
+
+import dolfinx
+import numpy as np
+import pytest
+import ufl
+from dolfinx import fem
+from mpi4py import MPI
+
+from variational import compat, kinematics, ogden, saint_venant, stress
+from variational.cellwise import Cellwise
+from variational.output import Fields, gather_mesh, sed_per_cell
+from variational.problem import Interface, Ogden, Problem, SaintVenant
+from variational.receptors import Receptors
+from variational.surface import Surface
+
+pytestmark = pytest.mark.mpi
+
+SKIN, NAIL = 1, 2
+SOLIDS = {SKIN: Ogden(shear_modulus=86760.0, alpha=-14.53, poisson=0.48), NAIL: SaintVenant(young=1e6, poisson=0.3)}
+F_GIVEN = np.array([[1.08, 0.12], [-0.05, 0.91]])
+F_EQUAL = np.array([[1.05, 0.0], [0.0, 1.05]])  # in-plane stretches coincide
+ROUNDOFF = 1e-9  # relative: closed forms against compiled ones; the energy loses digits as a difference of ones
+
+
+def block(comm: MPI.Comm = MPI.COMM_WORLD) -> Problem:
+    """Return a block of 1 mm x 1 mm, skin below and nail above, without load."""
+    mesh = dolfinx.mesh.create_rectangle(comm, [np.zeros(2), np.full(2, 1e-3)], [6, 6])
+    cells = np.arange(mesh.topology.index_map(2).size_local + mesh.topology.index_map(2).num_ghosts, dtype=np.int32)
+    above = dolfinx.mesh.compute_midpoints(mesh, 2, cells)[:, 1] > 0.5e-3
+    cell_tags = dolfinx.mesh.meshtags(mesh, 2, cells, np.where(above, NAIL, SKIN).astype(np.int32))
+    mesh.topology.create_connectivity(1, 2)
+    # The lower facets in the middle: corner cells would have two facets on the surface.
+    low = dolfinx.mesh.locate_entities_boundary(mesh, 1, lambda x: np.isclose(x[1], 0) & (np.abs(x[0] - 5e-4) < 4e-4))
+    facet_tags = dolfinx.mesh.meshtags(mesh, 1, np.sort(low), np.full(len(low), 7, dtype=np.int32))
+    interface = Interface(eps_n=1e12, eps_t=1e11, mu_f=0.25, h_0=0.5e-6)
+    return Problem(mesh, cell_tags, Surface(mesh, facet_tags, {0: 7}), SOLIDS, interface)
+
+
+def deform(problem: Problem, F: np.ndarray) -> None:
+    """Impose x = F X."""
+    problem.u.interpolate(lambda x: (F - np.eye(2)) @ x[:2])
+
+
+def energy_3d(tag: int, F: np.ndarray, stretch_3: float = 1.0) -> float:
+    """Return the energy density of the three-dimensional solid, from eigenvalues: no UFL and no plane strain."""
+    full = np.zeros((3, 3))
+    full[:2, :2], full[2, 2] = F, stretch_3
+    solid, J = SOLIDS[tag], np.linalg.det(full)
+    if isinstance(solid, SaintVenant):
+        lame, shear = saint_venant.lame_constants(solid.young, solid.poisson)
+        E = (full.T @ full - np.eye(3)) / 2
+        return float(lame / 2 * np.trace(E) ** 2 + shear * np.sum(E * E))
+    a = ogden.exponent(solid.alpha, solid.convention)
+    stretches = J ** (-1 / 3) * np.sqrt(np.linalg.eigvalsh(full.T @ full))
+    bulk = ogden.bulk_modulus(solid.shear_modulus, solid.poisson)
+    return float(2 * solid.shear_modulus / a**2 * (np.sum(stretches**a) - 3) + bulk / 2 * (J - 1) ** 2)
+
+
+def cauchy_3d(tag: int, F: np.ndarray) -> np.ndarray:
+    """Return the Cauchy stress (3, 3) by central differences of :func:`energy_3d`."""
+    h, P = 1e-5, np.zeros((3, 3))
+    for i in range(2):
+        for j in range(2):
+            step = np.zeros((2, 2))
+            step[i, j] = h
+            P[i, j] = (energy_3d(tag, F + step) - energy_3d(tag, F - step)) / (2 * h)
+    P[2, 2] = (energy_3d(tag, F, 1 + h) - energy_3d(tag, F, 1 - h)) / (2 * h)
+    full = np.eye(3)
+    full[:2, :2] = F
+    return P @ full.T / np.linalg.det(F)
+
+
+@pytest.fixture(scope="module")
+def problem() -> Problem:
+    return block()
+
+
+@pytest.mark.parametrize("F", [F_GIVEN, F_EQUAL], ids=["general", "equal stretches"])
+def test_cauchy_stress(problem, F):
+    """All nine components of both solids; 1e-6 of the largest is what central differences leave (h^2 a^2)."""
+    deform(problem, F)
+    gradient = kinematics.deformation_gradient(problem.u)
+    expressions = {tags: stress.cauchy(law, gradient) for tags, law in problem.laws.items()}
+    found = Cellwise(problem.mesh, problem.cell_tags, expressions, np.array([[0.3, 0.3]])).evaluate()[:, 0]
+    for tag in SOLIDS:
+        cells = problem.cell_tags.find(tag)
+        expected = cauchy_3d(tag, F)
+        error = np.abs(found[cells[cells < len(found)]] - expected.ravel()).max(initial=0)
+        assert error < 1e-6 * np.abs(expected).max()
+
+
+def test_no_stress_unloaded(problem):
+    """At F = I every component vanishes, against a shear modulus of 1e5 Pa."""
+    deform(problem, np.eye(2))
+    gradient = kinematics.deformation_gradient(problem.u)
+    expressions = {tags: stress.cauchy(law, gradient) for tags, law in problem.laws.items()}
+    found = Cellwise(problem.mesh, problem.cell_tags, expressions, np.array([[0.3, 0.3]])).evaluate()
+    assert np.abs(found).max() < 1e-7
+
+
+def test_uniaxial_strain_of_ogden():
+    """sigma_zz = sigma_xx when only y is stretched, by symmetry, whatever the law's derivation."""
+    F = ufl.as_matrix([[1.0, 0.0], [0.0, 0.9]])
+    sigma = stress.cauchy(stress.ogden_law(1.0, 14.53, 20.0), ufl.variable(F))
+    mesh = dolfinx.mesh.create_unit_square(MPI.COMM_SELF, 1, 1)
+    compiled = fem.Expression(ufl.as_vector([sigma[0, 0], sigma[2, 2]]), np.array([[0.3, 0.3]]), comm=mesh.comm)
+    xx, zz = compat.evaluate_on_cells(compiled, mesh, np.array([0], dtype=np.int32))[0]
+    assert zz == pytest.approx(xx, rel=ROUNDOFF)
+    assert zz < 0
+
+
+def test_mean_density(problem):
+    """Each own cell has its solid's density."""
+    deform(problem, F_GIVEN)
+    cells, sed = sed_per_cell(problem)
+    for tag in SOLIDS:
+        mine = np.intersect1d(problem.cell_tags.find(tag), cells)
+        assert sed[mine] == pytest.approx(energy_3d(tag, F_GIVEN), rel=ROUNDOFF)
+
+
+def test_mean_density_of_bending(problem):
+    """Cell means integrate to the body's energy where strain varies, exactly for degree 2 of linear strain."""
+    problem.u.interpolate(lambda x: np.stack([0 * x[0], 1e-2 * x[0] ** 2]))
+    cells, sed = sed_per_cell(problem)
+    area = 1e-6 / 72
+    body = problem.mesh.comm.allreduce(float(sed.sum()) * area)
+    dx = ufl.Measure("dx", problem.mesh, subdomain_data=problem.cell_tags, metadata={"quadrature_degree": 2})
+    forms = [fem.assemble_scalar(fem.form(density * dx(tags))) for tags, density in problem.densities.items()]
+    assert body == pytest.approx(problem.mesh.comm.allreduce(sum(forms)), rel=ROUNDOFF)
+
+
+def test_gathered_mesh(problem):
+    """Rank 0 has every vertex and cell once, with its displacement, density and tag; the others have nothing."""
+    deform(problem, F_GIVEN)
+    snapshot = gather_mesh(problem)
+    assert (snapshot is None) == (problem.mesh.comm.rank > 0)
+    if snapshot is None:
+        return
+    assert snapshot.x.shape == snapshot.u.shape == (49, 2)
+    assert snapshot.triangles.shape == (72, 3)
+    assert np.abs(snapshot.x + snapshot.u - snapshot.x @ F_GIVEN.T).max() < 1e-15
+    corners = snapshot.x[snapshot.triangles]
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    assert np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum() / 2 == pytest.approx(1e-6)
+    above = corners[:, :, 1].mean(axis=1) > 0.5e-3
+    assert (snapshot.tag == np.where(above, NAIL, SKIN)).all()
+    expected = np.where(above, energy_3d(NAIL, F_GIVEN), energy_3d(SKIN, F_GIVEN))
+    assert snapshot.sed == pytest.approx(expected, rel=ROUNDOFF)
+
+
+def test_receptors(problem):
+    """Density and current position at sites inside cells, on an edge and on a vertex, the same on every rank."""
+    sites = np.array([[0.31e-3, 0.22e-3], [0.25e-3, 0.75e-3], [1e-3 / 3, 1e-3 / 6], [0.0, 1e-3], [0.5e-3, 0.1e-3]])
+    deform(problem, F_GIVEN)
+    receptors = Receptors(problem, sites)
+    tags = [SKIN, NAIL, SKIN, NAIL, SKIN]
+    assert receptors.sed() == pytest.approx([energy_3d(tag, F_GIVEN) for tag in tags], rel=ROUNDOFF)
+    assert np.abs(receptors.positions() - sites @ F_GIVEN.T).max() < 1e-15
+
+
+def test_receptors_follow_varying_strain(problem):
+    """Each site gets its own point of its cell: with u_y = c x^2 the shear is 2 c x."""
+    sites = np.array([[0.31e-3, 0.72e-3], [0.33e-3, 0.71e-3], [0.9e-3, 0.93e-3]])
+    problem.u.interpolate(lambda x: np.stack([0 * x[0], 50 * x[0] ** 2]))
+    expected = [energy_3d(NAIL, np.array([[1.0, 0.0], [100 * x, 1.0]])) for x, _ in sites]
+    assert Receptors(problem, sites).sed() == pytest.approx(expected, rel=ROUNDOFF)
+
+
+def test_receptor_outside(problem):
+    """The message names the site, on every rank."""
+    with pytest.raises(ValueError, match="receptor site 1 at x = 0.002 m, y = 0.0005 m lies outside the mesh"):
+        Receptors(problem, np.array([[0.5e-3, 0.5e-3], [2e-3, 0.5e-3]]))
+    with pytest.raises(ValueError, match="no receptor site"):
+        Receptors(problem, np.zeros((0, 2)))
+
+
+def test_files(problem, tmp_path, capfd):
+    """Three files with two steps each, and not a word on the terminal."""
+    folder = Path(problem.mesh.comm.bcast(str(tmp_path))) / "new" / "fields"
+    fields = Fields(problem, folder)
+    for time, F in enumerate((np.eye(2), F_GIVEN)):
+        deform(problem, F)
+        fields.write(float(time))
+    fields.close()
+    assert {path.name for path in folder.iterdir()} >= {"displacement.bp", "stress.bp", "sed.bp"}
+    assert all((folder / name / "md.idx").stat().st_size > 0 for name in ("displacement.bp", "stress.bp", "sed.bp"))
+    assert capfd.readouterr() == ("", "")
+
+
+def test_written_values(tmp_path):
+    """The function handed to the writer has both solids' nine components in every cell (the file is not read back)."""
+    problem = block(MPI.COMM_SELF)
+    deform(problem, F_GIVEN)
+    fields = Fields(problem, tmp_path)
+    fields.write(0.0)
+    fields.close()
+    found = np.asarray(fields.stress.x.array).reshape(-1, 9)
+    for tag in SOLIDS:
+        expected = cauchy_3d(tag, F_GIVEN).ravel()
+        dofs = fields.stress.function_space.dofmap.list[problem.cell_tags.find(tag)]
+        assert np.abs(found[dofs] - expected).max() < 1e-6 * np.abs(expected).max()

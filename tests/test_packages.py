@@ -1,0 +1,85 @@
+"""Every way of installing names the packages of environment/packages.txt, and the same versions of dolfinx."""
+
+import importlib.util
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+DOLFINX = ">=0.9,<0.12"
+
+
+def _column(number: int, *uses: str) -> set[str]:
+    """Return a column of the list for rows of the given uses, without dashes."""
+    lines = (ROOT / "environment/packages.txt").read_text().splitlines()
+    rows = [line.split() for line in lines if line and not line.startswith("#")]
+    assert all(len(row) == 5 for row in rows)
+    return {row[number] for row in rows if row[0] in uses} - {"-"}
+
+
+def _split(requirements: list[str]) -> dict[str, str]:
+    """Return version ranges by name."""
+    pairs = [re.fullmatch(r"([A-Za-z0-9_.-]+)\s*(.*)", text).groups() for text in requirements]
+    assert len(dict(pairs)) == len(pairs), "a package is listed twice"
+    return dict(pairs)
+
+
+@pytest.fixture
+def project() -> dict:
+    return tomllib.loads((ROOT / "pyproject.toml").read_text())
+
+
+@pytest.fixture
+def conda() -> dict[str, str]:
+    text = (ROOT / "environment.yml").read_text().split("dependencies:\n")[1]
+    return _split(re.findall(r"^  - (.+)$", text, flags=re.MULTILINE))
+
+
+def test_conda(conda, project):
+    assert conda.pop("python") == project["project"]["requires-python"]
+    assert set(conda) == _column(2, "run", "test", "system")
+
+
+def test_pypi(project):
+    assert set(_split(project["project"]["dependencies"])) == _column(3, "run")
+    assert set(_split(project["project"]["optional-dependencies"]["test"])) == _column(3, "test")
+
+
+def test_ranges_agree(conda, project):
+    """Where both pin a package, to the same range; dolfinx to what environment/run accepts."""
+    pypi = _split(project["project"]["dependencies"])
+    assert conda["fenics-dolfinx"] == pypi["fenics-dolfinx"] == DOLFINX
+    assert {name: pin for name, pin in conda.items() if pin and name != "python"} == {
+        name: pin for name, pin in pypi.items() if pin
+    }
+    low, high = (tuple(map(int, version.split("."))) for version in re.findall(r"[\d.]+", DOLFINX))
+    assert f'{low} <= tuple(int(part) for part in version.split(".")[:2]) < {high}' in _run_script()
+
+
+def test_run_script_reads_the_list():
+    """A name of the list's own would go stale; dolfinx's distribution is named for its version."""
+    assert "packages.txt" in _run_script()
+    names = _column(4, "run") - {"dolfinx"}
+    assert not {name for name in names if f'"{name}"' in _run_script()}
+
+
+@pytest.mark.parametrize("name", sorted(_column(4, "run")))
+def test_what_runs_can_be_imported(name):
+    assert importlib.util.find_spec(name) is not None
+
+
+def test_packages_exist(project):
+    """The explicit list holds each folder with modules of the library, and no other."""
+    listed = project["tool"]["setuptools"]["packages"]
+    found = {
+        ".".join(file.parent.relative_to(ROOT).parts)
+        for top in ("geometry", "variational", "fingerpad")
+        for file in (ROOT / top).rglob("*.py")
+    }
+    assert set(listed) == found
+
+
+def _run_script() -> str:
+    return (ROOT / "environment/run").read_text()

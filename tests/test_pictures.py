@@ -1,0 +1,154 @@
+"""Pictures of synthetic states: files that hold a picture, and axes that say what they show in which unit."""
+
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from matplotlib.colors import LogNorm
+from matplotlib.image import imread
+from matplotlib.tri import Triangulation
+
+from fingerpad import pictures
+from geometry import tags
+
+TITLE = pictures.conditions(75.0, 200.0, 0.25)
+BREAK = np.full(1, np.nan)
+
+
+@pytest.fixture
+def snapshot() -> SimpleNamespace:
+    """A strip of three layers, 6 mm wide, with a hole for the bone, its lower side on the screen for |x| < 1 mm."""
+    x, y = (a.ravel() for a in np.meshgrid(np.linspace(-3e-3, 3e-3, 25), np.linspace(0, 2e-3, 17)))
+    triangles = Triangulation(x, y).triangles.astype(np.int64)
+    cx, cy = x[triangles].mean(axis=1), y[triangles].mean(axis=1)
+    keep = (np.abs(cx) > 1e-3) | (np.abs(cy - 1.6e-3) > 0.2e-3)
+    triangles, cx, cy = triangles[keep], cx[keep], cy[keep]
+    tag = np.where(cy < 0.4e-3, tags.STRATUM_CORNEUM, np.where(cy < 0.8e-3, tags.VIABLE_EPIDERMIS, tags.DERMIS))
+    u = np.column_stack([0 * x, 20.0 * np.maximum(np.abs(x) - 1e-3, 0) ** 2])
+    return SimpleNamespace(x=np.column_stack([x, y]), u=u, triangles=triangles, sed=2e4 * np.exp(-cy / 5e-4), tag=tag)
+
+
+def profile(title: str, shift: float, sign: float) -> pictures.SurfaceProfile:
+    """Return 17 ridges of Hertzian pressure up to 100 kPa."""
+    columns = []
+    for j in range(-8, 9):
+        s = np.linspace(-0.22e-3, 0.22e-3, 45)
+        p = 1e5 * (1 - (j / 9) ** 2) * np.sqrt(np.clip(1 - (s / 5e-5) ** 2, 0, 1))
+        y = 2.0 * np.maximum(np.abs(s) - 5e-5, 0) ** 1.5
+        d_eq = np.full_like(s, 1.6e-6 + 1e-8 * j**2)
+        p_el = 8.854e-12 * 200**2 / 2 / (0.514e-6 + np.maximum(y, d_eq)) ** 2
+        columns += [np.stack([j * 0.45e-3 + s + shift, y, p, sign * 0.25 * p, p_el, d_eq]), np.tile(BREAK, (6, 1))]
+    return pictures.SurfaceProfile(title, *np.concatenate(columns, axis=1), f_ext=75.0, contact_length=1.5e-3)
+
+
+def steps(f_ext: list[float]) -> list[dict]:
+    """Return four steps of pressing and charging, and eight of sliding, two of them jumps."""
+    x = np.concatenate([np.zeros(4), np.linspace(0.2e-3, 1.6e-3, 8)])
+    rows = []
+    for k, (bone_x, load) in enumerate(zip(x, f_ext, strict=True)):
+        length, ridges = 1.5e-3 - 0.1 * bone_x, 17 - (k > 6) - (k > 8)
+        row = {"bone_x": bone_x, "f_t": 35 * np.tanh(1e3 * bone_x), "f_ext": load, "contact_length": length}
+        rows.append(row | {"ridges_in_contact": ridges, "jump": k in (7, 9)})
+    return rows
+
+
+def labels(figure) -> list[str]:
+    """Return the labels of all axes, secondary ones included."""
+    axes = [a for ax in figure.axes for a in (ax, *ax.child_axes)]
+    return [text for ax in axes for text in (ax.get_xlabel(), ax.get_ylabel()) if text]
+
+
+def assert_picture(path, figure) -> None:
+    """Not blank, labelled with units throughout, and under a title that names the load."""
+    image = imread(path)
+    assert min(image.shape[:2]) > 500
+    assert image[:, :, :3].std() > 0.05
+    assert labels(figure)
+    for label in labels(figure):
+        assert label.endswith(")"), label
+        assert any(unit in label for unit in ("mm", "µm", "kPa", "N/m", "(–)", "(number)")), label
+    for words in ("f_{ext}", "75 N/m", "200 V", "0.25"):
+        assert words in figure.get_suptitle()
+
+
+@pytest.mark.parametrize("sites", [None, np.array([[-0.4e-3, 0.5e-3], [0.1e-3, 0.5e-3]])], ids=["bare", "sites"])
+def test_finger(tmp_path, snapshot, sites):
+    figure = pictures.finger(tmp_path / "finger.png", snapshot, sites, "Normal contact: " + TITLE)
+    assert_picture(tmp_path / "finger.png", figure)
+    whole, near = figure.axes[:2]
+    named = [text.get_text() for text in whole.get_legend().get_texts()]
+    assert named == ["stratum corneum", "viable epidermis", "dermis", "screen"]
+    assert "bone" in [text.get_text() for text in whole.texts]
+    assert ("Merkel sites" in near.get_legend_handles_labels()[1]) == (sites is not None)
+
+
+def test_finger_views_the_contact(tmp_path, snapshot):
+    """The contact, 1 mm on either side, up to 1.3 mm, with energies in kPa on a logarithmic scale."""
+    near = pictures.finger(tmp_path / "finger.png", snapshot, None, TITLE).axes[1]
+    assert near.get_xlim() == pytest.approx((-2.0, 2.0))
+    assert near.get_ylim()[1] == pytest.approx(1.3)
+    norm = near.collections[0].norm
+    assert isinstance(norm, LogNorm)
+    assert norm.vmax == pytest.approx(20.0, rel=0.2)
+
+
+def test_finger_without_contact(tmp_path, snapshot):
+    """A body above the screen is viewed about its lowest part."""
+    snapshot.u[:, 1] += 1e-4
+    near = pictures.finger(tmp_path / "finger.png", snapshot, None, TITLE).axes[1]
+    assert near.get_xlim() == pytest.approx((-2.0, 2.0))
+
+
+def test_surface(tmp_path):
+    states = [
+        profile("normal contact", 0.0, 0.2),
+        profile("partial slip", 1e-4, -0.6),
+        profile("full slip", 3e-4, -1.0),
+    ]
+    figure = pictures.surface(tmp_path / "surface.png", states, TITLE)
+    assert_picture(tmp_path / "surface.png", figure)
+    titles = [ax.get_title(loc="left") for ax in figure.axes[::2]]
+    for title, state in zip(titles, states, strict=True):
+        assert state.title in title
+        assert "75 N/m" in title and "1.5 mm" in title and "50 kPa" in title
+    pressure = next(line for line in figure.axes[0].lines if line.get_label().startswith("contact pressure"))
+    assert np.nanmax(pressure.get_ydata()) == pytest.approx(100.0)
+    assert np.isnan(pressure.get_ydata()).sum() == 17  # lines break between ridges
+
+
+def test_surface_without_contact(tmp_path):
+    """No pressure anywhere is a state too."""
+    touching = profile("above the screen", 0.0, 0.0)
+    nothing = 0 * touching.p
+    state = pictures.SurfaceProfile(
+        "above the screen", touching.x, touching.y + 1e-6, nothing, nothing, nothing, touching.d_eq, 0.0, 0.0
+    )
+    pictures.surface(tmp_path / "surface.png", [state], TITLE)
+    assert (tmp_path / "surface.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("f_ext", [[20.0, 50.0] + 10 * [75.0], list(range(70, 82))], ids=["constant", "varying"])
+def test_history(tmp_path, f_ext):
+    """It starts with the charged normal state, the last before sliding, and marks both jumps."""
+    figure = pictures.history(tmp_path / "history.png", steps(f_ext), "Sliding: " + TITLE, mu_0=0.25)
+    assert_picture(tmp_path / "history.png", figure)
+    assert any("mu_{app}" in label for label in labels(figure))
+    assert any("ridges in contact" in label for label in labels(figure))
+    force = figure.axes[0].lines[0]
+    assert len(force.get_xdata()) == 9
+    assert (force.get_xdata()[0], force.get_ydata()[0]) == (0, 0)
+    assert sum(line.get_linestyle() == ":" for line in figure.axes[0].lines) == 2
+
+
+def test_history_without_sliding(tmp_path):
+    """A run that only pressed shows its last state."""
+    figure = pictures.history(tmp_path / "history.png", steps(12 * [75.0])[:3], TITLE)
+    assert len(figure.axes[0].lines[0].get_xdata()) == 1
+
+
+def test_no_dolfinx_and_no_window():
+    """Pictures are drawn from plain arrays, on machines without a display."""
+    code = "import sys, fingerpad.pictures; sys.exit('dolfinx' in sys.modules or 'matplotlib.pyplot' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -1,0 +1,334 @@
+"""Residual, Jacobian and energy are derivatives of one another, and the attraction has the resultants of Eq. 3."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+import ufl
+from dolfinx import fem
+from dolfinx.fem.petsc import assemble_matrix
+from mpi4py import MPI
+
+from geometry import tags
+from geometry.benchmarks import block
+from geometry.mesh import load
+from variational import electroadhesion
+from variational.problem import Interface, Ogden, Problem, SaintVenant
+from variational.surface import Surface
+
+SKIN, FAT, NAIL = Ogden(86.76e3, -14.53, 0.48), Ogden(25e3, 5.0, 0.48), SaintVenant(170e6, 0.3)
+H_0, D_EQ, VOLTAGE = 0.514e-6, 2e-6, 200.0
+EPS_0 = 8.854e-12
+STEPS = 0.5 ** np.arange(5)
+NEAR = 1e-9  # m, size of the perturbations: small against the micrometres over which the laws change
+
+
+def make(body, mu_f=0.25, solid=SKIN, degree=2) -> Problem:
+    """Return a problem on a block, its gaps at D_EQ."""
+    surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
+    interface = Interface(eps_n=1e12, eps_t=1e11, mu_f=mu_f, h_0=H_0)
+    problem = Problem(body.mesh, body.cell_tags, surface, {tags.STRATUM_CORNEUM: solid}, interface, degree)
+    problem.set_air_gaps(np.array([D_EQ]))
+    return problem
+
+
+def wave(problem, lowest=-1.5e-6, height=6e-6):
+    """Deform the bottom into waves from ``lowest`` up to ``lowest + height``, and shear it."""
+    problem.u.interpolate(
+        lambda x: np.stack(
+            [
+                1e-6 * np.cos(5e3 * x[0]) - 4e-4 * x[1] + 2e-3 * x[0] * x[1] / 1e-3,
+                lowest + height / 2 * (1 + np.sin(7e3 * x[0] + 0.4)) - 3e-2 * x[1],
+            ]
+        )
+    )
+
+
+def anchor_apart(problem):
+    """Of the points of a facet, let one stick and one slip either way; none is where its spring is slack."""
+    u_x, p_n = problem.surface.evaluate(problem.surface.compile([problem.u[0], problem.p_n]))
+    reach = problem.interface.mu_f * p_n / problem.interface.eps_t
+    pull = np.array([0.6, 1.7, -0.6, -1.7])
+    problem.surface.set_history(problem.anchor, u_x + np.where(reach > 0, pull * reach, 1e-7))
+
+
+def direction(problem, scale=NEAR):
+    """Return a displacement without any symmetry."""
+    return scale * np.random.default_rng(1).uniform(-1, 1, len(problem.u.x.array))
+
+
+def residual(problem):
+    b = fem.assemble_vector(problem.residual)
+    return b.array.copy()
+
+
+def jacobian(problem):
+    A = assemble_matrix(problem.jacobian)
+    A.assemble()
+    return A
+
+
+def dense(A):
+    rows, columns = A.getSize()
+    return A.getValues(range(rows), range(columns))
+
+
+def distance_to_kinks(problem):
+    """Return how far the nearest point is from touching, from d_eq and from the edge of its cone (m of displacement)."""
+    y, p_n, u_x, anchor = problem.surface.evaluate(
+        problem.surface.compile([problem.y, problem.p_n, problem.u[0], problem.anchor])
+    )
+    law = problem.interface
+    apart = [np.abs(y), np.abs(y - D_EQ)]
+    if law.mu_f > 0:
+        cone = np.abs(np.abs(u_x - anchor) - law.mu_f * p_n / law.eps_t) / (1 + law.mu_f * law.eps_n / law.eps_t)
+        apart.append(cone)
+    return min(float(a.min()) for a in apart)
+
+
+def rates(remainders):
+    return np.log2(remainders[:-1] / remainders[1:])
+
+
+def taylor(problem, move):
+    """Return |r(u + e du) - r(u) - e J du| for the steps e."""
+    at = problem.u.x.array.copy()
+    r, J = residual(problem), jacobian(problem)
+    x, y = J.createVecs()
+    x.array_w[:] = move
+    J.mult(x, y)
+    remainders = []
+    for step in STEPS:
+        problem.u.x.array[:] = at + step * move
+        remainders.append(np.linalg.norm(residual(problem) - r - step * y.array_r))
+    problem.u.x.array[:] = at
+    return np.array(remainders), np.linalg.norm(y.array_r)
+
+
+@pytest.mark.parametrize("voltage", [0.0, VOLTAGE])
+@pytest.mark.parametrize("mu_f", [0.0, 0.25])
+@pytest.mark.parametrize("solid", [SKIN, FAT, NAIL], ids=["skin", "fat", "nail"])
+def test_jacobian(square, solid, mu_f, voltage):
+    """The remainder is of second order in the step; a wrong entry would leave a first-order one.
+
+    No point crosses a kink of the laws. The tolerance is the next term of the expansion, a thousandth of the remainder.
+    """
+    problem = make(square, mu_f, solid)
+    problem.voltage.value = voltage
+    wave(problem)
+    anchor_apart(problem)
+    move = direction(problem)
+    assert distance_to_kinks(problem) > np.abs(move).max()
+    remainders, linear = taylor(problem, move)
+    assert remainders[0] < 1e-2 * linear
+    np.testing.assert_allclose(rates(remainders), 2, atol=0.02)
+
+
+def test_jacobian_sees_every_law(square):
+    """The state of the Taylor test has points that stick, slip both ways, are attracted in and above d_eq."""
+    problem = make(square)
+    problem.voltage.value = VOLTAGE
+    wave(problem)
+    anchor_apart(problem)
+    y, p_n, t_t = problem.surface.evaluate(problem.surface.compile([problem.y, problem.p_n, problem.t_t]))
+    share = np.divide(t_t, 0.25 * p_n, out=np.zeros_like(t_t), where=p_n > 0)
+    assert (share > 0.99).any()
+    assert (share < -0.99).any()
+    assert ((np.abs(share) < 0.9) & (p_n > 0)).any()
+    assert ((y > 0) & (y < D_EQ)).any()
+    assert (y > D_EQ).any()
+
+
+def test_jacobian_of_linear_elements(square):
+    """The same for first-order displacements."""
+    problem = make(square, degree=1)
+    problem.voltage.value = VOLTAGE
+    wave(problem, lowest=-1.4e-6)
+    anchor_apart(problem)
+    move = direction(problem)
+    assert distance_to_kinks(problem) > np.abs(move).max()
+    np.testing.assert_allclose(rates(taylor(problem, move)[0]), 2, atol=0.02)
+
+
+def test_energy(square):
+    """Above the screen the residual is the derivative of the energy alone; tolerance as for the Jacobian."""
+    problem = make(square)
+    problem.voltage.value = VOLTAGE
+    wave(problem, lowest=0.3e-6)
+    at, move = problem.u.x.array.copy(), direction(problem, 1e-7)
+    start, slope = fem.assemble_scalar(problem.energy), residual(problem) @ move
+    remainders = []
+    for step in STEPS:
+        problem.u.x.array[:] = at + step * move
+        remainders.append(abs(fem.assemble_scalar(problem.energy) - start - step * slope))
+    np.testing.assert_allclose(rates(np.array(remainders)), 2, atol=0.1)
+
+
+def test_contact_is_no_part_of_the_energy(square):
+    """Below the screen the residual differs from the energy's derivative by the work of p_n and t_t."""
+    problem = make(square)
+    wave(problem)
+    anchor_apart(problem)
+    v = ufl.TestFunction(problem.V)
+    work = fem.form(ufl.dot(ufl.as_vector([problem.t_t, problem.p_n]), v) * problem.surface.measure)
+    whole, contact = residual(problem), fem.assemble_vector(work).array
+    move = direction(problem, 1e-10)
+    at = problem.u.x.array.copy()
+    energies = []
+    for side in (1, -1):
+        problem.u.x.array[:] = at + side * move
+        energies.append(fem.assemble_scalar(problem.energy))
+    slope = (energies[0] - energies[1]) / 2
+    # The energies' last digit is 1e-16 of 1e-2 N, the work of the contact on the move about 1e-11 N
+    assert (whole + contact) @ move == pytest.approx(slope, abs=1e-4 * abs(contact @ move))
+
+
+def test_jacobian_without_friction_is_symmetric(square):
+    """Contact and attraction derive from potentials. Tolerance: roundoff."""
+    problem = make(square, mu_f=0.0)
+    problem.voltage.value = VOLTAGE
+    wave(problem)
+    J = dense(jacobian(problem))
+    assert np.abs(J - J.T).max() < 1e-14 * np.abs(J).max()
+
+
+def test_jacobian_of_sticking_points_is_symmetric(square):
+    """A spring to a fixed anchor has a potential too. Tolerance: roundoff."""
+    problem = make(square, mu_f=10.0)
+    wave(problem)
+    problem.surface.set_history(problem.anchor, problem.surface.evaluate(problem.surface.compile([problem.u[0]]))[0])
+    J = dense(jacobian(problem))
+    assert np.abs(J - J.T).max() < 1e-14 * np.abs(J).max()
+
+
+def test_jacobian_of_slipping_points_is_not_symmetric(square):
+    """Where a point slips, dt_t/du_y = mu_f eps_n has no partner dp_n/du_x: the skew part is half of it."""
+    problem = make(square)
+    wave(problem)
+    anchor_apart(problem)
+    J = dense(jacobian(problem))
+    normal = dense(jacobian(make_like(square, problem, mu_f=0.0)))
+    contact = np.abs(normal).max()
+    assert np.abs(J - J.T).max() > 0.1 * 0.25 * contact
+
+
+def make_like(body, problem, mu_f):
+    """Return the problem at the same state with another friction coefficient."""
+    interface = Interface(problem.interface.eps_n, problem.interface.eps_t, mu_f, H_0)
+    other = Problem(body.mesh, body.cell_tags, problem.surface, {tags.STRATUM_CORNEUM: SKIN}, interface)
+    other.u.x.array[:] = problem.u.x.array
+    return other
+
+
+def test_shift_is_a_mass_on_the_touching_skin(square):
+    """The pseudo-transient shift adds eta times the surface's mass: a translation by one gets eta times its length."""
+    problem = make(square)
+    wave(problem)
+    plain = dense(jacobian(problem))
+    problem.eta.value = 3e9
+    added = dense(jacobian(problem)) - plain
+    assert added[::2, ::2].sum() == pytest.approx(3e9 * 1e-3, rel=1e-9)  # roundoff of entries 100 times as large
+    assert added[1::2, 1::2].sum() == pytest.approx(3e9 * 1e-3, rel=1e-9)
+    assert np.abs(added[::2, 1::2]).max() < 1e-15 * np.abs(plain).max()
+
+
+# -- the attraction ------------------------------------------------------------------------------------
+def attraction(problem):
+    """Return the attraction's part of the residual, what the voltage adds, shape (nodes, 2)."""
+    problem.voltage.value = 0.0
+    without = residual(problem)
+    problem.voltage.value = VOLTAGE
+    return (residual(problem) - without).reshape(-1, 2)
+
+
+def traction(problem):
+    """Return - int p_el cof F N . v dS, Eq. 3 on the deformed skin, shape (nodes, 2)."""
+    problem.voltage.value = VOLTAGE
+    v = ufl.TestFunction(problem.V)
+    form = fem.form(-problem.p_el * ufl.dot(problem.area, v) * problem.surface.measure)
+    return fem.assemble_vector(form).array.reshape(-1, 2).copy()
+
+
+def tilted(cells: int, low: float, high: float) -> Problem:
+    """Return a block with its bottom on a slope between two heights."""
+    body = load(MPI.COMM_SELF, partial(block, 1e-3, 0.25e-3, 1e-3 / cells))
+    problem = make(body)
+    problem.u.interpolate(lambda x: np.stack([0.1 * x[0], low + (high - low) * (x[0] / 1e-3 + 0.5)]))
+    return problem
+
+
+def end_potentials(problem):
+    """Return rows of the bottom's two end nodes and the potential there."""
+    x = problem.V.tabulate_dof_coordinates()
+    ends = [int(np.argmin(np.hypot(x[:, 0] - side * 0.5e-3, x[:, 1]))) for side in (-1, 1)]
+    y = x[ends, 1] + problem.u.x.array.reshape(-1, 2)[ends, 1]
+    outside = -EPS_0 * VOLTAGE**2 / 2 / (H_0 + y)
+    return ends, outside
+
+
+def test_attraction_on_a_slope():
+    """Over a slope above d_eq the downward resultant is eps_0 U^2 / 2 (1/(h_0 + y_0) - 1/(h_0 + y_1)) L / (y_1 - y_0).
+
+    L is the current projected length. Tolerance: eight-point quadrature order on 16 facets, over each of which
+    p_el changes by an eighth.
+    """
+    low, high = 3e-6, 20e-6
+    problem = tilted(16, low, high)
+    closed = EPS_0 * VOLTAGE**2 / 2 * (1 / (H_0 + low) - 1 / (H_0 + high)) * 1.1e-3 / (high - low)
+    assert attraction(problem)[:, 1].sum() == pytest.approx(closed, rel=1e-7)
+
+
+def test_attraction_inside_the_air_gap():
+    """Below d_eq the pressure is eps_0 U^2 / 2 / (h_0 + d_eq)^2 wherever the skin is. Tolerance: roundoff of the difference."""
+    problem = tilted(4, 0.1e-6, 1.5e-6)
+    closed = EPS_0 * VOLTAGE**2 / 2 / (H_0 + D_EQ) ** 2 * 1.1e-3
+    assert attraction(problem)[:, 1].sum() == pytest.approx(closed, rel=1e-9)
+
+
+def test_attraction_has_no_horizontal_resultant(square):
+    """The screen looks the same everywhere. Tolerance: roundoff of elastic forces that cancel in the difference."""
+    problem = make(square)
+    wave(problem)
+    forces = attraction(problem)
+    assert abs(forces[:, 0].sum()) < 1e-11 * np.abs(forces[:, 1]).sum()
+
+
+def test_attraction_has_the_resultant_of_the_traction(square):
+    """The vertical resultant is that of Eq. 3 point by point. Tolerance as above."""
+    problem = make(square)
+    wave(problem)
+    assert attraction(problem)[:, 1].sum() == pytest.approx(traction(problem)[:, 1].sum(), rel=1e-11)
+
+
+def test_attraction_is_the_traction():
+    """The potential's derivative is -int p_el cof F N . v dS node by node, and the potential at the skin's ends.
+
+    The two differ by the quadrature of a total derivative, with 4 Gauss points of order 8 in the facets' size.
+    """
+    errors = []
+    for cells in (8, 16, 32):
+        problem = tilted(cells, 5e-6, 5e-6)
+        problem.u.interpolate(
+            lambda x: np.stack([0.02e-3 * np.sin(4e3 * x[0]), 8e-6 + 4e-6 * np.sin(5e3 * x[0] + 0.3) - 0.05 * x[1]])
+        )
+        ends, potentials = end_potentials(problem)
+        expected = traction(problem)
+        expected[ends, 0] += np.array([-1, 1]) * potentials
+        errors.append(np.abs(attraction(problem) - expected).max() / np.abs(expected).max())
+    assert errors[-1] < 1e-6
+    assert (rates(np.array(errors)) > 4).all()
+
+
+def test_law_of_the_attraction():
+    """The potential's slope is p_el, and both are continuous at d_eq. Tolerance: central differences of step 1e-4."""
+    y = np.array([-0.5e-6, 0.3e-6, 1.9e-6, 2.1e-6, 5e-6])
+    step = 1e-10
+
+    def at(law, heights):
+        return np.array([float(law(ufl.as_ufl(h), D_EQ, VOLTAGE, H_0)) for h in heights])
+
+    slope = (at(electroadhesion.potential, y + step) - at(electroadhesion.potential, y - step)) / (2 * step)
+    pressure = at(electroadhesion.attraction, y)
+    np.testing.assert_allclose(slope, pressure, rtol=1e-6)
+    closed = EPS_0 * VOLTAGE**2 / 2 / (H_0 + np.maximum(y, D_EQ)) ** 2
+    np.testing.assert_allclose(pressure, closed, rtol=1e-14)

@@ -1,0 +1,318 @@
+"""Scenes: defaults are the paper's, what is given wins, and what is impossible is refused in one sentence."""
+
+import argparse
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fingerpad import scene as scenes
+from fingerpad.scene import Load, Scene, SceneError
+
+SCENES = Path(__file__).parent.parent / "demos/scenes"
+
+
+@pytest.fixture
+def write(tmp_path):
+    """Write a scene file and return its path."""
+
+    def write(text: str) -> Path:
+        path = tmp_path / "scene.toml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+def refusal(path: Path | None = None, **overrides) -> str:
+    with pytest.raises(SceneError) as error:
+        scenes.check(scenes.load(path, {key.replace("__", "."): value for key, value in overrides.items()}))
+    message = str(error.value)
+    assert "\n" not in message
+    return message
+
+
+# -- defaults ------------------------------------------------------------------------------------------
+def test_default_scene():
+    scene = scenes.load()
+    assert scene == Scene()
+    assert (scene.f_ext, scene.voltage, scene.friction, scene.mesh.contact) == (75.0, 200.0, 0.25, 5e-6)
+    assert scene.loads() == (
+        Load(name="press", f_ext=75.0),
+        Load(name="charge", voltage=200.0),
+        Load(name="slide", bone_x=5e-3, until_full_slip=True),
+    )
+    scenes.check(scene)
+
+
+def test_default_materials_are_table_2():
+    m = Scene().materials
+    layers = (m.subcutis, m.dermis, m.viable_epidermis, m.stratum_corneum)
+    assert [(s.shear_modulus, s.alpha) for s in layers] == [
+        (25e3, 5.0), (2.55e3, -14.53), (61.75e3, -14.53), (86.76e3, -14.53),
+    ]  # fmt: skip
+    assert {s.poisson for s in layers} == {0.48}
+    assert [(s.young, s.poisson) for s in (m.nail, m.nail_bed)] == [(170e6, 0.3), (1e6, 0.3)]
+
+
+def test_insulator_thickness():
+    """425 um / 1650 + 1 um / 3.9, to roundoff."""
+    assert Scene().h_0 == pytest.approx(425e-6 / 1650 + 1e-6 / 3.9, rel=1e-15)
+
+
+def test_closure_takes_the_scene_s_roughness():
+    closure = scenes.load(None, {"roughness.h_rms": 2e-6}).roughness.bearing_area(0.5e-6)
+    assert (closure.h_0, closure.h_rms, closure.gamma) == (0.5e-6, 2e-6, 0.5)
+
+
+# -- files and overrides -------------------------------------------------------------------------------
+def test_file_and_overrides(write):
+    path = write("f_ext = 30\nvoltage = 100.0\n[mesh]\ncontact = 10e-6\nreceptor = 30e-6\n")
+    scene = scenes.load(path, {"voltage": 50, "mesh.contact": 8e-6, "roughness.beta": 0.75})
+    assert (scene.f_ext, scene.voltage, scene.roughness.beta) == (30.0, 50.0, 0.75)
+    assert (scene.mesh.contact, scene.mesh.receptor) == (8e-6, 30e-6)
+
+
+def test_part_of_a_layer_keeps_the_rest(write):
+    dermis = scenes.load(write("[materials.dermis]\nshear_modulus = 3e3\n")).materials.dermis
+    assert (dermis.shear_modulus, dermis.alpha, dermis.poisson) == (3e3, -14.53, 0.48)
+
+
+def test_history(write):
+    path = write(
+        '[[history]]\nname = "touch"\nbone_height = -1e-4\n'
+        '[[history]]\nname = "on"\nvoltage = 80\nbone_x = 1e-3\nuntil_full_slip = true\n'
+    )
+    assert scenes.load(path).loads() == (
+        Load(name="touch", bone_height=-1e-4),
+        Load(name="on", voltage=80.0, bone_x=1e-3, until_full_slip=True),
+    )
+
+
+@pytest.mark.parametrize("path", sorted(SCENES.glob("*.toml")), ids=lambda path: path.stem)
+def test_scenes_that_come_along(path):
+    scene = scenes.load(path)
+    scenes.check(scene)
+    assert scene.loads()
+
+
+@pytest.mark.parametrize("name", [None, "coarse.toml", "voltage_while_sliding.toml"])
+def test_parameters_give_the_scene_again(name):
+    scene = scenes.load(SCENES / name if name else None, {"materials.exponent": "abaqus"})
+    again = scenes.from_data(json.loads(json.dumps(scene.parameters())))
+    assert again == scene and again.loads() == scene.loads()
+
+
+def test_scene_cannot_be_changed():
+    with pytest.raises(ValueError, match="frozen"):
+        Scene().f_ext = 1.0
+
+
+# -- refusals: values ----------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        ("f_ext", -3, "f_ext is -3; it must be greater than 0"),
+        ("f_ext", 0, "f_ext is 0; it must be greater than 0"),
+        ("f_ext", float("nan"), "f_ext is nan; it must be a finite number"),
+        ("f_ext", float("inf"), "f_ext is inf; it must be a finite number"),
+        ("f_ext", True, "f_ext is true; it must be a number"),
+        ("f_ext", [1], "f_ext is [1]; it must be a number"),
+        ("voltage", "high", "voltage is 'high'; it must be a number"),
+        ("voltage", "200", "voltage is '200'; it must be a number"),
+        ("voltage", -1.5, "voltage is -1.5; it must be at least 0"),
+        ("friction", -0.1, "friction is -0.1; it must be at least 0"),
+        ("friction", 2.1, "friction is 2.1; it must be at most 2"),
+        ("slide_length", 0, "slide_length is 0; it must be greater than 0"),
+        ("width", float("nan"), "width is nan; it must be a finite number"),
+        ("mesh", 3, "mesh is 3; it must be a table of keys"),
+        ("materials", 3, "materials is 3; it must be a table of keys"),
+        ("materials.dermis", 3, "materials.dermis is 3; it must be a table of keys"),
+        ("mesh.contact", "5e-6", "mesh.contact is '5e-6'; it must be a number"),
+        ("mesh.contact", float("nan"), "mesh.contact is nan; it must be a finite number"),
+        ("mesh.contact", -5e-6, "mesh.contact is -5e-06; it must be greater than 0"),
+        ("mesh.growth", 1.5, "mesh.growth is 1.5; it must be at most 1"),
+        ("materials.dermis.poisson", 0.5, "materials.dermis.poisson is 0.5; it must be less than 0.5"),
+        ("materials.nail.poisson", -1, "materials.nail.poisson is -1; it must be greater than -1"),
+        ("materials.nail.young", 0, "materials.nail.young is 0; it must be greater than 0"),
+        ("materials.dermis.shear_modulus", -1, "materials.dermis.shear_modulus is -1; it must be greater than 0"),
+        (
+            "materials.subcutis.alpha", 0,
+            "materials.subcutis.alpha is 0; it must be another number, positive or negative",
+        ),
+        ("materials.exponent", "ansys", "materials.exponent is 'ansys'; it must be 'printed' or 'abaqus'"),
+        ("electric.eps_i", 0.5, "electric.eps_i is 0.5; it must be at least 1"),
+        ("electric.d_i", 0, "electric.d_i is 0; it must be greater than 0"),
+        ("roughness.h_rms", 0, "roughness.h_rms is 0; it must be greater than 0"),
+        (
+            "roughness.p_floor", 1e6,
+            "roughness.p_floor is 1000000; it must be below the pressure at zero separation, 2.597e+05 Pa",
+        ),
+        ("contact.eps_n", 0, "contact.eps_n is 0; it must be greater than 0"),
+        ("contact.length", "area", "contact.length is 'area'; it must be 'pressure' or 'gap'"),
+        ("numerics.degree", 4, "numerics.degree is 4; it must be at most 3"),
+        ("numerics.degree", 1.5, "numerics.degree is 1.5; it must be a whole number"),
+        ("numerics.quadrature_points", 9, "numerics.quadrature_points is 9; it must be at most 8"),
+        ("numerics.quadrature_points", 2, "numerics.degree is 2; it must be below numerics.quadrature_points, 2"),
+        ("numerics.tolerance", 0, "numerics.tolerance is 0; it must be greater than 0"),
+        ("numerics.coupling_cap", 0, "numerics.coupling_cap is 0; it must be at least 1"),
+        (
+            "geometry.ridge_count", 54,
+            "geometry.ridge_count is 54; it must be odd, so that one ridge is at x = 0",
+        ),
+        ("geometry.width", 0, "geometry.width is 0; it must be greater than 0"),
+    ],
+)  # fmt: skip
+def test_impossible_value(key, value, message):
+    assert refusal(None, **{key.replace(".", "__"): value}) == message
+
+
+def test_impossible_geometry_and_mesh():
+    """The finger's own checks, with keys as a scene spells them."""
+    assert refusal(mesh__contact=5e-4) == (
+        "mesh.contact is 0.0005 m, too large for a ridge of 0.000483 m: at most a quarter of it, 0.00012075 m"
+    )
+    assert "geometry.ve_thickness is 5e-05 m and must exceed" in refusal(geometry__ve_thickness=50e-6)
+    assert "geometry.bone_centre (0.004 m)" in refusal(geometry__bone_centre=4e-3)
+
+
+# -- refusals: keys ------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("text", "start"),
+    [
+        ("volts = 3", "volts is not a key of a scene; keys are f_ext, voltage, slide_length, history, friction,"),
+        ("[mesh]\ncontcat = 1", "mesh.contcat is not a key of mesh; keys are contact, receptor, interface,"),
+        (
+            "[materials.dermis]\nnu = 0.4",
+            "materials.dermis.nu is not a key of materials.dermis; keys are shear_modulus, alpha, poisson",
+        ),
+        ("[materials.bone]\nyoung = 1", "materials.bone is not a key of materials; keys are subcutis, dermis,"),
+        (
+            '[[history]]\nname = "a"\nf_ext = 1\nu = 3',
+            "history[0].u is not a key of history[0]; keys are name, f_ext, bone_height, voltage, bone_x,",
+        ),
+        ("f_ext = 1979-05-27", "f_ext is '1979-05-27'; it must be a number"),
+    ],
+)
+def test_unknown_key(write, text, start):
+    assert refusal(write(text)).startswith(start)
+
+
+def test_override_of_something_that_is_no_table(write):
+    assert refusal(write("mesh = 3"), mesh__contact=1e-6) == "mesh is 3; it must be a table of keys"
+
+
+def test_first_of_several(write):
+    assert refusal(write("voltage = -1\nf_ext = -3")) == "f_ext is -3; it must be greater than 0"
+
+
+# -- refusals: files -----------------------------------------------------------------------------------
+def test_files_that_cannot_be_read(write, tmp_path):
+    missing = tmp_path / "none.toml"
+    assert refusal(missing) == f"scene file {missing} cannot be read: No such file or directory"
+    assert refusal(tmp_path) == f"scene file {tmp_path} cannot be read: Is a directory"
+    path = write("f_ext = ")
+    assert refusal(path) == f"scene file {path} is not TOML: Invalid value (at end of document)"
+    path.write_bytes(b"\xff\xfe")
+    assert refusal(path).startswith(f"scene file {path} is not TOML: ")
+
+
+# -- refusals: histories -------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("history = []", "history is empty; it must have at least one entry"),
+        ("history = 3", "history is 3; it must be a list"),
+        ("history = [3]", "history[0] is 3; it must be a table of keys"),
+        ("[[history]]\nf_ext = 3", "history[0].name is missing; it must be given"),
+        ("[[history]]\nname = 3", "history[0].name is 3; it must be text"),
+        ('[[history]]\nname = "a"\nf_ext = 0', "history[0].f_ext is 0; it must be greater than 0"),
+        ('[[history]]\nname = "a"\nbone_height = nan', "history[0].bone_height is nan; it must be a finite number"),
+        (
+            '[[history]]\nname = "a"\nf_ext = 1\nuntil_full_slip = 1',
+            "history[0].until_full_slip is 1; it must be true or false",
+        ),
+        (
+            '[[history]]\nname = "a"\nf_ext = 1\nbone_height = -1e-3',
+            "history[0].f_ext is 1 and history[0].bone_height is -0.001; at most one of the two can be prescribed",
+        ),
+        (
+            '[[history]]\nname = "a"\nf_ext = 1\n[[history]]\nname = "b"\nuntil_full_slip = true',
+            "history[1].name is 'b' and nothing else is given; it must come with at least one of "
+            "history[1].f_ext, history[1].bone_height, history[1].voltage and history[1].bone_x",
+        ),
+        (
+            '[[history]]\nname = "a"\nvoltage = 200',
+            "history[0].name is 'a', with neither f_ext nor bone_height; the first load must give one of them",
+        ),
+    ],
+)
+def test_impossible_history(write, text, message):
+    assert refusal(write(text)) == message
+
+
+@pytest.mark.parametrize(("key", "value"), [("f_ext", 50.0), ("voltage", 0.0), ("slide_length", 1e-3)])
+def test_history_and_a_default_load_s_value(key, value):
+    """Also where the value given is the default: it would be silently ignored."""
+    for given in (value, getattr(Scene(), key)):
+        assert refusal(SCENES / "voltage_while_sliding.toml", **{key: given}) == (
+            f"{key} is {given:g} and history is given too; with a history each load states its own values"
+        )
+
+
+# -- command line --------------------------------------------------------------------------------------
+def command_line(*argv: str, quiet: bool = False):
+    parser = argparse.ArgumentParser()
+    scenes.add_arguments(parser)
+    return scenes.command_line(parser, argv, quiet)
+
+
+def test_options():
+    words = "--f-ext 30 --voltage 1e2 -snes_monitor --contact-size 1e-5 --friction 0.3 -snes_rtol -1 --out there"
+    scene, args, petsc = command_line(*words.split())
+    assert (scene.f_ext, scene.voltage, scene.mesh.contact, scene.friction) == (30.0, 100.0, 1e-5, 0.3)
+    assert args.out == Path("there")
+    assert petsc == ["-snes_monitor", "-snes_rtol", "-1"]
+
+
+def test_options_win_over_the_file():
+    scene, _, _ = command_line("--scene", str(SCENES / "coarse.toml"), "--voltage", "0")
+    assert (scene.f_ext, scene.voltage, scene.mesh.interface) == (10.0, 0.0, 120e-6)
+
+
+@pytest.mark.parametrize(
+    ("argv", "message"),
+    [
+        (["--voltage", "high"], "voltage is 'high'; it must be a number"),
+        (["--f-ext", "nan"], "f_ext is nan; it must be a finite number"),
+        (["--f-ext", "-3"], "f_ext is -3; it must be greater than 0"),
+        (["--contact-size", "1"], "mesh.contact is 1 m, too large for a ridge of 0.000483 m"),
+        (["--volts", "3"], "--volts is not an option; options are --scene, --f-ext,"),
+        (["results"], "results is not an option;"),
+        (["-snes_rtol", "1e-6", "1e-7"], "1e-7 is not an option;"),
+        (["--scene", str(SCENES / "voltage_while_sliding.toml"), "--f-ext", "50"], "f_ext is 50 and history is given"),
+        (["--scene", "none.toml"], "scene file none.toml cannot be read:"),
+    ],
+)
+def test_bad_command_line(argv, message, capsys):
+    with pytest.raises(SystemExit) as stop:
+        command_line(*argv)
+    assert stop.value.code == 2
+    printed = capsys.readouterr().err
+    assert printed.startswith(f"fingerpad: {message}")
+    assert printed.count("\n") == 1
+
+
+def test_quiet_ranks(capsys):
+    for argv in (["--voltage", "high"], ["--f-ext"]):
+        with pytest.raises(SystemExit) as stop:
+            command_line(*argv, quiet=True)
+        assert stop.value.code == 2
+    assert capsys.readouterr() == ("", "")
+
+
+def test_package_imports_nothing():
+    code = "import sys; import fingerpad; sys.exit(any(m in sys.modules for m in ('numpy', 'pydantic', 'gmsh')))"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -1,0 +1,185 @@
+"""History, integrals and contact patches of the surface, on any number of ranks."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+import ufl
+from dolfinx import fem, mesh
+from mpi4py import MPI
+from numpy.testing import assert_allclose
+
+from geometry import tags
+from geometry.benchmarks import block, ridge
+from geometry.mesh import load
+from variational.surface import Surface
+
+pytestmark = pytest.mark.mpi
+
+
+def make(body) -> Surface:
+    """Return the touching surface of a body."""
+    return Surface(body.mesh, body.facet_tags, {j: tags.ridge(j) for j in body.ridges()})
+
+
+def points(surface):
+    """Return reference coordinates at the surface's points, shape (2, facets, points)."""
+    x = ufl.SpatialCoordinate(surface.mesh)
+    return surface.evaluate(surface.compile([x[0], x[1]]))
+
+
+def total(surface, integrand) -> float:
+    """Integrate over the surface and all ranks."""
+    part = fem.assemble_scalar(fem.form(integrand * surface.measure))
+    return surface.mesh.comm.allreduce(part)
+
+
+@pytest.mark.parametrize("body", ["square", "finger_mesh"])
+def test_history_is_read_where_it_was_written(body, request):
+    """A form finds at each point what was written there, of no polynomial shape.
+
+    Tolerance: the square of the roundoff of a small linear solve.
+    """
+    surface = make(request.getfixturevalue(body))
+    history = fem.Function(surface.history_space)
+    x, _ = points(surface)
+    surface.set_history(history, np.sin(3e4 * x))
+    there = ufl.sin(3e4 * ufl.SpatialCoordinate(surface.mesh)[0])
+    assert total(surface, (history - there) ** 2) < 1e-26 * total(surface, there**2)
+
+
+def test_history_of_abscissae(finger_mesh):
+    """The same for the abscissa itself, whose mistakes can be read in metres."""
+    surface = make(finger_mesh)
+    history = fem.Function(surface.history_space)
+    surface.set_history(history, points(surface)[0])
+    x = ufl.SpatialCoordinate(surface.mesh)[0]
+    assert total(surface, (history - x) ** 2) < 1e-28 * total(surface, x**2)
+
+
+def test_history_is_evaluated_where_it_was_written(finger_mesh):
+    """Values at random come back point by point. Tolerance: roundoff."""
+    surface = make(finger_mesh)
+    history = fem.Function(surface.history_space)
+    values = np.random.default_rng(surface.mesh.comm.rank).uniform(-1, 1, (len(surface.pairs), 4))
+    surface.set_history(history, values)
+    assert_allclose(surface.evaluate(surface.compile([history]))[0], values, rtol=0, atol=1e-13)
+
+
+def test_history_stays_on_its_facet(square):
+    """Writing one facet's history leaves that of all others as it was."""
+    surface = make(square)
+    history = fem.Function(surface.history_space)
+    x, _ = points(surface)
+    chosen = np.abs(x).max(axis=1) < 0.13e-3  # the two facets beside the middle
+    surface.set_history(history, np.where(chosen[:, None], np.ones(4), 0.0))
+    assert total(surface, history) == pytest.approx(0.25e-3, rel=1e-13)
+
+
+def test_every_facet_is_counted_once(finger_mesh):
+    """Facets of all ranks together have the length that the mesh's own measure gives. Tolerance: roundoff."""
+    surface = make(finger_mesh)
+    ones = np.ones((len(surface.pairs), 4))
+    ds = ufl.Measure("ds", finger_mesh.mesh, subdomain_data=finger_mesh.facet_tags)
+    lengths = surface.per_ridge(ones)
+    for k, j in enumerate(surface.names):
+        form = fem.form(fem.Constant(finger_mesh.mesh, 1.0) * ds(tags.ridge(j)))
+        assert lengths[k] == pytest.approx(finger_mesh.mesh.comm.allreduce(fem.assemble_scalar(form)), rel=1e-12)
+
+
+def test_integrals_do_not_depend_on_the_ranks():
+    """The sum over ranks is the sum on one. Tolerance: roundoff of another order of the terms."""
+    values = []
+    for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
+        surface = make(load(comm, partial(ridge, 20e-6)))
+        x, y = points(surface)
+        level = np.full(len(x), 9e-6)
+        lengths = surface.sum_over_facets(surface.length_below(x, y, level))
+        values.append([*surface.per_ridge(np.cos(2e4 * x) * y), *lengths])
+    assert_allclose(values[0], values[1], rtol=1e-12)
+
+
+def test_gather(square):
+    """Rank 0 gets every facet's points, here the abscissae of eight facets."""
+    surface = make(square)
+    gathered = surface.gather(points(surface))
+    if surface.mesh.comm.rank > 0:
+        assert gathered is None
+    else:
+        assert gathered.shape == (2, 8, 4)
+        left = np.sort(gathered[0].min(axis=1))
+        assert_allclose(np.diff(left), 0.125e-3, rtol=1e-10)  # the mesh builder's roundoff
+
+
+# -- contact patches -----------------------------------------------------------------------------------
+def below(surface, x, y, level) -> float:
+    """Return the current length below a level on all ranks."""
+    return float(surface.sum_over_facets(surface.length_below(x, y, np.full(len(x), level))).sum())
+
+
+@pytest.mark.parametrize("part", [0.0, 0.03, 0.37, 0.5, 0.81, 1.0])
+@pytest.mark.parametrize("slope", [1e-6, 0.1, 1.0])
+def test_flat_skin_partly_below(square, slope, part):
+    """A slope is below a level over its lower part. Tolerance: roundoff of a root that a flat slope leaves."""
+    surface = make(square)
+    x, _ = points(surface)
+    y = 1e-4 + slope * (x + 0.5e-3)
+    expected = part * 1e-3 * np.hypot(1, slope)
+    assert below(surface, x, y, 1e-4 + part * slope * 1e-3) == pytest.approx(expected, rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize(("level", "length"), [(-1e-9, 0.0), (0.0, 0.0), (1e-9, 1e-3)])
+def test_level_skin(square, level, length):
+    """Level skin is all below or not; on the level itself it is open."""
+    surface = make(square)
+    x, _ = points(surface)
+    assert below(surface, x, np.zeros_like(x), level) == pytest.approx(length, rel=1e-12)
+
+
+def test_two_ends_in_a_facet():
+    """A parabola that dips below inside one facet. Tolerance: roundoff of its roots."""
+    surface = make(load(MPI.COMM_WORLD, partial(block, 1e-3, 1e-3, 1e-3 / 3)))
+    x, _ = points(surface)
+    half, curvature = 0.05e-3, 50.0
+    y = curvature * ((x - 0.02e-3) ** 2 - half**2)
+    t = 2 * curvature * half
+    arc = (t * np.hypot(1, t) + np.arcsinh(t)) / (2 * curvature)
+    assert below(surface, x, y, 0.0) == pytest.approx(arc, rel=1e-9)
+
+
+def test_hump_in_a_facet():
+    """A parabola that rises above inside one facet leaves the two sides. Tolerance as above."""
+    surface = make(load(MPI.COMM_WORLD, partial(block, 1e-3, 1e-3, 1e-3 / 3)))
+    x, _ = points(surface)
+    half, curvature = 0.05e-3, 1e-3
+    y = -curvature * (x**2 - half**2)
+    assert below(surface, x, y, 0.0) == pytest.approx(1e-3 - 2 * half, rel=1e-9)
+
+
+def test_order_of_the_contact_length():
+    """A circle, through second-order displacements: its ends inside facets converge with the third order.
+
+    The interpolation's error at the end is h^3 times a function of the end's place in its facet, so single
+    rates vary; the fit over four meshes is held to 2.5, far from the first order of counting points.
+    """
+    radius, depth = 0.8e-3, 0.1e-3
+    exact = 2 * radius * np.arccos(1 - depth / radius)
+    sizes, errors = 0.5 ** np.arange(4) * 0.1e-3, []
+    for size in sizes:
+        surface = make(load(MPI.COMM_WORLD, partial(block, 1.1e-3, 0.2e-3, size)))
+        u = fem.Function(fem.functionspace(surface.mesh, ("Lagrange", 2, (2,))))
+        u.interpolate(lambda x: np.stack([0 * x[0], radius - depth - np.sqrt(radius**2 - x[0] ** 2)]))
+        position = ufl.SpatialCoordinate(surface.mesh) + u
+        x, y = surface.evaluate(surface.compile([position[0], position[1]]))
+        errors.append(abs(below(surface, x, y, 0.0) / exact - 1))
+    assert errors[-1] < 1e-5
+    assert np.polyfit(np.log(sizes), np.log(errors), 1)[0] > 2.5
+
+
+def test_two_facets_of_a_cell_are_refused():
+    """A corner cell with two facets on the surface has no place for their history; all ranks hear of it."""
+    domain = mesh.create_unit_square(MPI.COMM_WORLD, 3, 3)
+    facets = mesh.locate_entities_boundary(domain, 1, lambda x: np.isclose(x[1], 0) | np.isclose(x[0], 1))
+    marked = mesh.meshtags(domain, 1, np.sort(facets), np.full(len(facets), 7, dtype=np.int32))
+    with pytest.raises(ValueError, match="two facets on the touching surface"):
+        Surface(domain, marked, {0: 7})
