@@ -42,7 +42,7 @@ class Report:
         self.scene, self.folder, self.comm = scene, folder, comm
         self.rows: list[dict[str, Any]] = []
         self.seconds = 0.0
-        self._start = time.perf_counter()
+        self._start, self._setup = time.perf_counter(), 0.0
         self._simulation: Simulation | None = None
         self._profiles: list[dict[str, Any]] = []
         self._kept: dict[str, tuple[Snapshot | None, Any]] = {}
@@ -80,6 +80,7 @@ class Report:
     def open(self, simulation: Simulation) -> None:
         """Meet the simulation, once it is set up."""
         self._simulation = simulation
+        self._setup = time.perf_counter() - self._start
         self._fields = Fields(simulation.problem, self.folder)
         self._sites = Receptors(simulation.problem, simulation.profiles.merkel_sites())
         self.say(f"{simulation.unknowns} unknowns, {len(simulation.problem.surface.names)} ridges that can touch")
@@ -179,7 +180,7 @@ class Report:
         assert self._simulation is not None
         solver, rows = self._simulation.solver, self.rows
         last: dict[str, Any] = rows[-1] if rows else {}
-        seconds = dict(solver.timings.seconds) | {"output": self.seconds}
+        seconds = {"setup": self._setup, **solver.timings.seconds, "output": self.seconds}
         peak = self.comm.allreduce(memory_mb())
         result: dict[str, Any] = {
             "f_ext": last.get("f_ext", 0.0),

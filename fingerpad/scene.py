@@ -164,7 +164,7 @@ class Contact(_Part):
 
     eps_n: Positive = 1.5e12
     """Normal penalty stiffness (Pa/m of reference area). *Assumption*: penetration stays below a tenth of d_eq."""
-    eps_t: Positive = 1.5e11
+    eps_t: Positive = 5e10
     """Tangential penalty stiffness (Pa/m of reference area) (*assumption*)."""
     length: Literal["pressure", "gap"] = "pressure"
     """What counts as ridge length L_R in Eq. 4: where there is contact pressure, or where the gap is below d_eq.

@@ -159,7 +159,9 @@ def _surfaces(c: _Curves) -> None:
         tags.VIABLE_EPIDERMIS: band(i["sc_ve"], i["ve_d"], sc_ve, ve_d),
         tags.DERMIS: band(i["ve_d"], i["d_sub"], ve_d, d_sub),
         tags.SUBCUTIS: surface(*i["d_sub"], *right[d_sub:], *reverse(i["bone below"]), *reverse(left[d_sub:])),
-        tags.NAIL: surface(*i["nail outside"], *left[skin:nail], *reverse(i["nail inside"]), *reverse(right[skin:nail])),
+        tags.NAIL: surface(
+            *i["nail outside"], *left[skin:nail], *reverse(i["nail inside"]), *reverse(right[skin:nail])
+        ),
         tags.NAIL_BED: surface(*i["nail inside"], *left[nail:], *reverse(i["bone above"]), *reverse(right[nail:])),
     }
     geo.synchronize()

@@ -155,9 +155,10 @@ class Profiles:
         """
         f = self.finger
         if self.ridged_arc + f.ridge_wavelength > self.nail_arc:
+            most = int(2 * self.nail_arc / f.ridge_wavelength - 2)
             raise GeometryError(
                 f"ridge_count {f.ridge_count} of ridge_wavelength {f.ridge_wavelength:g} m do not fit between "
-                f"the nail's edges; at most {int(2 * self.nail_arc / f.ridge_wavelength - 2)} do"
+                f"the nail's edges; at most {most - 1 + most % 2} do"
             )
         s = np.linspace(-self.nail_arc, self.nail_arc, 64 * f.ridge_count + 1)
         curves = [("skin", self.skin), ("SC-VE junction", self.sc_ve)]
@@ -198,8 +199,8 @@ class Profiles:
         )
         if distance.min() <= 0:
             raise GeometryError(
-                f"the bone reaches the nail: its top, bone_centre + bone_height / 2, is at {rim[:, 1].max():.3g} m "
-                f"and must stay below the nail's inner face at {f.height - f.nail_thickness:.3g} m"
+                f"the bone reaches the nail: its top, bone_centre + bone_height / 2, is at {rim[:, 1].max():.4g} m "
+                f"and must stay below the nail's inner face at {f.height - f.nail_thickness:.4g} m"
             )
 
 

@@ -4,17 +4,18 @@ from functools import partial
 
 import numpy as np
 import pytest
+import ufl
 from dolfinx import fem
 from mpi4py import MPI
-from petsc4py import PETSc
 from scipy.optimize import brentq
 
 from geometry import tags
 from geometry.benchmarks import block, ridge
 from geometry.mesh import load
+from variational import penalty
 from variational.problem import Interface, Ogden, Problem
 from variational.quantities import Observer
-from variational.solver import PREFIX, Control, Solver
+from variational.solver import Control, Solver
 from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi
@@ -24,13 +25,6 @@ EPS_N, EPS_T, MU_F, H_0 = 1.5e12, 1e11, 0.25, 0.514e-6
 D_EQ, VOLTAGE = 2e-6, 200.0
 P_EL = 8.854e-12 * VOLTAGE**2 / 2 / (H_0 + D_EQ) ** 2
 TOLERANCE = 1e-9  # N/m, imbalance of the nodal forces at which the solves here end
-
-
-@pytest.fixture(autouse=True)
-def options():
-    """Forget the tolerance that an earlier solver left among PETSc's options."""
-    yield
-    PETSc.Options().delValue(PREFIX + "snes_atol")
 
 
 def make(body, mu_f=0.0, eps_n=EPS_N, eps_t=EPS_T, held=True) -> Solver:
@@ -64,6 +58,12 @@ def uniform_pressure(depth: float, p_el: float = 0.0) -> float:
         return confined_stress(1 - (depth - p_n / EPS_N) / HEIGHT) + p_n - p_el
 
     return brentq(imbalance, 0.0, 1e6, xtol=1e-12, rtol=1e-15)
+
+
+@pytest.mark.parametrize(("gap", "pressure"), [(1e-6, 0.0), (0.0, 0.0), (-1e-9, 1.5e3), (-1e-7, 1.5e5)])
+def test_penalty(gap, pressure):
+    """Pressure is the stiffness times the depth, and never negative. Tolerance: roundoff."""
+    assert float(penalty.pressure(ufl.as_ufl(gap), EPS_N)) == pytest.approx(pressure, rel=1e-14)
 
 
 # -- patch test ----------------------------------------------------------------------------------------
@@ -167,7 +167,7 @@ def test_ridge():
     solver = make(load(MPI.COMM_WORLD, partial(ridge, 5e-6)), eps_n=1e12)
     for step in range(1, 7):
         solver.control = Control(0.0, -step * 10e-6)
-        solver.solve()
+        solver.solve(creep=True)
     loads = Observer(solver.problem).ridge_loads()
     assert loads.f_contact[0] == pytest.approx(36.048, rel=2e-4)
     assert solver.reaction[1] == pytest.approx(loads.f_contact[0], abs=100 * TOLERANCE)
@@ -196,7 +196,6 @@ def slide():
     step(Control(0.0, None, 2.0))
     for x in (0.1e-6, 0.2e-6, 0.4e-6, 1e-6, 2e-6, 4e-6, 8e-6, 16e-6, 32e-6, 64e-6, 128e-6):
         step(Control(x, None, 2.0))
-    PETSc.Options().delValue(PREFIX + "snes_atol")
     return states
 
 
@@ -244,8 +243,7 @@ def test_force_is_held_while_sliding(slide):
 # -- the solver's settings -----------------------------------------------------------------------------
 def test_tolerance_belongs_to_its_solver(body):
     """A second solver ends at its own tolerance, not at that of the one before it."""
-    loose = make(body)
-    coarse = Solver(loose.problem, body.facet_tags.find(tags.BONE_RIM), 1e3, 1e-3)
-    fine = Solver(loose.problem, body.facet_tags.find(tags.BONE_RIM), 1.0, 1e-6)
+    problem, rim = make(body).problem, body.facet_tags.find(tags.BONE_RIM)
+    coarse, fine = Solver(problem, rim, 1e3, 1e-3), Solver(problem, rim, 1.0, 1e-6)
     assert coarse._snes.getTolerances()[1] == pytest.approx(1.0)
     assert fine._snes.getTolerances()[1] == pytest.approx(1e-6)

@@ -1,7 +1,9 @@
 """History, integrals and contact patches of the surface, on any number of ranks."""
 
 from functools import partial
+from itertools import permutations
 
+import basix.ufl
 import numpy as np
 import pytest
 import ufl
@@ -11,10 +13,31 @@ from numpy.testing import assert_allclose
 
 from geometry import tags
 from geometry.benchmarks import block, ridge
-from geometry.mesh import load
+from geometry.mesh import TaggedMesh, load
 from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi
+
+
+@pytest.fixture(scope="module")
+def strip() -> TaggedMesh:
+    """A strip of triangles in each of the six orders of their nodes: facets of any local number and direction.
+
+    The builder of meshes gives boundary facets one local number only; nothing says that it must.
+    """
+    comm, count = MPI.COMM_WORLD, 12
+    low = np.stack([np.arange(count + 1), np.zeros(count + 1)], axis=1)
+    high = np.stack([np.arange(count) + 0.5, np.ones(count)], axis=1)
+    orders = list(permutations(range(3)))
+    cells = [np.array([k, k + 1, count + 1 + k])[list(orders[k % 6])] for k in range(count)]
+    cells += [np.array([count + 1 + k, k + 1, count + 2 + k]) for k in range(count - 1)]
+    cells = np.array(cells, dtype=np.int64) if comm.rank == 0 else np.empty((0, 3), dtype=np.int64)
+    x = np.concatenate([low, high]) * 1e-4 if comm.rank == 0 else np.empty((0, 2))
+    element = basix.ufl.element("Lagrange", "triangle", 1, shape=(2,))
+    domain = mesh.create_mesh(comm, cells=cells, x=x, e=element)
+    facets = np.sort(mesh.locate_entities_boundary(domain, 1, lambda x: np.isclose(x[1], 0)))
+    marked = mesh.meshtags(domain, 1, facets, np.full(len(facets), tags.ridge(0), dtype=np.int32))
+    return TaggedMesh(domain, marked, marked)
 
 
 def make(body) -> Surface:
@@ -34,7 +57,7 @@ def total(surface, integrand) -> float:
     return surface.mesh.comm.allreduce(part)
 
 
-@pytest.mark.parametrize("body", ["square", "finger_mesh"])
+@pytest.mark.parametrize("body", ["square", "strip", "finger_mesh"])
 def test_history_is_read_where_it_was_written(body, request):
     """A form finds at each point what was written there, of no polynomial shape.
 
@@ -48,22 +71,30 @@ def test_history_is_read_where_it_was_written(body, request):
     assert total(surface, (history - there) ** 2) < 1e-26 * total(surface, there**2)
 
 
-def test_history_of_abscissae(finger_mesh):
+@pytest.mark.parametrize("body", ["strip", "finger_mesh"])
+def test_history_of_abscissae(body, request):
     """The same for the abscissa itself, whose mistakes can be read in metres."""
-    surface = make(finger_mesh)
+    surface = make(request.getfixturevalue(body))
     history = fem.Function(surface.history_space)
     surface.set_history(history, points(surface)[0])
     x = ufl.SpatialCoordinate(surface.mesh)[0]
     assert total(surface, (history - x) ** 2) < 1e-28 * total(surface, x**2)
 
 
-def test_history_is_evaluated_where_it_was_written(finger_mesh):
+@pytest.mark.parametrize("body", ["strip", "finger_mesh"])
+def test_history_is_evaluated_where_it_was_written(body, request):
     """Values at random come back point by point. Tolerance: roundoff."""
-    surface = make(finger_mesh)
+    surface = make(request.getfixturevalue(body))
     history = fem.Function(surface.history_space)
     values = np.random.default_rng(surface.mesh.comm.rank).uniform(-1, 1, (len(surface.pairs), 4))
     surface.set_history(history, values)
     assert_allclose(surface.evaluate(surface.compile([history]))[0], values, rtol=0, atol=1e-13)
+
+
+def test_facets_of_every_local_number(strip):
+    """What the tests above rely on."""
+    surface = make(strip)
+    assert set().union(*strip.mesh.comm.allgather(set(surface.pairs[:, 1].tolist()))) == {0, 1, 2}
 
 
 def test_history_stays_on_its_facet(square):
@@ -76,15 +107,16 @@ def test_history_stays_on_its_facet(square):
     assert total(surface, history) == pytest.approx(0.25e-3, rel=1e-13)
 
 
-def test_every_facet_is_counted_once(finger_mesh):
+@pytest.mark.parametrize("name", ["strip", "finger_mesh"])
+def test_every_facet_is_counted_once(name, request):
     """Facets of all ranks together have the length that the mesh's own measure gives. Tolerance: roundoff."""
-    surface = make(finger_mesh)
-    ones = np.ones((len(surface.pairs), 4))
-    ds = ufl.Measure("ds", finger_mesh.mesh, subdomain_data=finger_mesh.facet_tags)
-    lengths = surface.per_ridge(ones)
+    body = request.getfixturevalue(name)
+    surface = make(body)
+    lengths = surface.per_ridge(np.ones((len(surface.pairs), 4)))
+    ds = ufl.Measure("ds", body.mesh, subdomain_data=body.facet_tags)
     for k, j in enumerate(surface.names):
-        form = fem.form(fem.Constant(finger_mesh.mesh, 1.0) * ds(tags.ridge(j)))
-        assert lengths[k] == pytest.approx(finger_mesh.mesh.comm.allreduce(fem.assemble_scalar(form)), rel=1e-12)
+        form = fem.form(fem.Constant(body.mesh, 1.0) * ds(tags.ridge(j)))
+        assert lengths[k] == pytest.approx(body.mesh.comm.allreduce(fem.assemble_scalar(form)), rel=1e-12)
 
 
 def test_integrals_do_not_depend_on_the_ranks():

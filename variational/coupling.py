@@ -95,14 +95,12 @@ class Coupling:
                 return
             self.set_air_gaps(d + self._step(d, r, previous))
             previous = d, r
-        worst_ridge = self.history.ridges[-1]
-        raise NotConverged(f"COUPLING_CAP at ridge {worst_ridge}", False)
+        raise NotConverged(f"COUPLING_CAP at ridge {self.history.ridges[-1]}", False)
 
     @staticmethod
     def _step(d: Array, r: Array, previous: tuple[Array, Array] | None) -> Array:
         if previous is None:
             return r
         moved = d - previous[0]
-        gain = 1 + np.divide(r - previous[1], moved, out=np.full_like(r, -1.0), where=np.abs(moved) > 1e-12 * d)
-        step = r / (1 - np.clip(gain, -1.0, _LARGEST_GAIN))
-        return np.clip(step, -d / 3, d / 2)
+        gain = 1 + np.divide(r - previous[1], moved, out=np.full_like(r, -1.0), where=np.abs(moved) > 1e-9 * d)
+        return np.clip(r / (1 - np.minimum(gain, _LARGEST_GAIN)), -d / 3, d / 2)

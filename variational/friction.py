@@ -11,12 +11,8 @@ pressure makes the tangent unsymmetric.
 
 import ufl
 
-# A point that slipped sits on the cone to roundoff when its next step starts; it counts as slipping until the
-# iteration finds otherwise, which is the better first guess.
-_ON_CONE = 1 - 1e-9
 
-
-def traction(u_x, anchor, limit, eps_t):
+def traction(u_x, anchor, limit, eps_t, guess=0.0):
     """Return the tangential traction on the skin (Pa of reference area).
 
     Args:
@@ -24,10 +20,13 @@ def traction(u_x, anchor, limit, eps_t):
         anchor: accepted anchor s_n (m).
         limit: radius of the friction cone, mu_f p_n (Pa of reference area).
         eps_t: tangential penalty stiffness (Pa/m).
+        guess: a point that slipped sits on the cone to roundoff when its next step starts; a positive number well
+            above roundoff lets it count as sticking then, a negative one as slipping. A point without contact
+            is on its cone too.
     """
     trial = -eps_t * (u_x - anchor)
     slipping = ufl.conditional(ufl.gt(trial, 0.0), limit, -limit)
-    return ufl.conditional(ufl.gt(abs(trial), _ON_CONE * limit), slipping, trial)
+    return ufl.conditional(ufl.ge(abs(trial), (1 + guess) * limit), slipping, trial)
 
 
 def new_anchor(u_x, t_t, eps_t):

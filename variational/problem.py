@@ -23,6 +23,9 @@ from variational import electroadhesion, friction, kinematics, ogden, penalty, s
 from variational.surface import Surface
 
 
+STICKS, SLIPS = 1e-9, -1e-9  # first guesses for points on the friction cone
+
+
 @dataclass(frozen=True)
 class Ogden:
     """Ogden solid: initial shear modulus (Pa), exponent, Poisson's ratio, sign convention of the exponent."""
@@ -61,6 +64,7 @@ class Problem:
     Attributes:
         u: displacement (m).
         voltage, eta: constants (V; Pa/m, the shift of the Jacobian).
+        guess: constant, what points on the friction cone are first taken for: STICKS or SLIPS.
         d_eq: equivalent air gap (m), one value a cell, read on the ridges.
         anchor: accepted friction history (m), see :mod:`variational.friction`.
         residual, jacobian: compiled forms.
@@ -95,7 +99,7 @@ class Problem:
         def constant(value: float) -> fem.Constant:
             return fem.Constant(mesh, np.float64(value))
 
-        self.voltage, self.eta = constant(0.0), constant(0.0)
+        self.voltage, self.eta, self.guess = constant(0.0), constant(0.0), constant(STICKS)
         mu_f, h_0 = constant(interface.mu_f), constant(interface.h_0)
         eps_n, eps_t = constant(interface.eps_n), constant(interface.eps_t)
 
@@ -111,7 +115,7 @@ class Problem:
 
         self.y = kinematics.current_height(mesh, u)
         self.p_n = penalty.pressure(self.y, eps_n)
-        self.t_t = friction.traction(u[0], self.anchor, mu_f * self.p_n, eps_t)
+        self.t_t = friction.traction(u[0], self.anchor, mu_f * self.p_n, eps_t, self.guess)
         self.new_anchor = friction.new_anchor(u[0], self.t_t, eps_t)
         self.p_el = electroadhesion.attraction(self.y, self.d_eq, self.voltage, h_0)
         self.area = kinematics.cofactor(F) * ufl.FacetNormal(mesh)  # current per reference area, a vector

@@ -15,11 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 from dolfinx import fem
 from dolfinx.fem import petsc as fem_petsc
+from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from variational.layout import RigidRimLayout
-from variational.problem import Problem
+from variational.problem import SLIPS, STICKS, Problem
 from variational.timing import Timings
 
 Array = NDArray[np.float64]
@@ -36,8 +37,10 @@ DEFAULTS = {
     "pc_factor_mat_solver_type": "mumps",
 }
 _OUTSIDE = 1e30  # N/m: norm of the residual where J <= 0 somewhere
-_PATIENCE = 5  # full Newton steps without a new least residual
+_PATIENCE = 4  # iterations in which the least residual must fall
 _CONTRACTS = 0.5  # reduction of the residual an iteration below which a factorisation is kept
+_DEEPEST = 1e-6  # m, how deep open skin may be driven by one of the first steps
+_LIMITED_STEPS = 6
 _SHIFT = 2e9  # Pa/m, eta at the start
 _SHIFT_FALL, _SHIFT_RISE = 0.4, 4.0  # of eta an iteration
 _REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
@@ -116,6 +119,9 @@ class Solver:
         self._norms: list[float] = []
         self._stiffness = 1e5  # Pa: what a prescribed row's metre is worth in N/m
         self._nodal = np.zeros_like(problem.u.x.array)
+        nodes = fem.locate_dofs_topological(problem.V, 1, problem.surface.facets)
+        self._skin = 2 * nodes + 1  # vertical displacements of the skin that can touch
+        self._skin_height = problem.V.tabulate_dof_coordinates()[nodes, 1]
         self.x = self.layout.create_vector()
         self._f = self.layout.create_vector()
         self._A = self.layout.create_matrix()
@@ -126,13 +132,13 @@ class Solver:
         for name, value in DEFAULTS.items():
             if not options.hasName(PREFIX + name):
                 options.setValue(PREFIX + name, value)
-        if not options.hasName(PREFIX + "snes_atol"):
-            options.setValue(PREFIX + "snes_atol", repr(imbalance))
         snes = PETSc.SNES().create(self.layout.comm)
         snes.setOptionsPrefix(PREFIX)
+        snes.setTolerances(atol=imbalance)
         snes.setFunction(self._residual, self._f)
         snes.setJacobian(self._jacobian, self._A)
         snes.setConvergenceTest(self._test)
+        snes.setLineSearchPreCheck(self._limit)
         snes.setFromOptions()
         return snes
 
@@ -153,7 +159,7 @@ class Solver:
             fem.assemble_vector(self._nodal, self.problem.residual)
             f.set(0.0)
             self.layout.add_to_unknowns(self._nodal, f)
-            finite = self.layout.comm.allreduce(bool(np.isfinite(f.array_r).all()), op=_logical_and)
+            finite = self.layout.comm.allreduce(bool(np.isfinite(f.array_r).all()), op=MPI.LAND)
             if not finite:
                 self._inverted = True
                 f.set(_OUTSIDE / np.sqrt(self.layout.global_size))
@@ -195,9 +201,26 @@ class Solver:
             self._stale = norm > _CONTRACTS * previous
         if self._shifted and iteration > 0:
             eta.value *= min(norm / previous, _SHIFT_RISE) if norm > previous else _SHIFT_FALL
-        if not self._shifted and len(self._norms) - 1 - int(np.argmin(self._norms[1:] or [0])) - 1 >= _PATIENCE:
+        # The first norm is left out: it may hold a prescribed displacement not yet made.
+        late, early = self._norms[1:][-_PATIENCE:], self._norms[1:][-2 * _PATIENCE : -_PATIENCE]
+        if not self._shifted and len(early) == _PATIENCE and min(late) > 0.7 * min(early):
             return reason.DIVERGED_LOCAL_MIN  # cycles
         return reason.ITERATING
+
+    def _limit(self, x: PETSc.Vec, step: PETSc.Vec) -> bool:
+        """Shorten a step that would drive open skin deep through the screen, of which its tangent knows nothing."""
+        if len(self._norms) > _LIMITED_STEPS:
+            return False
+        self.layout.to_nodes(x, self._nodal)
+        height = self._skin_height + self._nodal[self._skin]
+        self.layout.to_nodes(step, self._nodal)
+        sink = self._nodal[self._skin]  # PETSc subtracts the step
+        deep = (height > 0) & (height - sink < -_DEEPEST)
+        part = float(np.min((height[deep] + _DEEPEST) / sink[deep], initial=1.0))
+        part = float(self.layout.comm.allreduce(part, op=MPI.MIN))
+        if part < 1:
+            step.scale(part)
+        return part < 1
 
     # -- use -------------------------------------------------------------------------------------------
     def solve(self, creep: bool = False) -> None:
@@ -212,10 +235,10 @@ class Solver:
         start = self.x.array_r.copy()
         self.counts.solves += 1
         self._inverted = False
-        fresh = self._stale
         reason = self._run(shifted=False)
-        if reason <= 0 and not fresh:  # the factorisation kept from the last solve may have led astray
+        if reason <= 0:  # the other guess for the points on the cone, which is then kept
             self.x.array_w[:] = start
+            self.problem.guess.value = SLIPS if self.problem.guess.value == STICKS else STICKS
             self._stale = True
             reason = self._run(shifted=False)
         if reason <= 0 and creep:
@@ -248,7 +271,3 @@ class Solver:
 def memory_mb() -> float:
     """Return the peak memory (MB) of this process."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-
-
-def _logical_and(a: bool, b: bool) -> bool:
-    return a and b

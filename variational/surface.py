@@ -21,6 +21,7 @@ class Surface:
     Attributes:
         ridge: position of each facet's ridge in ``names``, shape (facets,).
         names: the ridges' numbers.
+        facets: number of each facet in the mesh.
         length: reference length of each facet (m).
         weights: Gauss weights on [0, 1], shape (points,).
     """
@@ -60,7 +61,7 @@ class Surface:
         topology.create_connectivity(2, 1)
         to_cells, to_facets = topology.connectivity(1, 2), topology.connectivity(2, 1)
         owned_cells = topology.index_map(2).size_local
-        pairs, ridge = [], []
+        pairs, ridge, facets = [], [], []
         position = {tag: k for k, tag in enumerate(tag_list)}
         for facet, tag in zip(facet_tags.indices, facet_tags.values, strict=True):
             if int(tag) in position:
@@ -68,8 +69,10 @@ class Surface:
                 if cell < owned_cells:
                     pairs.append((cell, int(np.flatnonzero(to_facets.links(cell) == facet)[0])))
                     ridge.append(position[int(tag)])
+                    facets.append(facet)
         self.pairs = np.array(pairs, dtype=np.int32).reshape(-1, 2)
         self.ridge = np.array(ridge, dtype=np.int64)
+        self.facets = np.array(facets, dtype=np.int32)
         doubled = len(np.unique(self.pairs[:, 0])) < len(self.pairs)
         if mesh.comm.allreduce(doubled):
             raise ValueError("a cell has two facets on the touching surface; use smaller surface elements")
@@ -129,7 +132,7 @@ class Surface:
 
     def sum_over_facets(self, values: Array) -> Array:
         """Sum one value a facet over each ridge and all ranks; shape (ridges,)."""
-        mine = np.bincount(self.ridge, weights=values, minlength=len(self.names))
+        mine = np.bincount(self.ridge, weights=values, minlength=len(self.names)).astype(float)  # of nothing it is integer
         total = np.empty_like(mine)
         self.mesh.comm.Allreduce(mine, total)
         return total

@@ -1,0 +1,47 @@
+"""Where the time of a run goes: seconds by phase, counts and memory.
+
+python3 benchmarks/trace.py [the options of demos/demo_fingerpad.py]
+"""
+
+import argparse
+import sys
+
+import petsc4py
+from mpi4py import MPI
+
+from fingerpad.scene import add_arguments, command_line
+
+_PHASES = {
+    "setup": "meshing, compiling, setting up",
+    "assembly": "residuals and Jacobians",
+    "factorisation": "factorisations and back-substitutions",
+    "coupling": "ridge pressures and closure",
+    "output": "tables, fields, pictures",
+}
+_COUNTS = ("unknowns", "steps", "jumps", "cutbacks", "newton_iterations", "factorisations")
+
+
+def main(comm: MPI.Comm) -> int:
+    """Run a scene and print its trace."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    add_arguments(parser)
+    scene, args, petsc = command_line(parser, quiet=comm.rank != 0)
+    petsc4py.init([sys.argv[0], *petsc])
+    from fingerpad.run import run
+
+    s = run(scene, args.out, comm)
+    if comm.rank == 0:
+        seconds = {phase: s.get(f"seconds_{phase}", 0.0) for phase in _PHASES}
+        seconds["other"] = s["wall_seconds"] - sum(seconds.values())
+        print(f"\n{'phase':40s} seconds  share")
+        for phase, value in seconds.items():
+            print(f"{_PHASES.get(phase, phase):40s} {value:7.1f} {100 * value / s['wall_seconds']:5.1f} %")
+        print(f"{'all':40s} {s['wall_seconds']:7.1f}")
+        for name in _COUNTS:
+            print(f"{name.replace('_', ' '):40s} {s[name]:7d}")
+        print(f"{'peak memory, all ranks (MB)':40s} {s['memory_mb']:7.0f}")
+    return 1 if "failure" in s else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(MPI.COMM_WORLD))

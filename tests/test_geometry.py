@@ -1,0 +1,466 @@
+"""The fingertip's curves and mesh against Table 1 and plane geometry, and what is refused."""
+
+from functools import partial
+
+import gmsh
+import numpy as np
+import pytest
+import ufl
+from dolfinx import fem
+from dolfinx import geometry as search
+from dolfinx.mesh import entities_to_geometry
+from mpi4py import MPI
+from numpy.testing import assert_allclose
+from pydantic import ValidationError
+from scipy.spatial import cKDTree
+
+from geometry import fingertip, tags
+from geometry.benchmarks import block, ridge
+from geometry.mesh import load
+from geometry.parameters import Fingertip, MeshSize
+from geometry.profiles import GeometryError, Profiles
+
+UM, MM = 1e-6, 1e-3
+WAVE = Fingertip().ridge_wavelength
+HALF_DEPTH = 50 * UM  # the mean of the skin lies that deep below the tips
+
+
+@pytest.fixture(scope="module")
+def profiles() -> Profiles:
+    return Profiles(Fingertip())
+
+
+def dense(profiles, depth, count=400001):
+    """Return many points of one curve between the nail's edges; shape (count, 2)."""
+    s = np.linspace(-profiles.nail_arc, profiles.nail_arc, count)
+    return profiles.point(s, depth(s))
+
+
+def shoelace(*chains) -> float:
+    """Return the area of the polygon through chains of points."""
+    x, y = np.concatenate(chains).T
+    return abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
+
+
+# -- curves --------------------------------------------------------------------------------------------
+def test_tips_are_on_the_ellipse(profiles):
+    """The outline is x^2 / a^2 + (y - b)^2 / b^2 = 1. Tolerance: linear interpolation in a table of arc lengths."""
+    s = np.array(profiles.ridges) * WAVE
+    x, y = profiles.point(s, profiles.skin(s)).T
+    assert_allclose((x / (10 * MM)) ** 2 + ((y - 7 * MM) / (7 * MM)) ** 2, 1, rtol=1e-12)
+
+
+def test_lowest_tip_is_on_the_screen(profiles):
+    """One ridge is centred on x = 0, and its tip is the lowest point of all, at y = 0."""
+    assert_allclose(profiles.point(0.0, profiles.skin(0.0)), 0, atol=1e-18)
+    skin = dense(profiles, profiles.skin)
+    assert skin[:, 1].min() == pytest.approx(0, abs=1e-12)
+
+
+def test_arc_length(profiles):
+    """Points one wavelength apart in s are so along the outline. Tolerance: chords of a thousandth of it."""
+    s = np.linspace(20 * WAVE, 21 * WAVE, 1001)
+    steps = np.linalg.norm(np.diff(profiles.point(s), axis=0), axis=1)
+    assert steps.sum() == pytest.approx(WAVE, rel=1e-7)
+
+
+def test_nail_begins_at_its_width(profiles):
+    """The nail's edge is on the outline, dorsal, at its half width. Tolerance: the table's interpolation."""
+    x, y = profiles.point(profiles.nail_arc)
+    assert x == pytest.approx(6 * MM, rel=1e-8)
+    assert y == pytest.approx(7 * MM * (1 + np.sqrt(1 - 0.6**2)), rel=1e-8)
+
+
+def test_number_of_ridges(profiles):
+    """As many tips as ridges on the skin, and as many intermediate and limiting ridges below."""
+    s = np.linspace(-profiles.ridged_arc, profiles.ridged_arc, 55 * 200 + 1)
+
+    def extrema(depth):
+        slope = np.sign(np.diff(depth(s)))
+        return int(((slope[:-1] < 0) & (slope[1:] > 0)).sum()), int(((slope[:-1] > 0) & (slope[1:] < 0)).sum())
+
+    assert len(profiles.ridges) == 55
+    assert extrema(profiles.skin) == (55, 54)  # the outermost grooves are the ends of the range
+    assert extrema(profiles.ve_d) == (110, 55 + 54)  # two papillae a ridge; tips under its centre and inner grooves
+
+
+@pytest.mark.parametrize("theta", [0.0, 0.3, np.pi / 2, 2.0, np.pi, -2.5])
+def test_depths(profiles, theta):
+    """The formulas of the three interfaces, below the outline's mean. Tolerance: roundoff."""
+    s = np.array(theta / (2 * np.pi) * WAVE)
+    ve_d = 450 + (225 if abs(theta) <= np.pi / 2 else 75) * (1 + np.cos(2 * theta))
+    assert profiles.skin(s) - HALF_DEPTH == pytest.approx(-50 * UM * np.cos(theta), abs=1e-17)
+    assert profiles.sc_ve(s) - HALF_DEPTH == pytest.approx((425 - 50 * np.cos(theta)) * UM, rel=1e-12)
+    assert profiles.ve_d(s) - HALF_DEPTH == pytest.approx(ve_d * UM, rel=1e-12)
+    assert profiles.d_sub(s) - HALF_DEPTH == pytest.approx(2000 * UM, rel=1e-12)
+
+
+def test_thickness_of_the_viable_epidermis(profiles):
+    """175 um on average over a period, 20.8 um where it is thinnest. Tolerance: the digits given."""
+    s = np.linspace(0, WAVE, 100001)
+    thickness = profiles.ve_d(s) - profiles.sc_ve(s)
+    assert thickness[:-1].mean() == pytest.approx(175 * UM, rel=1e-9)
+    assert thickness.min() == pytest.approx(20.8 * UM, abs=0.05 * UM)
+
+
+def test_waves_fade_beyond_the_last_ridge(profiles):
+    """At the nail all layers are offset curves, reached smoothly: no step where the last ridge ends."""
+    end = np.array(profiles.nail_arc)
+    for depth, mean in ((profiles.skin, 0), (profiles.sc_ve, 425), (profiles.ve_d, 600)):
+        assert depth(end) - HALF_DEPTH == pytest.approx(mean * UM, abs=1e-15)
+        s = profiles.ridged_arc + np.array([-1e-9, 1e-9])
+        assert np.ptp(depth(s)) < 1e-4 * UM
+
+
+def test_curves_are_mirrored(profiles):
+    s = np.linspace(0, profiles.nail_arc, 5001)
+    for depth in (profiles.skin, profiles.sc_ve, profiles.ve_d, profiles.d_sub):
+        left = profiles.point(-s, depth(-s))
+        np.testing.assert_array_equal(left, profiles.point(s, depth(s)) * [-1, 1])
+
+
+def test_measured_profile_keeps_the_amplitude():
+    """Fourier coefficients of any size are scaled to the height between groove and tip; tips stay on the outline."""
+    profiles = Profiles(Fingertip(ridge_profile=(3.0, -0.5)))
+    s = np.linspace(0, WAVE, 20001)
+    assert np.ptp(profiles.skin(s)) == pytest.approx(100 * UM, rel=1e-6)
+    assert profiles.skin(0.0) == pytest.approx(0, abs=1e-18)
+
+
+def test_merkel_sites_are_in_the_epidermis(profiles):
+    """One a ridge, 20 um above the intermediate ridge's tip and below the SC."""
+    s = np.array(profiles.ridges) * WAVE
+    depth = np.full(55, 1) * (HALF_DEPTH + 880 * UM)
+    assert_allclose(profiles.merkel_sites(), profiles.point(s, depth), atol=1e-15)
+    assert (profiles.sc_ve(s) < depth).all()
+    assert (depth < profiles.ve_d(s)).all()
+
+
+def test_meissner_sites_are_in_the_papillae(profiles):
+    """Two a ridge, 20 um below the tops of the papillae and above the subcutis."""
+    s = ((np.array(profiles.ridges)[:, None] + [-0.25, 0.25]) * WAVE).ravel()
+    depth = np.full(110, HALF_DEPTH + 470 * UM)
+    assert_allclose(profiles.meissner_sites(), profiles.point(s, depth), atol=1e-15)
+    assert (profiles.ve_d(s) < depth).all()
+    assert (depth < profiles.d_sub(s)).all()
+
+
+# -- mesh ----------------------------------------------------------------------------------------------
+def integral(body, tag, integrand=1.0) -> float:
+    """Integrate over a layer on all ranks."""
+    dx = ufl.Measure("dx", body.mesh, subdomain_data=body.cell_tags)
+    form = fem.form(fem.Constant(body.mesh, 1.0) * integrand * dx(tag))
+    return body.mesh.comm.allreduce(fem.assemble_scalar(form))
+
+
+def areas(profiles) -> dict[int, float]:
+    """Return each layer's area between the curves of the profiles."""
+    f = profiles.finger
+    depths = (profiles.skin, profiles.sc_ve, profiles.ve_d, profiles.d_sub)
+    skin, sc_ve, ve_d, d_sub = (dense(profiles, depth) for depth in depths)
+    attach = np.arcsin(f.nail_bed_half_width / (f.bone_width / 2))
+    below = profiles.bone(np.linspace(-(np.pi - attach), np.pi - attach, 4001))
+    above = profiles.bone(np.linspace(np.pi - attach, np.pi + attach, 4001))
+    s = np.linspace(profiles.nail_arc, profiles.half_perimeter, 2001)
+    right = (profiles.point(s), profiles.point(s, f.nail_thickness))
+    outside, inside = (np.concatenate([half, half[::-1] * [-1, 1]]) for half in right)
+    return {
+        tags.STRATUM_CORNEUM: shoelace(skin, sc_ve[::-1]),
+        tags.VIABLE_EPIDERMIS: shoelace(sc_ve, ve_d[::-1]),
+        tags.DERMIS: shoelace(ve_d, d_sub[::-1]),
+        tags.SUBCUTIS: shoelace(d_sub, below[::-1]),
+        tags.NAIL: shoelace(outside, inside[::-1]),
+        tags.NAIL_BED: shoelace(inside, d_sub[:1], above[::-1], d_sub[-1:]),
+    }
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("layer", list(tags.LAYERS))
+def test_area(finger_mesh, profiles, layer):
+    """Tolerance: facets of up to 120 um cut the corners of waves of 483 um, those of 1 mm the nail's two faces."""
+    tag = tags.LAYERS[layer]
+    assert integral(finger_mesh, tag) == pytest.approx(areas(profiles)[tag], rel=1e-2 if "nail" in layer else 5e-3)
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("layer", list(tags.LAYERS))
+def test_layers_are_mirrored(finger_mesh, layer):
+    """Left and right of x = 0 weigh the same. Tolerance: the placing of nodes along the mirrored curves."""
+    tag = tags.LAYERS[layer]
+    moment = integral(finger_mesh, tag, ufl.SpatialCoordinate(finger_mesh.mesh)[0])
+    assert abs(moment) < 1e-6 * 20 * MM * integral(finger_mesh, tag)
+
+
+@pytest.mark.mpi
+def test_no_cell_is_without_layer(finger_mesh):
+    """The layers together are the whole section."""
+    whole = finger_mesh.mesh.comm.allreduce(
+        fem.assemble_scalar(fem.form(fem.Constant(finger_mesh.mesh, 1.0) * ufl.dx(finger_mesh.mesh)))
+    )
+    assert sum(integral(finger_mesh, tag) for tag in tags.LAYERS.values()) == pytest.approx(whole, rel=1e-12)
+
+
+@pytest.mark.mpi
+def test_ridges_that_can_touch(finger_mesh, coarse):
+    """Those with a tip within 2 mm of the centre, and half of one."""
+    assert finger_mesh.ridges() == list(range(-4, 5)) == list(fingertip.touching_ridges(Fingertip(), coarse))
+
+
+def vertices(body, facets):
+    """Return the vertices of facets, each once; shape (n, 2)."""
+    body.mesh.topology.create_connectivity(1, 0)
+    links = body.mesh.topology.connectivity(1, 0)
+    points = np.unique(np.concatenate([links.links(f) for f in facets]))
+    body.mesh.topology.create_connectivity(0, 2)
+    return body.mesh.geometry.x[entities_to_geometry(body.mesh, 0, points.astype(np.int32)).ravel(), :2]
+
+
+def away_from(curve, points) -> float:
+    """Return the greatest distance of points from a curve given densely."""
+    return float(cKDTree(curve).query(points)[0].max())
+
+
+def test_ridges_of_the_mesh(finger_mesh, profiles):
+    """Ridge j's nodes are on the skin's curve about s = j wavelengths. Tolerance: splines through 32 points a ridge."""
+    for j in finger_mesh.ridges():
+        s = (j + np.linspace(-0.5, 0.5, 40001)) * WAVE
+        nodes = vertices(finger_mesh, finger_mesh.facet_tags.find(tags.ridge(j)))
+        assert away_from(profiles.point(s, profiles.skin(s)), nodes) < 0.05 * UM
+        ends = profiles.point(s[[0, -1]], profiles.skin(s[[0, -1]]))
+        assert away_from(nodes, ends) < 1e-9
+
+
+def test_lowest_node(finger_mesh):
+    """The mesh reaches the screen but for the sagitta of a facet, here up to 40 um, at a tip of radius 118 um."""
+    lowest = vertices(finger_mesh, finger_mesh.facet_tags.find(tags.ridge(0)))[:, 1].min()
+    assert -0.05 * UM < lowest < (40 * UM) ** 2 / (8 * 118 * UM)
+
+
+def test_contact_size(finger_mesh):
+    """Facets about the tips that can touch are about as long as asked; those in the grooves may be longer."""
+    body = finger_mesh
+    for j in (-4, 0, 3):
+        facets = body.facet_tags.find(tags.ridge(j))
+        x = np.sort(vertices(body, facets)[:, 0])
+        if j == 0:
+            x = x[np.abs(x) < 0.3 * WAVE]
+            assert np.diff(x).max() < 1.3 * 30 * UM
+        assert len(facets) >= WAVE / (2 * 30 * UM)
+
+
+def interface(body, one, other):
+    """Return the facets between two layers."""
+    layer = np.zeros(body.mesh.topology.index_map(2).size_local, dtype=int)
+    layer[body.cell_tags.indices] = body.cell_tags.values
+    body.mesh.topology.create_connectivity(1, 2)
+    links = body.mesh.topology.connectivity(1, 2)
+    every = range(body.mesh.topology.index_map(1).size_local)
+    return [f for f in every if sorted(layer[links.links(f)]) == sorted((one, other))]
+
+
+@pytest.mark.parametrize(
+    ("layers", "depth", "within"),
+    [
+        ((tags.STRATUM_CORNEUM, tags.VIABLE_EPIDERMIS), "sc_ve", 0.1 * UM),
+        ((tags.VIABLE_EPIDERMIS, tags.DERMIS), "ve_d", 0.5 * UM),
+        ((tags.DERMIS, tags.SUBCUTIS), "d_sub", 0.1 * UM),
+    ],
+)
+def test_interfaces_of_the_mesh(finger_mesh, profiles, layers, depth, within):
+    """Nodes between two layers are on their curve. Tolerance: splines, above all at the VE-D junction's sharp tips."""
+    nodes = vertices(finger_mesh, interface(finger_mesh, *layers))
+    assert away_from(dense(profiles, getattr(profiles, depth)), nodes) < within
+
+
+def layer_at(body, points):
+    """Return the tag of the cell at each point."""
+    x = np.pad(points, ((0, 0), (0, 1)))
+    near = search.compute_collisions_points(search.bb_tree(body.mesh, 2), x)
+    cells = search.compute_colliding_cells(body.mesh, near, x)
+    layer = np.zeros(body.mesh.topology.index_map(2).size_local, dtype=int)
+    layer[body.cell_tags.indices] = body.cell_tags.values
+    return np.array([layer[cells.links(k)[0]] for k in range(len(points))])
+
+
+def test_cells_at_the_merkel_sites(finger_mesh, profiles):
+    """On a mesh of any size they are viable epidermis: each intermediate ridge has a node on its tip."""
+    np.testing.assert_array_equal(layer_at(finger_mesh, profiles.merkel_sites()), tags.VIABLE_EPIDERMIS)
+
+
+def test_cells_at_the_meissner_sites(finger_mesh, profiles):
+    """On a mesh of any size they are dermis: each papilla has a node on its top."""
+    np.testing.assert_array_equal(layer_at(finger_mesh, profiles.meissner_sites()), tags.DERMIS)
+
+
+@pytest.mark.mpi
+def test_bone_rim(finger_mesh, profiles):
+    """The rim is closed: its normals add up to nothing; its length is the ellipse's. Tolerance: chords of 1 mm."""
+    ds = ufl.Measure("ds", finger_mesh.mesh, subdomain_data=finger_mesh.facet_tags)(tags.BONE_RIM)
+    comm, n = finger_mesh.mesh.comm, ufl.FacetNormal(finger_mesh.mesh)
+    rim = profiles.bone(np.linspace(-np.pi, np.pi, 20001))
+    length = np.linalg.norm(np.diff(rim, axis=0), axis=1).sum()
+    one = fem.Constant(finger_mesh.mesh, 1.0)
+    assert comm.allreduce(fem.assemble_scalar(fem.form(one * ds))) == pytest.approx(length, rel=1e-2)
+    for k in (0, 1):
+        assert abs(comm.allreduce(fem.assemble_scalar(fem.form(n[k] * ds)))) < 1e-12 * length
+
+
+def test_ridge_tags():
+    assert [tags.ridge_index(tags.ridge(j)) for j in (-50, -1, 0, 50)] == [-50, -1, 0, 50]
+    others = [*tags.LAYERS.values(), tags.BONE_RIM, tags.OUTER_SKIN, tags.NAIL_SURFACE, tags.SIDES]
+    assert not {tags.ridge(j) for j in range(-50, 51)} & set(others)
+
+
+# -- refusals ------------------------------------------------------------------------------------------
+LENGTHS = [name for name, field in Fingertip.model_fields.items() if field.annotation is float]
+SIZES = ["contact", "receptor", "interface", "coarsest", "growth", "touching_half_arc", "touching_fraction"]
+
+
+@pytest.mark.parametrize("value", [0.0, -1e-3, float("nan"), float("inf"), "thick"])
+@pytest.mark.parametrize("name", LENGTHS)
+def test_length_is_refused(name, value):
+    with pytest.raises(ValidationError, match=name):
+        Fingertip(**{name: value})
+
+
+@pytest.mark.parametrize("value", [0.0, -1e-3, float("nan"), float("inf"), "fine"])
+@pytest.mark.parametrize("name", SIZES)
+def test_size_is_refused(name, value):
+    with pytest.raises(ValidationError, match=name):
+        MeshSize(**{name: value})
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"ridge_count": 54}, "ridge_count is 54; it must be odd"),
+        ({"ridge_count": -1}, "ridge_count"),
+        ({"ridge_profile": (0.0, 0.0)}, "ridge_profile has only zero coefficients"),
+        ({"nail_half_width": 10e-3}, "nail_half_width is 0.01 m; it must be below half the width, 0.01 m"),
+        ({"nail_bed_half_width": 4e-3}, "nail_bed_half_width is 0.004 m; it must be below half the bone_width"),
+        ({"nail_thickness": 2e-3}, "nail_thickness is 0.002 m; it must be below the thickness of the skin layers"),
+        ({"fingernail": 1e-3}, "fingernail"),
+    ],
+)
+def test_parameters_are_refused(given, message):
+    with pytest.raises(ValidationError, match=message):
+        Fingertip(**given)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"ve_thickness": 150e-6}, "SC-VE junction and VE-D junction cross by .*ve_thickness is 0.00015 m"),
+        ({"limiting_ridge_height": 450e-6}, "SC-VE junction and VE-D junction cross by .*ve_thickness is 0.000175 m"),
+        ({"dermis_thickness": 100e-6}, "VE-D junction and D-subcutis junction cross by .*dermis_thickness is 0.0001 m"),
+        ({"ridge_count": 101}, "ridge_count 101 of ridge_wavelength 0.000483 m do not fit"),
+        ({"dermis_thickness": 5e-3}, "0.00565 m deep, more than the outline's radius of curvature, 0.0049 m"),
+        ({"bone_centre": 4.5e-3}, "bone touches the skin's layers at .*bone_centre"),
+        ({"bone_width": 17e-3}, "bone touches the skin's layers at .*bone_width"),
+        ({"bone_height": 13e-3}, "bone touches the skin's layers at .*bone_height"),
+        ({"bone_centre": 10.95e-3}, "bone reaches the nail: .* is at 0.01355 m and must stay below .* 0.0135 m"),
+    ],
+)
+def test_fingertip_is_refused(given, message):
+    """What crosses, and the parameter, are named."""
+    with pytest.raises(GeometryError, match=message):
+        Profiles(Fingertip(**given)).check()
+
+
+def test_default_is_accepted(profiles):
+    profiles.check()
+
+
+def test_least_thickness_that_is_named_is_the_least():
+    """A micrometre more than the message asks for is accepted, a micrometre less is not."""
+    with pytest.raises(GeometryError) as refusal:
+        Profiles(Fingertip(ve_thickness=100e-6)).check()
+    least = float(str(refusal.value).split()[-2])
+    Profiles(Fingertip(ve_thickness=least + UM)).check()
+    with pytest.raises(GeometryError):
+        Profiles(Fingertip(ve_thickness=least - UM)).check()
+
+
+@pytest.mark.parametrize("wavelength", [460e-6, 483e-6, 500e-6])
+def test_most_ridges_that_are_named_fit(wavelength):
+    """The message gives a number that is accepted, and the next odd one is not."""
+    with pytest.raises(GeometryError) as refusal:
+        Profiles(Fingertip(ridge_count=101, ridge_wavelength=wavelength)).check()
+    most = int(str(refusal.value).split()[-2])
+    Profiles(Fingertip(ridge_count=most, ridge_wavelength=wavelength)).check()
+    with pytest.raises(GeometryError):
+        Profiles(Fingertip(ridge_count=most + 2, ridge_wavelength=wavelength)).check()
+
+
+def test_contact_size_is_refused():
+    with pytest.raises(GeometryError, match="contact size 0.00013 m is too large for a ridge of 0.000483 m"):
+        fingertip.check(Fingertip(), MeshSize(contact=130e-6))
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("error", [GeometryError, RuntimeError, ZeroDivisionError])
+def test_refusal_reaches_every_rank(error):
+    """A builder runs on one rank; what it raises is raised on all, and the next mesh can be built."""
+
+    def refuse() -> float:
+        raise error("no such body")
+
+    with pytest.raises(error, match="no such body"):
+        load(MPI.COMM_WORLD, refuse)
+    assert not gmsh.isInitialized()
+    assert load(MPI.COMM_WORLD, partial(block, MM, MM, MM)).mesh.topology.index_map(2).size_global == 2
+
+
+@pytest.mark.mpi
+def test_missing_tag_is_refused():
+    build = partial(block, MM, MM, 0.5 * MM)
+    load(MPI.COMM_WORLD, build, [tags.STRATUM_CORNEUM, tags.ridge(0), tags.BONE_RIM, tags.SIDES])
+    with pytest.raises(GeometryError, match=f"no cell or facet with tag {tags.NAIL_SURFACE}"):
+        load(MPI.COMM_WORLD, build, [tags.SIDES, tags.NAIL_SURFACE])
+
+
+# -- verification bodies -------------------------------------------------------------------------------
+def lengths(body) -> dict[int, float]:
+    """Return the length of each facet group on all ranks."""
+    ds, one = ufl.Measure("ds", body.mesh, subdomain_data=body.facet_tags), fem.Constant(body.mesh, 1.0)
+    groups = (tags.ridge(0), tags.BONE_RIM, tags.SIDES)
+    return {tag: body.mesh.comm.allreduce(fem.assemble_scalar(fem.form(one * ds(tag)))) for tag in groups}
+
+
+@pytest.mark.mpi
+def test_block():
+    """Its area, its faces and the heights of bottom and top; 5 x 2 rectangles, as 0.21 mm go into 1 mm five times."""
+    body = load(MPI.COMM_WORLD, partial(block, MM, 0.4 * MM, 0.21 * MM, gap=7 * UM))
+    assert body.mesh.topology.index_map(2).size_global == 20
+    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(0.4 * MM**2, rel=1e-12)
+    assert lengths(body) == pytest.approx({tags.ridge(0): MM, tags.BONE_RIM: MM, tags.SIDES: 0.8 * MM}, rel=1e-12)
+    mean_height = integral(body, tags.STRATUM_CORNEUM, ufl.SpatialCoordinate(body.mesh)[1]) / (0.4 * MM**2)
+    assert mean_height == pytest.approx(207 * UM, rel=1e-12)
+    assert body.ridges() == [0]
+
+
+@pytest.mark.mpi
+def test_one_ridge():
+    """Its area is w (h - A / 2), its sides h - A each, its bottom a sinusoid's length. Tolerance: chords of 10 um."""
+    body = load(MPI.COMM_WORLD, partial(ridge, 10 * UM))
+    x = np.linspace(-0.5, 0.5, 20001) * 483 * UM
+    y = 50 * UM * (1 - np.cos(2 * np.pi * x / (483 * UM)))
+    expected = {tags.ridge(0): np.hypot(np.diff(x), np.diff(y)).sum(), tags.BONE_RIM: 483 * UM, tags.SIDES: 1000 * UM}
+    assert lengths(body) == pytest.approx(expected, rel=1e-3)
+    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(483 * UM * 550 * UM, rel=1e-3)
+    assert body.ridges() == [0]
+
+
+@pytest.mark.parametrize("value", [0.0, -1e-3, float("nan"), float("inf")])
+@pytest.mark.parametrize(
+    ("build", "name"), [(block, "width"), (block, "height"), (block, "size"), (ridge, "size"), (ridge, "amplitude")]
+)
+def test_verification_body_is_refused(build, name, value):
+    lengths = {"width": MM, "height": MM, "size": MM, name: value}
+    with pytest.raises(GeometryError, match=f"{name} is .*; it must be positive"):
+        build(**lengths)
+
+
+def test_ridge_without_a_top_is_refused():
+    with pytest.raises(GeometryError, match="amplitude is 0.001 m; it must be below the height, 0.0006 m"):
+        ridge(10 * UM, amplitude=MM)
