@@ -92,19 +92,16 @@ class Report:
         """Report an accepted step; collective."""
         start = time.perf_counter()
         assert self._simulation is not None
-        new_load = bool(self.rows) and step.row["load"] != self.rows[-1]["load"]
-        if new_load and self.rows[-1]["load"] != "touch":
-            self._finish_load()
         self.rows.append(step.row)
         surface = self._simulation.problem.surface
         stacked = np.stack([getattr(step.surface, name) for name in _PROFILE])
-        gathered, ridge = surface.gather(stacked), surface.gather(surface.ridge[None, :, None])
+        gathered, ridge = surface.gather(stacked), surface.gather(surface.ridge[None, :, None].astype(float))
         sed = self._sites.sed()
-        # The state is kept in case the next step belongs to another load: then it was this load's last.
-        self._kept["last"] = (gather_mesh(self._simulation.problem), self._sites.positions())
         if self.comm.rank == 0:
             assert gathered is not None and ridge is not None
-            self._profiles.append({"ridge": ridge[0, :, 0], "values": gathered, "d_eq": step.d_eq, "row": step.row})
+            self._profiles.append(
+                {"ridge": ridge[0, :, 0].astype(int), "values": gathered, "d_eq": step.d_eq, "row": step.row}
+            )
             self._table("steps", step.row)
             for k, j in enumerate(surface.names):
                 if step.ridges.length[k] > 0:
@@ -130,8 +127,8 @@ class Report:
         notes = [f"ridge {j} {s}" for j, s in zip(self._names, step.states, strict=True) if s]
         if notes:
             self.log.warning("step %d closure: %s", r["step"], ", ".join(notes))
-        state = f"{r['load']}: {r['f_ext']:.1f} N/m, {r['voltage']:.0f} V, x {r['bone_x'] * 1e3:.2f} mm, µ {r['mu_app']:.3f}"
-        self._progress.update(self._task, completed=done, description=state)
+        loads = f"{r['load']}: {r['f_ext']:.1f} N/m, {r['voltage']:.0f} V, x {r['bone_x'] * 1e3:.2f} mm"
+        self._progress.update(self._task, completed=done, description=f"{loads}, µ {r['mu_app']:.3f}")
 
     @property
     def _names(self) -> list[int]:
@@ -158,20 +155,18 @@ class Report:
             writer = csv.DictWriter(file, list(row))
             writer.writeheader()
             self._tables[name] = (file, writer)
-        file, writer = self._tables[name]
-        writer.writerow(row)
-        file.flush()
+        self._tables[name][1].writerow(row)
+        self._tables[name][0].flush()
 
-    def _finish_load(self) -> None:
-        """Keep the accepted state at the end of a load; the problem holds the next load's first step by now."""
-        self._kept[self.rows[-1]["load"]] = self._kept["last"]
-
-    def fields(self) -> None:
-        """Write the present state for ParaView; collective."""
+    def load_reached(self) -> None:
+        """Write the present state for ParaView and keep it for the pictures; collective."""
         start = time.perf_counter()
         if self.rows and self._written != self.rows[-1]["step"]:
-            self._fields.write(float(self.rows[-1]["step"]))
+            assert self._simulation is not None
             self._written = self.rows[-1]["step"]
+            self._fields.write(float(self._written))
+            kept = gather_mesh(self._simulation.problem), self._sites.positions()
+            self._kept[self.rows[-1]["load"]] = kept
         self.seconds += time.perf_counter() - start
 
     # -- the end ---------------------------------------------------------------------------------------
@@ -216,19 +211,17 @@ class Report:
         return (still[-1] if still else None), (full[0] if full else None)
 
     def draw(self) -> None:
-        """Draw the run on rank 0; collective."""
+        """Draw the run, on rank 0."""
         start = time.perf_counter()
-        if self.rows:
-            self._finish_load()
-            if self.comm.rank == 0:
-                self._draw()
+        if self.rows and self.comm.rank == 0:
+            self._draw()
         self.seconds += time.perf_counter() - start
 
     def _draw(self) -> None:
         normal, slip = self._named_rows()
         mu_0 = self.scene.friction
         for load, (snapshot, sites) in self._kept.items():
-            if load == "last" or snapshot is None:
+            if snapshot is None:
                 continue
             row = [row for row in self.rows if row["load"] == load][-1]
             title = f"After {load}: {pictures.conditions(row['f_ext'], row['voltage'], mu_0)}"
@@ -257,7 +250,8 @@ class Report:
             for column, part in zip(columns, parts, strict=True):
                 column += [part[mine].ravel()[order], [np.nan]]
         arrays = [np.concatenate(column) for column in columns]
-        return pictures.SurfaceProfile(title, *arrays, row["f_ext"], row["contact_length"])
+        x, y, p, t, p_el, gap = arrays
+        return pictures.SurfaceProfile(title, x, y, p, t, p_el, gap, row["f_ext"], row["contact_length"])
 
     def close(self) -> None:
         """Close every file."""

@@ -21,7 +21,7 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
     report = Report(scene, folder, comm)
     failure = ""
     try:
-        simulation = Simulation(scene, comm, report.step, report.fields)
+        simulation = Simulation(scene, comm, report.step, report.load_reached)
         report.open(simulation)
         try:
             simulation.run()
@@ -29,7 +29,7 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
             failure = str(error)
             report.say(f"fingerpad: {failure}")
             report.log.error(failure)
-        report.fields()
+        report.load_reached()
         report.draw()
         summary = report.summary(failure)
         report.say(_sentence(summary, folder))
@@ -41,6 +41,7 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
 def _sentence(s: dict[str, Any], folder: Path) -> str:
     end = "full slip" if s["full_slip"] else "no full slip"
     if s["slip_mu_app"] is not None:
-        end += f" at mu_app {s['slip_mu_app']:.4f}, f_T {s['slip_f_t']:.3f} N/m, contact length {s['slip_contact_length'] * 1e3:.3f} mm"
+        end += f" at mu_app {s['slip_mu_app']:.4f}, f_T {s['slip_f_t']:.3f} N/m"
+        end += f", contact length {s['slip_contact_length'] * 1e3:.3f} mm"
     work = f"{s['newton_iterations']} Newton iterations, {s['factorisations']} factorisations, {s['memory_mb']:.0f} MB"
     return f"{end}; {work}, {s['wall_seconds']:.0f} s; results in {folder}"

@@ -153,8 +153,8 @@ class Simulation:
         if loads.length[0] > 0 or loads.length[-1] > 0:
             j = names[0] if loads.length[0] > 0 else names[-1]
             raise StepFailed(
-                f"step {self.continuation.steps} ({self._load}): ridge {j}, the last one that is meshed to touch, is in contact; "
-                f"mesh.touching_half_arc is {self.scene.mesh.touching_half_arc:g} m and must be larger"
+                f"step {self.continuation.steps} ({self._load}): ridge {j}, the last one that is meshed to touch, "
+                f"is in contact; mesh.touching_half_arc is {self.scene.mesh.touching_half_arc:g} m and must be larger"
             )
         nodes = self._other_skin
         height = self.problem.V.tabulate_dof_coordinates()[nodes, 1] + self.problem.u.x.array.reshape(-1, 2)[nodes, 1]

@@ -90,15 +90,20 @@ def _curves(p: Profiles, touching: range) -> _Curves:
     f, c = p.finger, _Curves()
     end = p.nail_arc
     edge = np.array([-end, end])
-    depths = {"skin": p.skin, "sc_ve": p.sc_ve, "nail": None, "ve_d": p.ve_d, "d_sub": p.d_sub}
+    depths = {
+        "skin": p.skin,
+        "sc_ve": p.sc_ve,
+        "nail": lambda s: np.full_like(s, f.nail_thickness),
+        "ve_d": p.ve_d,
+        "d_sub": p.d_sub,
+    }
 
     # End lines at the nail's edges, normal to the outline, and on to the bone.
     corners: dict[str, tuple[int, int]] = {}
     for name, depth in depths.items():
-        d = np.full(2, f.nail_thickness) if depth is None else depth(edge)
-        xy = p.point(edge, d)
+        xy = p.point(edge, depth(edge))
         corners[name] = (_point(xy[0]), _point(xy[1]))
-    down = sorted(depths, key=lambda name: f.nail_thickness if depths[name] is None else float(depths[name](end)))
+    down = sorted(depths, key=lambda name: float(depths[name](edge)[0]))
     attach = np.arcsin(f.nail_bed_half_width / (f.bone_width / 2))
     bone = tuple(_point(p.bone(side * (np.pi - attach))) for side in (-1, 1))
     for side in (0, 1):

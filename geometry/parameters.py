@@ -91,5 +91,5 @@ class MeshSize(BaseModel):
     touching_half_arc: Length = 4.5e-3
     """Arc length on either side of the centre within which ridges can touch; a run that finds contact at
     its end stops and says so."""
-    touching_fraction: Annotated[float, Field(gt=0, le=1)] = 0.6
+    touching_fraction: Annotated[float, Field(gt=0, le=1)] = 0.45
     """Part of a ridge's period, about its tip, that can touch; the grooves are coarser."""

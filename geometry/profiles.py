@@ -32,9 +32,9 @@ class Profiles:
     @cached_property
     def _arc_table(self) -> tuple[Array, Array]:
         a, b = self.finger.width / 2, self.finger.height / 2
-        phi = np.linspace(0.0, np.pi, 20001)
+        phi: Array = np.linspace(0.0, np.pi, 20001, dtype=np.float64)
         speed = np.sqrt((a * np.cos(phi)) ** 2 + (b * np.sin(phi)) ** 2)
-        return phi, cumulative_simpson(speed, x=phi, initial=0.0)
+        return phi, np.asarray(cumulative_simpson(speed, x=phi, initial=0.0), dtype=float)
 
     def _angle(self, s: ArrayLike) -> Array:
         phi, arc = self._arc_table

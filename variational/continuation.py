@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 class Target:
     """A load to reach from the present one; what is None stays as it is.
 
-    Exactly one of ``f_ext`` (N/m) and ``bone_height`` (m, change of height from the unloaded position, negative when pressed)
+    At most one of ``f_ext`` (N/m) and ``bone_height`` (m, change from the unloaded position, negative when pressed)
     may be given: it also says which of the two is prescribed from then on.
     """
 

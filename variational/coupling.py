@@ -42,7 +42,13 @@ class Coupling:
     """
 
     def __init__(
-        self, solver: Solver, observer: Observer, closure: Closure, tolerance: float = 1e-6, cap: int = 30, by_gap: bool = False
+        self,
+        solver: Solver,
+        observer: Observer,
+        closure: Closure,
+        tolerance: float = 1e-6,
+        cap: int = 30,
+        by_gap: bool = False,
     ) -> None:
         """Start from ridges without contact.
 

@@ -6,8 +6,8 @@ with the current height y. The traction is p_el n per current area, n the outwar
 At frozen d_eq it derives from a potential :math:`\phi(y)` with :math:`\phi' = p_{el}` per projected current length
 :math:`dx = -e_y \cdot \mathrm{cof} F N \,dS`:
 
-.. math:: \delta \int \phi \,dx = \int \phi' \delta y \,dx + \phi \,d\delta x = \int p_{el} (\delta y \,dx - \delta x \,dy)
-          = -\int p_{el}\, n \cdot \delta u \,da
+.. math:: \delta \int \phi \,dx = \int \phi' \delta y \,dx + \phi \,d\delta x
+          = \int p_{el} (\delta y \,dx - \delta x \,dy) = -\int p_{el}\, n \cdot \delta u \,da
 
 up to the ends of the skin, where the potential vanishes with the height. The weak form takes the left side:
 its tangent is symmetric, and its horizontal resultant is zero to roundoff on any mesh, as it must be over a

@@ -32,4 +32,3 @@ def traction(u_x, anchor, limit, eps_t, guess=0.0):
 def new_anchor(u_x, t_t, eps_t):
     """Return the anchor that a step leaves when it is accepted (m)."""
     return u_x + t_t / eps_t
-

@@ -5,10 +5,11 @@ Find u, equal to the bone's translation on its rim, with for all v alike
 .. math:: \int P(F) : \nabla v \,dX - \int p_n v_y \,dS - \int t_t v_x \,dS
           - \int p_{el}\, \mathrm{cof} F N \cdot v \,dS + f_{ext} v_y^{bone} = 0
 
-written with the attraction's potential. P = dW/dF: :mod:`~variational.ogden`, :mod:`~variational.saint_venant`; p_n: :mod:`~variational.penalty`; t_t:
-:mod:`~variational.friction`; p_el: :mod:`~variational.electroadhesion`. Friction makes the derivative
-unsymmetric. The derivative may carry a shift :math:`\int \eta\, du \cdot v \,dS`, which is no part of the equations
-but of pseudo-transient continuation (:mod:`~variational.solver`). This module adds up forms and never solves.
+P = dW/dF: :mod:`~variational.ogden`, :mod:`~variational.saint_venant`; p_n: :mod:`~variational.penalty`; t_t:
+:mod:`~variational.friction`; p_el: :mod:`~variational.electroadhesion`, written as the derivative of its potential.
+Friction makes the derivative unsymmetric. The derivative may carry a shift :math:`\int \eta\, du \cdot v \,dS`, which
+is no part of the equations but of pseudo-transient continuation (:mod:`~variational.solver`). This module adds up
+forms and never solves.
 """
 
 from collections.abc import Mapping
@@ -21,7 +22,6 @@ from dolfinx import fem
 
 from variational import electroadhesion, friction, kinematics, ogden, penalty, saint_venant, stress
 from variational.surface import Surface
-
 
 STICKS, SLIPS = 1e-9, -1e-9  # first guesses for points on the friction cone
 
@@ -145,7 +145,11 @@ class Problem:
             bulk = field({tag: ogden.bulk_modulus(s.shear_modulus, s.poisson) for tag, s in skins.items()})
             a = field({tag: ogden.exponent(s.alpha, s.convention) for tag, s in skins.items()})
             yield tuple(skins), stress.ogden_law(shear, a, bulk)
-        stiff = {tag: saint_venant.lame_constants(s.young, s.poisson) for tag, s in solids.items() if isinstance(s, SaintVenant)}
+        stiff = {
+            tag: saint_venant.lame_constants(s.young, s.poisson)
+            for tag, s in solids.items()
+            if isinstance(s, SaintVenant)
+        }
         if stiff:
             lame, shear = (field({tag: pair[k] for tag, pair in stiff.items()}) for k in (0, 1))
             yield tuple(stiff), stress.saint_venant_law(lame, shear)

@@ -1,15 +1,20 @@
 r"""Newton's method by PETSc SNES on the displacement and the bone's translation together.
 
-Full steps first: with a stiff penalty the iteration is an active-set method, whose residual rises before the
-right points are in contact, and backtracking only slows it. A factorisation serves as long as the residual falls
-to half an iteration. Where it cycles, a part of the skin is about to
-jump on or off the screen and the tangent has a negative direction. Then the same solve is repeated as
+Full steps: with a stiff penalty the iteration is an active-set method, whose residual rises before the right points
+are in contact, and backtracking on the residual only slows it. But the first steps of a solve are shortened where
+they would drive open skin deep through the screen, of which the tangent knows nothing. A factorisation serves as
+long as the residual falls to half an iteration.
+
+Where the iteration does not get ahead, points on the friction cone are first taken for slipping instead of
+sticking, or the other way round. If that does not help and the caller asks for it, a part of the skin is taken to
+be about to jump on or off the screen, where the tangent has a negative direction, and the solve is repeated as
 pseudo-transient continuation (Kelley and Keyes 1998, doi 10.1137/S0036142996304796): the tangent gets a shift
-:math:`\eta` on the touching skin, an implicit Euler step of :math:`\eta \dot u = -r(u)`, and eta falls as the residual falls.
-It creeps away from the equilibrium that is lost and ends in one of the unchanged equations.
+:math:`\eta` on the touching skin, an implicit Euler step of :math:`\eta \dot u = -r(u)`, and eta falls as the
+residual falls. It creeps away from the equilibrium that is lost and ends in one of the unchanged equations.
 """
 
 import resource
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -92,7 +97,7 @@ class Solver:
         rim_facets: NDArray[np.int32],
         force_scale: float,
         tolerance: float = 1e-9,
-        fixed: list[tuple[NDArray[np.int32], float]] = (),  # type: ignore[assignment]
+        fixed: Sequence[tuple[NDArray[np.int32], float]] = (),
     ) -> None:
         """Set SNES up.
 
@@ -106,13 +111,13 @@ class Solver:
         self.problem, self.control, self.counts = problem, Control(), Counts()
         self.layout = RigidRimLayout(problem.V, rim_facets)
         self.timings = Timings()
-        self._fixed_rows = np.concatenate([self.layout.rows[dofs] for dofs, _ in fixed]) if fixed else np.empty(0, PETSc.IntType)
-        self._fixed_values = np.concatenate([np.full(len(dofs), value) for dofs, value in fixed]) if fixed else np.empty(0)
+        rows = np.concatenate([self.layout.rows[dofs] for dofs, _ in fixed] or [np.empty(0, PETSc.IntType)])
+        values = np.concatenate([np.full(len(dofs), value) for dofs, value in fixed] or [np.empty(0)])
         first = int(self.layout.create_vector().getOwnershipRange()[0])
-        mine = (self._fixed_rows >= first) & (self._fixed_rows < first + self.layout.local_size)
-        self._fixed_rows, self._fixed_values = self._fixed_rows[mine], self._fixed_values[mine]
+        mine = (rows >= first) & (rows < first + self.layout.local_size)
+        self._fixed_rows, self._fixed_values = rows[mine], values[mine]
         self._first_row = first
-        self.reaction = np.zeros(2)
+        self.reaction: Array = np.zeros(2)
         self._inverted = self._shifted = False
         self._control_rows = False
         self._stale = True  # whether the factorisation must be made anew before it is used
@@ -259,8 +264,10 @@ class Solver:
         self.counts.newton += self._snes.getIterationNumber()
         self._stale |= shifted
         self.problem.eta.value = 0.0
-        self._residual(None, self.x, self._f)  # the last evaluation need not have been the accepted iterate's
-        return int(self._snes.getConvergedReason())
+        reason = int(self._snes.getConvergedReason())
+        if reason <= 0:  # nodes and reaction are those of a rejected iterate
+            self._residual(None, self.x, self._f)
+        return reason
 
     @property
     def bone(self) -> Array:

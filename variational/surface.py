@@ -48,9 +48,8 @@ class Surface:
         self.names = list(ridges)
         self.degree = 2 * points - 1
         tag_list = list(ridges.values())
-        self.measure = ufl.Measure(
-            "ds", mesh, subdomain_data=facet_tags, subdomain_id=tuple(tag_list), metadata={"quadrature_degree": self.degree}
-        )
+        degree = {"quadrature_degree": self.degree}
+        self.measure = ufl.Measure("ds", mesh, subdomain_data=facet_tags, subdomain_id=tuple(tag_list), metadata=degree)
         gauss, weights = basix.make_quadrature(basix.CellType.interval, self.degree)
         self.points, self.weights = np.asarray(gauss), np.asarray(weights)
         if len(self.weights) != points:
@@ -132,7 +131,8 @@ class Surface:
 
     def sum_over_facets(self, values: Array) -> Array:
         """Sum one value a facet over each ridge and all ranks; shape (ridges,)."""
-        mine = np.bincount(self.ridge, weights=values, minlength=len(self.names)).astype(float)  # of nothing it is integer
+        # As floats: that of no facets would be of integers.
+        mine = np.asarray(np.bincount(self.ridge, weights=values, minlength=len(self.names)), dtype=np.float64)
         total = np.empty_like(mine)
         self.mesh.comm.Allreduce(mine, total)
         return total
