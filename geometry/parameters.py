@@ -88,8 +88,8 @@ class MeshSize(BaseModel):
     coarsest: Length = 1e-3
     growth: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 0.25
     """Increase of the element size per distance."""
-    touching_half_arc: Length = 4.5e-3
+    touching_half_arc: Length = 5e-3
     """Arc length on either side of the centre within which ridges can touch; a run that finds contact at
     its end stops and says so."""
-    touching_fraction: Annotated[float, Field(gt=0, le=1)] = 0.45
+    touching_fraction: Annotated[float, Field(gt=0, le=1)] = 0.4
     """Part of a ridge's period, about its tip, that can touch; the grooves are coarser."""

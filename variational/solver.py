@@ -6,9 +6,8 @@ they would drive open skin deep through the screen, of which the tangent knows n
 long as the residual falls to half an iteration.
 
 Where the iteration does not get ahead, points on the friction cone are first taken for slipping instead of
-sticking, or the other way round. If that does not help and the caller asks for it, a part of the skin is taken to
-be about to jump on or off the screen, where the tangent has a negative direction, and the solve is repeated as
-pseudo-transient continuation (Kelley and Keyes 1998, doi 10.1137/S0036142996304796): the tangent gets a shift
+sticking, or the other way round; or, if the caller asks for it, a part of the skin is taken to be about to jump on
+or off the screen, where the tangent has a negative direction, and the solve is repeated as pseudo-transient continuation (Kelley and Keyes 1998, doi 10.1137/S0036142996304796): the tangent gets a shift
 :math:`\eta` on the touching skin, an implicit Euler step of :math:`\eta \dot u = -r(u)`, and eta falls as the
 residual falls. It creeps away from the equilibrium that is lost and ends in one of the unchanged equations.
 """
@@ -232,7 +231,8 @@ class Solver:
         """Find the equilibrium near ``x`` for the current loads and leave it in ``x`` and the problem's u.
 
         Args:
-            creep: repeat as pseudo-transient continuation what full Newton steps do not manage.
+            creep: repeat as pseudo-transient continuation what full Newton steps do not manage, instead of with
+                the other guess for the points on the friction cone.
 
         Raises:
             NotConverged: with SNES's reason; ``x`` is then the last iterate.
@@ -241,7 +241,7 @@ class Solver:
         self.counts.solves += 1
         self._inverted = False
         reason = self._run(shifted=False)
-        if reason <= 0:  # the other guess for the points on the cone, which is then kept
+        if reason <= 0 and not creep:  # the other guess for the points on the cone, which is then kept
             self.x.array_w[:] = start
             self.problem.guess.value = SLIPS if self.problem.guess.value == STICKS else STICKS
             self._stale = True
