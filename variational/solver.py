@@ -7,9 +7,10 @@ long as the residual falls to half an iteration.
 
 Where the iteration does not get ahead, points on the friction cone are first taken for slipping instead of
 sticking, or the other way round; or, if the caller asks for it, a part of the skin is taken to be about to jump on
-or off the screen, where the tangent has a negative direction, and the solve is repeated as pseudo-transient continuation (Kelley and Keyes 1998, doi 10.1137/S0036142996304796): the tangent gets a shift
-:math:`\eta` on the touching skin, an implicit Euler step of :math:`\eta \dot u = -r(u)`, and eta falls as the
-residual falls. It creeps away from the equilibrium that is lost and ends in one of the unchanged equations.
+or off the screen, where the tangent has a negative direction, and the solve is repeated as pseudo-transient
+continuation (Kelley and Keyes 1998, doi 10.1137/S0036142996304796): the tangent gets a shift :math:`\eta` on the
+touching skin, an implicit Euler step of :math:`\eta \dot u = -r(u)`, and eta falls as the residual falls. It creeps
+away from the equilibrium that is lost and ends in one of the unchanged equations.
 """
 
 import resource
