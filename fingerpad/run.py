@@ -8,6 +8,7 @@ from mpi4py import MPI
 from fingerpad.report import Report
 from fingerpad.scene import Scene
 from fingerpad.simulation import Simulation
+from variational import jit
 from variational.continuation import StepFailed
 
 
@@ -20,6 +21,7 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
     """
     report = Report(scene, folder, comm)
     failure = ""
+    jit.sweep(comm)
     try:
         simulation = Simulation(scene, comm, report.step, report.load_reached)
         report.open(simulation)

@@ -20,7 +20,7 @@ import numpy as np
 import ufl
 from dolfinx import fem
 
-from variational import electroadhesion, friction, kinematics, ogden, penalty, saint_venant, stress
+from variational import electroadhesion, friction, jit, kinematics, ogden, penalty, saint_venant, stress
 from variational.surface import Surface
 
 STICKS, SLIPS = 1e-9, -1e-9  # first guesses for points on the friction cone
@@ -124,10 +124,9 @@ class Problem:
         residual = ufl.derivative(energy, u, v) - ufl.dot(ufl.as_vector([self.t_t, self.p_n]), v) * dS
         du = ufl.TrialFunction(self.V)
         jacobian = ufl.derivative(residual, u, du) + self.eta * ufl.dot(du, v) * dS
-        jit = {"timeout": 300}
-        self.energy = fem.form(energy, jit_options=jit)
-        self.residual = fem.form(residual, jit_options=jit)
-        self.jacobian = fem.form(jacobian, jit_options=jit)
+        self.energy = fem.form(energy, jit_options=jit.OPTIONS)
+        self.residual = fem.form(residual, jit_options=jit.OPTIONS)
+        self.jacobian = fem.form(jacobian, jit_options=jit.OPTIONS)
 
     def _laws(self, solids, cellwise):
         """Yield (tags, law), one kernel a law: parameters are fields with one value a cell."""
