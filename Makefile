@@ -14,5 +14,5 @@ demo:
 	$(run) python3 demos/demo_fingerpad.py --out results/demo
 
 test:
-	$(run) python3 -m pytest -q tests
-	$(run) mpirun -n 2 python3 -m pytest -q -p no:cacheprovider tests -m mpi
+	$(run) python3 -m pytest -q --color=no tests
+	$(run) mpirun -n 2 python3 -m pytest -q --color=no -p no:cacheprovider tests -m mpi

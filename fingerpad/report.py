@@ -19,6 +19,7 @@ from variational.receptors import Receptors
 from variational.solver import memory_mb
 
 _NAMED = ("f_t", "mu_app", "f_electrostatic", "f_contact", "bone_height", "ridges_in_contact", "contact_length")
+_STILL = 1e-12  # m, below which the bone has not moved sideways
 _PROFILE = ("x", "y", "p_n", "t_t", "p_el", "area_x", "area_y")
 _HEADER = "step load     f_ext    U  bone x   bone y      f_T  mu_app    f_el ridges  contact newton fact."
 _UNITS = "               N/m     V      mm       mm      N/m             N/m             mm"
@@ -206,7 +207,7 @@ class Report:
 
     def _named_rows(self) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:
         """Return the rows of normal contact (the last before the bone first moves) and of full slip."""
-        still = [row for row in self.rows if row["bone_x"] == 0.0]
+        still = [row for row in self.rows if abs(row["bone_x"]) < _STILL]
         full = [row for row in self.rows if row["all_slip"]] if self._simulation and self._simulation.full_slip else []
         return (still[-1] if still else None), (full[0] if full else None)
 
@@ -226,7 +227,7 @@ class Report:
             row = [row for row in self.rows if row["load"] == load][-1]
             title = f"After {load}: {pictures.conditions(row['f_ext'], row['voltage'], mu_0)}"
             pictures.finger(self.folder / f"finger_{load.replace(' ', '_')}.png", snapshot, sites, title)
-        sliding = [row for row in self.rows if row["bone_x"] != 0.0]
+        sliding = [row for row in self.rows if abs(row["bone_x"]) >= _STILL]
         if normal is None or not sliding:
             return
         end = slip or sliding[-1]
