@@ -27,7 +27,7 @@ class TaggedMesh:
 
     def ridges(self) -> list[int]:
         """Return the numbers of the ridges that can touch, in order, the same on every rank."""
-        here = {tags.ridge_index(int(tag)) for tag in np.unique(self.facet_tags.values) if tag >= 500}
+        here = {tags.ridge_index(int(tag)) for tag in np.unique(self.facet_tags.values) if tags.is_ridge(int(tag))}
         return sorted(set().union(*self.mesh.comm.allgather(here)))
 
 

@@ -32,3 +32,8 @@ def ridge(j: int) -> int:
 def ridge_index(tag: int) -> int:
     """Return the ridge number that a facet tag made by :func:`ridge` stands for."""
     return tag - _RIDGE_CENTRE
+
+
+def is_ridge(tag: int) -> bool:
+    """Return whether a facet tag is one made by :func:`ridge`; the others are far below."""
+    return tag > _RIDGE_CENTRE // 2

@@ -78,7 +78,6 @@ class Counts:
 
     newton: int = 0
     factorisations: int = 0
-    solves: int = 0
     pseudo_transient: int = 0
     """Solves that full Newton steps did not manage."""
 
@@ -239,7 +238,6 @@ class Solver:
             NotConverged: with SNES's reason; ``x`` is then the last iterate.
         """
         start = self.x.array_r.copy()
-        self.counts.solves += 1
         self._inverted = False
         reason = self._run(shifted=False)
         if reason <= 0 and not creep:  # the other guess for the points on the cone, which is then kept
