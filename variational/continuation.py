@@ -34,7 +34,7 @@ class Target:
 
 
 # How far one step may go: parts of sqrt(f_ext) and of U^2, and metres of the bone.
-_FORCE, _VOLTAGE, _SINK, _SLIDE = 0.05, 0.25, 40e-6, 60e-6
+_FORCE, _VOLTAGE, _SINK, _SLIDE = 0.067, 0.25, 40e-6, 60e-6
 _SMALLEST = 1e-3  # step below which a load is given up, over the largest
 _FEW = 6  # factorisations; a step that took no more lets the next one grow
 
@@ -226,7 +226,7 @@ class Continuation:
     def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool) -> None:
         counts = self.solver.counts
         newton, factorisations, shifted = counts.newton, counts.factorisations, counts.pseudo_transient
-        self.solver.control, self.problem.voltage.value = load
+        self.solver.new_load(*load)
         try:
             self.coupling.solve(creep)
         finally:

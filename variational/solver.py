@@ -2,8 +2,10 @@ r"""Newton's method by PETSc SNES on the displacement and the bone's translation
 
 Full steps: with a stiff penalty the iteration is an active-set method, whose residual rises before the right points
 are in contact, and backtracking on the residual only slows it. But the first steps of a solve are shortened where
-they would drive open skin deep through the screen, of which the tangent knows nothing. A factorisation serves as
-long as the residual falls to half an iteration.
+they would drive open skin deep through the screen, of which the tangent knows nothing, and any step is halved that
+would turn elements inside out or send the residual up tenfold. A factorisation serves as long as the residual falls
+to half an iteration; a step it proposes is refused when the residual would rise, and made anew with the tangent of
+the present iterate. The first tangent of a load is always that of the state it starts from.
 
 Where the iteration does not get ahead, points on the friction cone are first taken for slipping instead of
 sticking, or the other way round; or, if the caller asks for it, a part of the skin is taken to be about to jump on
@@ -46,6 +48,8 @@ _PATIENCE = 4  # iterations in which the least residual must fall
 _CONTRACTS = 0.5  # reduction of the residual an iteration below which a factorisation is kept
 _DEEPEST = 1e-6  # m, how deep open skin may be driven by one of the first steps
 _LIMITED_STEPS = 6
+_HALVINGS = 5  # of a step that would turn elements inside out or
+_GROWS = 10.0  # make the residual grow more than this
 _SHIFT = 2e9  # Pa/m, eta at the start
 _SHIFT_FALL, _SHIFT_RISE = 0.4, 4.0  # of eta an iteration
 _REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
@@ -120,6 +124,9 @@ class Solver:
         self._inverted = self._shifted = False
         self._control_rows = False
         self._stale = True  # whether the factorisation must be made anew before it is used
+        self._kept = False  # whether the present iteration uses a factorisation made before it
+        self._refused = False  # whether the present iteration stayed where it was
+        self._ahead = False  # whether the residual of the next iterate is known
         self._norms: list[float] = []
         self._stiffness = 1e5  # Pa: what a prescribed row's metre is worth in N/m
         self._nodal = np.zeros_like(problem.u.x.array)
@@ -127,7 +134,7 @@ class Solver:
         self._skin = 2 * nodes + 1  # vertical displacements of the skin that can touch
         self._skin_height = problem.V.tabulate_dof_coordinates()[nodes, 1]
         self.x = self.layout.create_vector()
-        self._f = self.layout.create_vector()
+        self._f, self._next_x, self._next_f = (self.layout.create_vector() for _ in range(3))
         self._A = self.layout.create_matrix()
         self._snes = self._create_snes(force_scale * tolerance)
 
@@ -157,6 +164,10 @@ class Solver:
         return rows, values
 
     def _residual(self, snes: PETSc.SNES | None, x: PETSc.Vec, f: PETSc.Vec) -> None:
+        if self._ahead:  # the step's length was found with it
+            self._ahead = False
+            self._next_f.copy(f)
+            return
         with self.timings.phase("assembly"):
             self.layout.to_nodes(x, self.problem.u.x.array)
             self._nodal[:] = 0.0
@@ -176,7 +187,8 @@ class Solver:
             f.array_w[local] = self._stiffness * (x.array_r[local] - values)
 
     def _jacobian(self, snes: PETSc.SNES | None, x: PETSc.Vec, A: PETSc.Mat, P: PETSc.Mat) -> None:
-        if not (self._stale or self._shifted):
+        self._kept = not (self._stale or self._shifted)
+        if self._kept:
             return
         with self.timings.phase("assembly"):
             A.zeroEntries()
@@ -191,10 +203,12 @@ class Solver:
         reason, eta = PETSc.SNES.ConvergedReason, self.problem.eta
         _, atol, _, most = snes.getTolerances()
         if iteration == 0:
-            self._norms = []
+            self._norms, self._refused = [], False
             eta.value = _SHIFT if self._shifted else 0.0
         previous = self._norms[-1] if self._norms else np.inf
-        self._norms.append(norm := norms[2])
+        norm = norms[2]
+        if not self._refused:
+            self._norms.append(norm)
         if norm <= atol:
             return reason.CONVERGED_FNORM_ABS
         if norm >= _OUTSIDE / 2:
@@ -202,7 +216,7 @@ class Solver:
         if iteration >= most:
             return reason.DIVERGED_MAX_IT
         if iteration > 0:
-            self._stale = norm > _CONTRACTS * previous
+            self._stale = self._refused or norm > _CONTRACTS * previous
         if self._shifted and iteration > 0:
             eta.value *= min(norm / previous, _SHIFT_RISE) if norm > previous else _SHIFT_FALL
         # The first norm is left out: it may hold a prescribed displacement not yet made.
@@ -212,21 +226,44 @@ class Solver:
         return reason.ITERATING
 
     def _limit(self, x: PETSc.Vec, step: PETSc.Vec) -> bool:
-        """Shorten a step that would drive open skin deep through the screen, of which its tangent knows nothing."""
-        if len(self._norms) > _LIMITED_STEPS:
-            return False
+        """Shorten a step where its tangent knows nothing of what it would lead to."""
+        if len(self._norms) <= _LIMITED_STEPS:
+            step.scale(self._until_deep(x, step))
+        norm = self._look_ahead(x, step)
+        for _ in range(_HALVINGS):
+            if norm < _GROWS * max(self._norms):
+                break
+            step.scale(0.5)
+            norm = self._look_ahead(x, step)
+        self._refused = self._kept and len(self._norms) > 1 and norm > self._norms[-1]
+        if self._refused:
+            step.set(0.0)
+            self._look_ahead(x, step)
+        self._ahead = True
+        return True
+
+    def _look_ahead(self, x: PETSc.Vec, step: PETSc.Vec) -> float:
+        """Evaluate the residual where a step leads, and return its norm."""
+        self._next_x.waxpy(-1.0, step, x)
+        self._residual(None, self._next_x, self._next_f)
+        return float(self._next_f.norm())
+
+    def _until_deep(self, x: PETSc.Vec, step: PETSc.Vec) -> float:
+        """Return the part of a step that drives open skin at most a little through the screen."""
         self.layout.to_nodes(x, self._nodal)
         height = self._skin_height + self._nodal[self._skin]
         self.layout.to_nodes(step, self._nodal)
         sink = self._nodal[self._skin]  # PETSc subtracts the step
         deep = (height > 0) & (height - sink < -_DEEPEST)
         part = float(np.min((height[deep] + _DEEPEST) / sink[deep], initial=1.0))
-        part = float(self.layout.comm.allreduce(part, op=MPI.MIN))
-        if part < 1:
-            step.scale(part)
-        return part < 1
+        return float(self.layout.comm.allreduce(part, op=MPI.MIN))
 
     # -- use -------------------------------------------------------------------------------------------
+    def new_load(self, control: Control, voltage: float) -> None:
+        """Prescribe a load; the next solve starts from the tangent of the present state, not from a kept one."""
+        self.control, self.problem.voltage.value = control, voltage
+        self._stale = True
+
     def solve(self, creep: bool = False) -> None:
         """Find the equilibrium near ``x`` for the current loads and leave it in ``x`` and the problem's u.
 
@@ -264,6 +301,7 @@ class Solver:
         self._stale |= shifted
         self.problem.eta.value = 0.0
         reason = int(self._snes.getConvergedReason())
+        self._ahead = False
         if reason <= 0:  # nodes and reaction are those of a rejected iterate
             self._residual(None, self.x, self._f)
         return reason
