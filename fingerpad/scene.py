@@ -16,7 +16,11 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from fingerpad.sentences import first_error, qualify, show
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
+from variational.augmented import AugmentedLagrangian
+from variational.contact import Formulation
 from variational.electroadhesion import insulator_thickness
+from variational.nitsche import Nitsche
+from variational.penalty import Penalty
 from variational.roughness.bam import BearingArea
 
 Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
@@ -160,15 +164,62 @@ class Roughness(_Part):
 
 
 class Contact(_Part):
-    """Numerical stiffness of the contact, and what is called contact."""
+    """How contact and friction are discretised, and what is called contact.
 
+    A formulation reads the keys of its own; to give it another's is refused.
+    """
+
+    formulation: Literal["penalty", "nitsche", "augmented"] = "penalty"
+    """Springs of the screen, Nitsche's method, or an augmented Lagrangian; see :mod:`variational.contact`."""
     eps_n: Positive = 1.5e12
-    """Normal penalty stiffness (Pa/m of reference area). *Assumption*: penetration stays below a tenth of d_eq."""
+    """Normal stiffness of the penalty and the augmented Lagrangian (Pa/m of reference area). *Assumption*: penetration
+    stays below a tenth of d_eq. The augmented Lagrangian's default is ten times as stiff, for fewer sweeps."""
     eps_t: Positive = 5e10
-    """Tangential penalty stiffness (Pa/m of reference area) (*assumption*)."""
+    """Tangential stiffness of the two (Pa/m of reference area) (*assumption*); the augmented Lagrangian's likewise."""
+    tolerance: Positive = 5e-9
+    """Penetration and elastic slip that the augmented Lagrangian leaves (m): a three-hundredth of the smallest d_eq."""
+    gamma_0: Positive = 10.0
+    """Nitsche's stiffness over the skin's constrained modulus per facet length."""
+    theta: Literal[-1, 0, 1] = 0
+    """Nitsche's variant; 1 and -1 compile for longer, and 1 needs a larger gamma_0."""
     length: Literal["pressure", "gap"] = "pressure"
     """What counts as ridge length L_R in Eq. 4: where there is contact pressure, or where the gap is below d_eq.
     *Assumption*: the former; the domain printed in Eq. 4 is the whole boundary."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _complete(cls, data: Any) -> Any:
+        stiff = isinstance(data, dict) and data.get("formulation") == "augmented"
+        return {"eps_n": 1.5e13, "eps_t": 5e11} | data if stiff else data
+
+    @model_validator(mode="after")
+    def _own_keys(self) -> "Contact":
+        for name in self.unread():
+            if name in self.model_fields_set:
+                raise ValueError(
+                    f"{name} is {show(getattr(self, name))} and formulation is {show(self.formulation)}, "
+                    "which does not read it"
+                )
+        return self
+
+    def unread(self) -> set[str]:
+        """Return the keys that the formulation does not read."""
+        return set().union(*_FORMULATION_KEYS.values()) - _FORMULATION_KEYS[self.formulation]
+
+    def law(self) -> Formulation:
+        """Return the formulation with its parameters."""
+        if self.formulation == "nitsche":
+            return Nitsche(self.gamma_0, self.theta)
+        if self.formulation == "augmented":
+            return AugmentedLagrangian(self.eps_n, self.eps_t, self.tolerance)
+        return Penalty(self.eps_n, self.eps_t)
+
+
+_FORMULATION_KEYS = {
+    "penalty": {"eps_n", "eps_t"},
+    "nitsche": {"gamma_0", "theta"},
+    "augmented": {"eps_n", "eps_t", "tolerance"},
+}
 
 
 class Numerics(_Part):
@@ -254,8 +305,8 @@ class Scene(_Part):
 
     def parameters(self) -> dict[str, Any]:
         """Return every parameter in use, ready for JSON; as a scene it gives the same run again."""
-        unused = {"history"} if self.history is None else set(_DEFAULT_HISTORY)
-        return self.model_dump(mode="json", exclude=unused)
+        unused: dict[str, Any] = {name: True for name in (("history",) if self.history is None else _DEFAULT_HISTORY)}
+        return self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
 
 
 _DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")

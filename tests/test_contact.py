@@ -12,7 +12,9 @@ from scipy.optimize import brentq
 from geometry import tags
 from geometry.benchmarks import block, ridge
 from geometry.mesh import load
-from variational import penalty
+from variational import contact
+from variational.contact import History
+from variational.penalty import Penalty
 from variational.problem import Interface, Ogden, Problem
 from variational.quantities import Observer
 from variational.solver import Control, Solver
@@ -31,7 +33,7 @@ def make(body, mu_f=0.0, eps_n=EPS_N, eps_t=EPS_T, held=True) -> Solver:
     """Return a solver for a body; with ``held`` its sides do not move sideways."""
     surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
     skin = {tags.STRATUM_CORNEUM: Ogden(G_0, ALPHA, NU)}
-    problem = Problem(body.mesh, body.cell_tags, surface, skin, Interface(eps_n, eps_t, mu_f, H_0))
+    problem = Problem(body.mesh, body.cell_tags, surface, skin, Interface(Penalty(eps_n, eps_t), mu_f, H_0))
     problem.set_air_gaps(np.array([D_EQ]))
     sides = fem.locate_dofs_topological(problem.V, 1, body.facet_tags.find(tags.SIDES))
     fixed = [(2 * sides, 0.0)] if held else []
@@ -61,9 +63,9 @@ def uniform_pressure(depth: float, p_el: float = 0.0) -> float:
 
 
 @pytest.mark.parametrize(("gap", "pressure"), [(1e-6, 0.0), (0.0, 0.0), (-1e-9, 1.5e3), (-1e-7, 1.5e5)])
-def test_penalty(gap, pressure):
+def test_pressure(gap, pressure):
     """Pressure is the stiffness times the depth, and never negative. Tolerance: roundoff."""
-    assert float(penalty.pressure(ufl.as_ufl(gap), EPS_N)) == pytest.approx(pressure, rel=1e-14)
+    assert float(contact.pressure(ufl.as_ufl(gap), EPS_N)) == pytest.approx(pressure, rel=1e-14)
 
 
 # -- patch test ----------------------------------------------------------------------------------------
@@ -182,7 +184,7 @@ def slide():
     """
     body = load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.125e-3))
     solver = make(body, MU_F, eps_n=1e11, eps_t=1e10, held=False)
-    observer, surface = Observer(solver.problem), solver.problem.surface
+    observer = Observer(solver.problem)
     states = []
 
     def step(control: Control):
@@ -190,7 +192,7 @@ def slide():
         solver.solve()
         state = observer.state()
         states.append((control, state, observer.ridge_loads(state), solver.reaction.copy(), observer.slip(state)))
-        surface.set_history(solver.problem.anchor, state.anchor)
+        solver.problem.set_history(History(state.anchor, state.p_n, state.x))
 
     step(Control(0.0, -0.001 * HEIGHT))
     step(Control(0.0, None, 2.0))

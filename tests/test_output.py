@@ -12,6 +12,7 @@ from mpi4py import MPI
 from variational import compat, kinematics, ogden, saint_venant, stress
 from variational.cellwise import Cellwise
 from variational.output import Fields, gather_mesh, sed_per_cell
+from variational.penalty import Penalty
 from variational.problem import Interface, Ogden, Problem, SaintVenant
 from variational.receptors import Receptors
 from variational.surface import Surface
@@ -35,7 +36,7 @@ def block(comm: MPI.Comm = MPI.COMM_WORLD) -> Problem:
     # The lower facets in the middle: corner cells would have two facets on the surface.
     low = dolfinx.mesh.locate_entities_boundary(mesh, 1, lambda x: np.isclose(x[1], 0) & (np.abs(x[0] - 5e-4) < 4e-4))
     facet_tags = dolfinx.mesh.meshtags(mesh, 1, np.sort(low), np.full(len(low), 7, dtype=np.int32))
-    interface = Interface(eps_n=1e12, eps_t=1e11, mu_f=0.25, h_0=0.5e-6)
+    interface = Interface(Penalty(eps_n=1e12, eps_t=1e11), mu_f=0.25, h_0=0.5e-6)
     return Problem(mesh, cell_tags, Surface(mesh, facet_tags, {0: 7}), SOLIDS, interface)
 
 

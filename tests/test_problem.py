@@ -13,12 +13,14 @@ from geometry import tags
 from geometry.benchmarks import block, ridge
 from geometry.mesh import load
 from variational import electroadhesion, kinematics
+from variational.penalty import Penalty
 from variational.problem import Interface, Ogden, Problem, SaintVenant
 from variational.surface import Surface
 
 SKIN, FAT, NAIL = Ogden(86.76e3, -14.53, 0.48), Ogden(25e3, 5.0, 0.48), SaintVenant(170e6, 0.3)
 H_0, D_EQ, VOLTAGE = 0.514e-6, 2e-6, 200.0
 EPS_0 = 8.854e-12
+EPS_N, EPS_T = 1e12, 1e11
 STEPS = 0.5 ** np.arange(5)
 NEAR = 1e-9  # m, size of the perturbations: small against the micrometres over which the laws change
 
@@ -26,7 +28,7 @@ NEAR = 1e-9  # m, size of the perturbations: small against the micrometres over 
 def make(body, mu_f=0.25, solid=SKIN, degree=2) -> Problem:
     """Return a problem on a block, its gaps at D_EQ."""
     surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
-    interface = Interface(eps_n=1e12, eps_t=1e11, mu_f=mu_f, h_0=H_0)
+    interface = Interface(Penalty(EPS_N, EPS_T), mu_f, H_0)
     problem = Problem(body.mesh, body.cell_tags, surface, {tags.STRATUM_CORNEUM: solid}, interface, degree)
     problem.set_air_gaps(np.array([D_EQ]))
     return problem
@@ -46,8 +48,8 @@ def wave(problem, lowest=-1.5e-6, height=6e-6):
 
 def anchor_apart(problem):
     """Of the points of a facet, let one stick and one slip either way; none is where its spring is slack."""
-    u_x, p_n = problem.surface.evaluate(problem.surface.compile([problem.u[0], problem.p_n]))
-    reach = problem.interface.mu_f * p_n / problem.interface.eps_t
+    u_x, p_n = problem.surface.evaluate(problem.surface.compile([problem.u[0], problem.contact.p_n]))
+    reach = problem.interface.mu_f * p_n / EPS_T
     pull = np.array([0.6, 1.7, -0.6, -1.7])
     problem.surface.set_history(problem.anchor, u_x + np.where(reach > 0, pull * reach, 1e-7))
 
@@ -76,12 +78,12 @@ def dense(A):
 def distance_to_kinks(problem):
     """Return how far the nearest point is from touching, from d_eq and from its cone's edge (m of displacement)."""
     y, p_n, u_x, anchor = problem.surface.evaluate(
-        problem.surface.compile([problem.y, problem.p_n, problem.u[0], problem.anchor])
+        problem.surface.compile([problem.y, problem.contact.p_n, problem.u[0], problem.anchor])
     )
     law = problem.interface
     apart = [np.abs(y), np.abs(y - D_EQ)]
     if law.mu_f > 0:
-        cone = np.abs(np.abs(u_x - anchor) - law.mu_f * p_n / law.eps_t) / (1 + law.mu_f * law.eps_n / law.eps_t)
+        cone = np.abs(np.abs(u_x - anchor) - law.mu_f * p_n / EPS_T) / (1 + law.mu_f * EPS_N / EPS_T)
         apart.append(cone)
     return min(float(a.min()) for a in apart)
 
@@ -130,7 +132,9 @@ def test_jacobian_sees_every_law(square):
     problem.voltage.value = VOLTAGE
     wave(problem)
     anchor_apart(problem)
-    y, p_n, t_t = problem.surface.evaluate(problem.surface.compile([problem.y, problem.p_n, problem.t_t]))
+    y, p_n, t_t = problem.surface.evaluate(
+        problem.surface.compile([problem.y, problem.contact.p_n, problem.contact.t_t])
+    )
     share = np.divide(t_t, 0.25 * p_n, out=np.zeros_like(t_t), where=p_n > 0)
     assert (share > 0.99).any()
     assert (share < -0.99).any()
@@ -170,7 +174,7 @@ def test_contact_is_no_part_of_the_energy(square):
     wave(problem)
     anchor_apart(problem)
     v = ufl.TestFunction(problem.V)
-    work = fem.form(ufl.dot(ufl.as_vector([problem.t_t, problem.p_n]), v) * problem.surface.measure)
+    work = fem.form(ufl.dot(ufl.as_vector([problem.contact.t_t, problem.contact.p_n]), v) * problem.surface.measure)
     whole, contact = residual(problem), fem.assemble_vector(work).array
     move = direction(problem, 1e-10)
     at = problem.u.x.array.copy()
@@ -214,7 +218,7 @@ def test_jacobian_of_slipping_points_is_not_symmetric(square):
 
 def make_like(body, problem, mu_f):
     """Return the problem at the same state with another friction coefficient."""
-    interface = Interface(problem.interface.eps_n, problem.interface.eps_t, mu_f, H_0)
+    interface = Interface(problem.interface.formulation, mu_f, H_0)
     other = Problem(body.mesh, body.cell_tags, problem.surface, {tags.STRATUM_CORNEUM: SKIN}, interface)
     other.u.x.array[:] = problem.u.x.array
     return other

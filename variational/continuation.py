@@ -1,7 +1,7 @@
 """From load to load: adaptive steps with cutback, first touch, snap-off, and accepted states.
 
-History (friction anchors, air gaps, displacement) is written in :meth:`Continuation._accept` and nowhere else;
-a rejected attempt restores the last accepted state.
+History (friction anchors, contact multipliers, air gaps, displacement) is accepted in :meth:`Continuation._accept`
+and nowhere else; a rejected attempt restores the last accepted state.
 """
 
 from collections.abc import Callable
@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from variational.contact import History
 from variational.coupling import Coupling
 from variational.solver import Control, NotConverged
 
@@ -60,7 +61,7 @@ class Attempt:
 class _Accepted:
     x: Array
     u: Array
-    anchor: Array
+    history: History
     d_eq: Array
     control: Control
     voltage: float
@@ -94,7 +95,6 @@ class Continuation:
         self.steps = 0
         self.surface_state = self.observer.state()
         self.slip = (0.0, False)
-        self._history = self.surface_state.anchor
         self._now = self._snapshot()
 
     # -- accepted states -------------------------------------------------------------------------------
@@ -102,7 +102,7 @@ class Continuation:
         return _Accepted(
             self.solver.x.array_r.copy(),
             self.problem.u.x.array.copy(),
-            self._history.copy(),
+            self.problem.history,
             self.coupling.d_eq.copy(),
             replace(self.solver.control),
             float(self.problem.voltage.value),
@@ -113,14 +113,15 @@ class Continuation:
         self.solver.x.array_w[:] = a.x
         self.problem.u.x.array[:] = a.u
         self.coupling.set_air_gaps(a.d_eq.copy())
+        self.problem.set_history(a.history)
         self.solver.control = replace(a.control)
         self.problem.voltage.value = a.voltage
 
     def _accept(self) -> None:
         self.surface_state = self.observer.state()
         self.slip = self.observer.slip(self.surface_state)
-        self._history = self.surface_state.anchor
-        self.problem.surface.set_history(self.problem.anchor, self._history)
+        s = self.surface_state
+        self.problem.set_history(History(s.anchor, s.p_n, s.x))
         self._now = self._snapshot()
         self.steps += 1
 

@@ -6,6 +6,9 @@ ridge by itself (Aitken; ridges hardly feel each other's air gap): it needs fewe
 contracts. A gain of one is the ridge's fold: past it the loop leaves, in the direction of r, for another state
 of the ridge, off the screen or fully on it, and the step is made as long as for a gain just below one.
 
+A formulation of contact whose history is corrected after each solve, the augmented Lagrangian, shares the loop: a
+sweep corrects air gaps and multipliers, and the loop ends when both agree.
+
 The tangent of the macroscale is that of frozen air gaps. When a later sweep of a load that was in equilibrium
 fails, it is because a ridge jumps, and the solver may creep at once.
 """
@@ -13,9 +16,10 @@ fails, it is because a ridge jumps, and the solver may creep at once.
 from dataclasses import dataclass, field
 
 import numpy as np
+from mpi4py import MPI
 from numpy.typing import NDArray
 
-from variational.quantities import Observer
+from variational.quantities import Observer, SurfaceState
 from variational.roughness.closure import Closure
 from variational.solver import NotConverged, Solver
 
@@ -31,6 +35,8 @@ class CouplingHistory:
     """Largest |closure(p_c) - d_eq| / d_eq of each sweep."""
     ridges: list[int] = field(default_factory=list)
     """Number of the ridge it belongs to."""
+    errors: list[float] = field(default_factory=list)
+    """Largest error of the contact's conditions in each sweep (m), zero where there is nothing to correct."""
 
 
 class Coupling:
@@ -70,38 +76,50 @@ class Coupling:
         self.d_eq = d_eq
         self.solver.problem.set_air_gaps(d_eq)
 
-    def _sweep(self, creep: bool) -> Array:
-        """Solve at the current air gaps and return what the closure makes of the pressures (m)."""
+    def _sweep(self, creep: bool) -> tuple[Array, SurfaceState]:
+        """Solve at the current air gaps; return what the closure makes of the pressures (m), and the surface."""
         self.solver.solve(creep)
         with self.solver.timings.phase("coupling"):
-            return self.closure(self.observer.ridge_loads(by_gap=self.by_gap).p_c).d_eq
+            state = self.observer.state()
+            return self.closure(self.observer.ridge_loads(state, self.by_gap).p_c).d_eq, state
 
     def solve(self, creep: bool = False) -> None:
-        """Find the state in which air gaps and pressures agree.
+        """Find the state in which air gaps and pressures agree, and the contact's conditions hold.
 
         Args:
             creep: see :meth:`variational.solver.Solver.solve`.
 
         Raises:
-            NotConverged: the macroscale's, or ``COUPLING_CAP`` with the ridge that moved most.
+            NotConverged: the macroscale's, or ``COUPLING_CAP`` with the ridge that moved most or the contact's error.
         """
         self.history = CouplingHistory()
         self.set_air_gaps(self.d_eq)
-        if float(self.solver.problem.voltage.value) == 0.0:
-            self.set_air_gaps(self._sweep(creep))  # no attraction: the air gaps do not act
-            return
+        problem = self.solver.problem
+        formulation, charged = problem.interface.formulation, float(problem.voltage.value) != 0.0
         previous: tuple[Array, Array] | None = None
-        for _ in range(self.cap):
+        for sweep in range(self.cap):
             d = self.d_eq
-            r = self._sweep(creep or previous is not None) - d
+            found, state = self._sweep(creep or sweep > 0)
+            r = found - d if charged else np.zeros_like(d)  # without attraction the air gaps do not act
+            error = formulation.error(state, problem.history, problem.interface.mu_f)
+            self.history.errors.append(problem.mesh.comm.allreduce(error, op=MPI.MAX))
             worst = int(np.argmax(np.abs(r) / d))
             self.history.changes.append(float(np.abs(r[worst]) / d[worst]))
             self.history.ridges.append(self.observer.surface.names[worst])
-            if self.history.changes[-1] <= self.tolerance:
+            scales = self.history.changes[-1] <= self.tolerance
+            contact = self.history.errors[-1] <= formulation.tolerance
+            if scales and contact:
+                if not charged:
+                    self.set_air_gaps(found)
                 return
-            self.set_air_gaps(d + self._step(d, r, previous))
-            previous = d, r
-        raise NotConverged(f"COUPLING_CAP at ridge {self.history.ridges[-1]}", False)
+            if not contact:
+                problem.correct_history(formulation.corrected(state, problem.history))
+            if not scales:
+                self.set_air_gaps(d + self._step(d, r, previous))
+                previous = d, r
+        ridge, error = self.history.ridges[-1], self.history.errors[-1]
+        where = f"a contact error of {error:.2g} m" if scales else f"ridge {ridge}"
+        raise NotConverged(f"COUPLING_CAP at {where}", False)
 
     @staticmethod
     def _step(d: Array, r: Array, previous: tuple[Array, Array] | None) -> Array:

@@ -7,7 +7,7 @@ import dolfinx.jit
 from mpi4py import MPI
 
 OPTIONS = {"timeout": 120}  # s; the default of 10 s is too short for large Jacobians on a busy machine
-_DEAD = 60.0  # s after which an unfinished compile is taken for killed; the longest here takes some seconds
+_DEAD = 180.0  # s after which an unfinished compile is taken for killed; the longest here takes half a minute
 
 
 def sweep(comm: MPI.Comm) -> None:

@@ -1,15 +1,24 @@
-r"""Unilateral contact with the rigid screen y = 0 by a penalty.
+r"""Contact as springs of the screen, a penalty.
 
-.. math:: p_n = \epsilon_n \langle -g_n \rangle_+
+.. math:: \lambda_n = \lambda_t = 0, \qquad \gamma_n = \epsilon_n, \quad \gamma_t = \epsilon_t
 
-per reference area, with the normal gap g_n = current height (Wriggers, Computational Contact Mechanics,
-2nd ed., ch. 6). The virtual work of the contact on the skin is :math:`\int p_n v_y \,dS`; its derivative is
-symmetric.
+in :mod:`~variational.contact`: :math:`p_n = \epsilon_n \langle -y \rangle_+` (Wriggers, Computational Contact
+Mechanics, 2nd ed., ch. 6). The skin sinks by :math:`p_n / \epsilon_n`, and what sticks yields by
+:math:`t_t / \epsilon_t`; without friction the tangent is symmetric.
 """
 
-import ufl
+from dataclasses import dataclass
+
+from variational.contact import Formulation, Skin, Springs
 
 
-def pressure(g_n, eps_n):
-    """Return the contact pressure p_n >= 0 (Pa of reference area) for a gap (m) and a stiffness (Pa/m)."""
-    return ufl.conditional(ufl.lt(g_n, 0.0), -eps_n * g_n, 0.0)
+@dataclass(frozen=True)
+class Penalty(Formulation):
+    """Stiffness of the screen, normal and tangential (Pa/m of reference area)."""
+
+    eps_n: float
+    eps_t: float
+
+    def springs(self, skin: Skin) -> Springs:
+        """Return springs that nothing preloads."""
+        return Springs(0.0, 0.0, skin.constant(self.eps_n), skin.constant(self.eps_t))

@@ -5,8 +5,9 @@ Find u, equal to the bone's translation on its rim, with for all v alike
 .. math:: \int P(F) : \nabla v \,dX - \int p_n v_y \,dS - \int t_t v_x \,dS
           - \int p_{el}\, \mathrm{cof} F N \cdot v \,dS + f_{ext} v_y^{bone} = 0
 
-P = dW/dF: :mod:`~variational.ogden`, :mod:`~variational.saint_venant`; p_n: :mod:`~variational.penalty`; t_t:
-:mod:`~variational.friction`; p_el: :mod:`~variational.electroadhesion`, written as the derivative of its potential.
+P = dW/dF: :mod:`~variational.ogden`, :mod:`~variational.saint_venant`; p_n and t_t: :mod:`~variational.contact` in one
+of the formulations :mod:`~variational.penalty`, :mod:`~variational.nitsche` (with terms of its own) and
+:mod:`~variational.augmented`; p_el: :mod:`~variational.electroadhesion`, written as the derivative of its potential.
 Friction makes the derivative unsymmetric. The derivative may carry a shift :math:`\int \eta\, du \cdot v \,dS`, which
 is no part of the equations but of pseudo-transient continuation (:mod:`~variational.solver`). This module adds up
 forms and never solves.
@@ -14,13 +15,15 @@ forms and never solves.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 
 import dolfinx
 import numpy as np
 import ufl
 from dolfinx import fem
 
-from variational import electroadhesion, friction, jit, kinematics, ogden, penalty, saint_venant, stress
+from variational import electroadhesion, jit, kinematics, ogden, saint_venant, stress
+from variational.contact import Contact, Formulation, History, Skin
 from variational.surface import Surface
 
 STICKS, SLIPS = 1e-9, -1e-9  # first guesses for points on the friction cone
@@ -35,6 +38,11 @@ class Ogden:
     poisson: float
     convention: str = "printed"
 
+    @property
+    def constrained_modulus(self) -> float:
+        """Stress over strain where the strain is confined to one direction, K + 4 G_0 / 3 (Pa), unloaded."""
+        return ogden.bulk_modulus(self.shear_modulus, self.poisson) + 4 * self.shear_modulus / 3
+
 
 @dataclass(frozen=True)
 class SaintVenant:
@@ -43,15 +51,19 @@ class SaintVenant:
     young: float
     poisson: float
 
+    @property
+    def constrained_modulus(self) -> float:
+        """Stress over strain where the strain is confined to one direction, lambda + 2 mu (Pa), unloaded."""
+        lame, shear = saint_venant.lame_constants(self.young, self.poisson)
+        return lame + 2 * shear
+
 
 @dataclass(frozen=True)
 class Interface:
     """Laws of the contact with the screen."""
 
-    eps_n: float
-    """Normal penalty stiffness (Pa/m of reference area)."""
-    eps_t: float
-    """Tangential penalty stiffness (Pa/m)."""
+    formulation: Formulation
+    """How contact and friction enter the weak form."""
     mu_f: float
     """Friction coefficient."""
     h_0: float
@@ -67,6 +79,9 @@ class Problem:
         guess: constant, what points on the friction cone are first taken for: STICKS or SLIPS.
         d_eq: equivalent air gap (m), one value a cell, read on the ridges.
         anchor: accepted friction history (m), see :mod:`variational.friction`.
+        multiplier: accepted contact pressure (Pa), read by an augmented Lagrangian.
+        history: what the two were last accepted with, and where.
+        contact: the projected tractions.
         residual, jacobian: compiled forms.
     """
 
@@ -94,14 +109,13 @@ class Problem:
         cellwise = fem.functionspace(mesh, ("Discontinuous Lagrange", 0))
         self.u = fem.Function(self.V, name="displacement")
         self.d_eq = fem.Function(cellwise)
-        self.anchor = fem.Function(surface.history_space)
+        self.anchor, self.multiplier = (fem.Function(surface.history_space) for _ in range(2))
 
         def constant(value: float) -> fem.Constant:
             return fem.Constant(mesh, np.float64(value))
 
         self.voltage, self.eta, self.guess = constant(0.0), constant(0.0), constant(STICKS)
         mu_f, h_0 = constant(interface.mu_f), constant(interface.h_0)
-        eps_n, eps_t = constant(interface.eps_n), constant(interface.eps_t)
 
         u, v = self.u, ufl.TestFunction(self.V)
         F = kinematics.deformation_gradient(u)
@@ -114,19 +128,31 @@ class Problem:
             energy += density * dx(tags)
 
         self.y = kinematics.current_height(mesh, u)
-        self.p_n = penalty.pressure(self.y, eps_n)
-        self.t_t = friction.traction(u[0], self.anchor, mu_f * self.p_n, eps_t, self.guess)
-        self.new_anchor = friction.new_anchor(u[0], self.t_t, eps_t)
         self.p_el = electroadhesion.attraction(self.y, self.d_eq, self.voltage, h_0)
-        self.area = kinematics.cofactor(F) * ufl.FacetNormal(mesh)  # current per reference area, a vector
+        normal = ufl.FacetNormal(mesh)
+        self.area = kinematics.cofactor(F) * normal  # current per reference area, a vector
+        skin = Skin(
+            u,
+            self.y,
+            self.anchor,
+            self.multiplier,
+            cache(lambda: stress.first_piola_kirchhoff(self._skin_law(), F) * normal),
+            self.p_el * self.area,
+            lambda: self._skin_stiffness(solids, cellwise),
+            constant,
+        )
+        formulation = interface.formulation
+        self.contact = Contact(skin, formulation.springs(skin), mu_f, self.guess)
         dS = surface.measure
         energy += -electroadhesion.potential(self.y, self.d_eq, self.voltage, h_0) * self.area[1] * dS
-        residual = ufl.derivative(energy, u, v) - ufl.dot(ufl.as_vector([self.t_t, self.p_n]), v) * dS
+        residual = ufl.derivative(energy, u, v) + formulation.virtual_work(skin, self.contact, v) * dS
         du = ufl.TrialFunction(self.V)
         jacobian = ufl.derivative(residual, u, du) + self.eta * ufl.dot(du, v) * dS
         self.energy = fem.form(energy, jit_options=jit.OPTIONS)
         self.residual = fem.form(residual, jit_options=jit.OPTIONS)
         self.jacobian = fem.form(jacobian, jit_options=jit.OPTIONS)
+        nothing = np.zeros((len(surface.pairs), len(surface.weights)))
+        self.history = History(nothing, nothing, surface.evaluate(surface.compile([ufl.SpatialCoordinate(mesh)[0]]))[0])
 
     def _laws(self, solids, cellwise):
         """Yield (tags, law), one kernel a law: parameters are fields with one value a cell."""
@@ -152,6 +178,37 @@ class Problem:
         if stiff:
             lame, shear = (field({tag: pair[k] for tag, pair in stiff.items()}) for k in (0, 1))
             yield tuple(stiff), stress.saint_venant_law(lame, shear)
+
+    def _skin_law(self) -> stress.Law:
+        """Return the one law of the cells behind the touching skin."""
+        cells = self.surface.pairs[:, 0]
+        behind = [tags for tags in self.laws if any(np.isin(self.cell_tags.find(tag), cells).any() for tag in tags)]
+        found = set().union(*self.mesh.comm.allgather(set(behind)))
+        if len(found) != 1:
+            raise ValueError(
+                f"the touching skin has {len(found)} material laws behind it, of the layers {sorted(sum(found, ()))}; "
+                "Nitsche's method takes one"
+            )
+        return self.laws[found.pop()]
+
+    def _skin_stiffness(self, solids: Mapping[int, Ogden | SaintVenant], cellwise: fem.FunctionSpace) -> fem.Function:
+        """Return the constrained modulus behind the touching skin over the facets' lengths (Pa/m), cell by cell."""
+        f = fem.Function(cellwise)
+        for tag, solid in solids.items():
+            f.x.array[self.cell_tags.find(tag)] = solid.constrained_modulus
+        f.x.array[self.surface.pairs[:, 0]] /= self.surface.length
+        f.x.scatter_forward()
+        return f
+
+    def set_history(self, history: History) -> None:
+        """Accept what a step left."""
+        self.history = history
+        self.correct_history(history)
+
+    def correct_history(self, history: History) -> None:
+        """Impose anchors and multipliers that are not accepted yet."""
+        self.surface.set_history(self.anchor, history.anchor)
+        self.surface.set_history(self.multiplier, history.pressure)
 
     def set_air_gaps(self, d_eq: np.ndarray) -> None:
         """Give each ridge its equivalent air gap (m), shape (ridges,)."""

@@ -6,6 +6,7 @@ import numpy as np
 import ufl
 from numpy.typing import NDArray
 
+from variational.friction import CONE_ROUNDOFF
 from variational.problem import Problem
 
 Array = NDArray[np.float64]
@@ -37,6 +38,8 @@ class SurfaceState:
 
     x: Array
     y: Array
+    gap: Array
+    """Augmented gap (m), negative in contact, see :mod:`variational.contact`."""
     anchor: Array
     p_n: Array
     t_t: Array
@@ -52,8 +55,9 @@ class Observer:
         """Compile what is evaluated."""
         self.problem, self.surface = problem, problem.surface
         x = ufl.SpatialCoordinate(problem.mesh)[0] + problem.u[0]
+        c, area = problem.contact, problem.area
         self._compiled = self.surface.compile(
-            [x, problem.y, problem.new_anchor, problem.p_n, problem.t_t, problem.p_el, problem.area[0], problem.area[1]]
+            [x, problem.y, c.gap, c.new_anchor, c.p_n, c.t_t, problem.p_el, area[0], area[1]]
         )
 
     def state(self) -> SurfaceState:
@@ -68,16 +72,16 @@ class Observer:
             by_gap: count as contact what is lower than the ridge's d_eq, not what bears pressure.
         """
         s = state or self.state()
-        level = np.zeros(len(s.y))
+        gap = s.gap
         if by_gap:
-            level = self.problem.d_eq.x.array[self.surface.pairs[:, 0]]
+            gap = s.y - self.problem.d_eq.x.array[self.surface.pairs[:, 0], None]
         integrate = self.surface.per_ridge
         return RidgeLoads(
             f_contact=integrate(s.p_n),
             f_friction=integrate(s.t_t),
             f_attraction=-integrate(s.p_el * s.area_y),
             f_attraction_x=integrate(s.p_el * s.area_x),
-            length=self.surface.sum_over_facets(self.surface.length_below(s.x, s.y, level)),
+            length=self.surface.sum_over_facets(self.surface.closed_length(s.x, s.y, gap)),
         )
 
     def slip(self, state: SurfaceState) -> tuple[float, bool]:
@@ -85,8 +89,8 @@ class Observer:
         mu_f = self.problem.interface.mu_f
         loaded = state.p_n > 0
         # The law gives plus or minus mu_f p_n where it slips; the factor covers roundoff alone.
-        forth = loaded & (state.t_t >= mu_f * state.p_n * (1 - 1e-8))
-        back = loaded & (-state.t_t >= mu_f * state.p_n * (1 - 1e-8))
+        forth = loaded & (state.t_t >= mu_f * state.p_n * (1 - CONE_ROUNDOFF))
+        back = loaded & (-state.t_t >= mu_f * state.p_n * (1 - CONE_ROUNDOFF))
         count = np.array([loaded.sum(), forth.sum(), back.sum()])
         total = np.empty_like(count)
         self.problem.mesh.comm.Allreduce(count, total)

@@ -60,8 +60,13 @@ def saint_venant_sigma_zz(F, lame):
     return lame / 2 * (ufl.inner(F, F) - 2) / ufl.det(F)
 
 
+def first_piola_kirchhoff(law: Law, F):
+    """Return the first Piola-Kirchhoff stress P = dW/dF (Pa), shape (2, 2)."""
+    F = ufl.variable(F)
+    return ufl.diff(law.energy(F), F)
+
+
 def cauchy(law: Law, F):
     """Return the Cauchy stress (Pa), shape (3, 3), z normal to the plane."""
-    F = ufl.variable(F)
-    sigma = ufl.diff(law.energy(F), F) * F.T / ufl.det(F)
+    sigma = first_piola_kirchhoff(law, F) * F.T / ufl.det(F)
     return ufl.as_tensor([[sigma[0, 0], sigma[0, 1], 0], [sigma[1, 0], sigma[1, 1], 0], [0, 0, law.sigma_zz(F)]])

@@ -137,28 +137,29 @@ class Surface:
         self.mesh.comm.Allreduce(mine, total)
         return total
 
-    def length_below(self, x: Array, y: Array, level: Array) -> Array:
-        """Return the current length of each facet that lies below ``level``.
+    def closed_length(self, x: Array, y: Array, gap: Array) -> Array:
+        """Return the current length of each facet over which a gap is negative.
 
-        The facet's current curve is the polynomial through its points; the ends of the part below are its
-        roots, so the length is located inside the facet and converges with the displacement's order.
+        The facet's current curve and the gap are the polynomials through their values at the points; the ends of the
+        closed part are the gap's roots, so the length is located inside the facet and converges with the
+        displacement's order.
 
         Args:
             x: current abscissae at the points (m), shape (facets, points).
             y: current heights at the points (m), likewise.
-            level: height (m) of each facet below which it counts, shape (facets,).
+            gap: likewise.
         """
         lengths = np.zeros(len(x))
-        near = y.min(axis=1, initial=np.inf) - level < 4 * (np.ptp(y, axis=1) if len(y) else 0)
+        near = gap.min(axis=1, initial=np.inf) < 4 * (np.ptp(gap, axis=1) if len(gap) else 0)
         gauss, weights = np.polynomial.legendre.leggauss(6)
         for k in np.flatnonzero(near):
-            height = Polynomial(self._to_powers @ (y[k] - level[k]))
-            slope_x, slope_y = Polynomial(self._to_powers @ x[k]).deriv(), height.deriv()
-            roots = height.roots()
+            opening = Polynomial(self._to_powers @ gap[k])
+            slope_x, slope_y = (Polynomial(self._to_powers @ z[k]).deriv() for z in (x, y))
+            roots = opening.roots()
             inside = np.sort(roots[np.abs(np.imag(roots)) < 1e-12].real)
             cuts = np.concatenate([[0.0], inside[(inside > 0) & (inside < 1)], [1.0]])
             for a, b in zip(cuts, cuts[1:], strict=False):
-                if height((a + b) / 2) < 0:
+                if opening((a + b) / 2) < 0:
                     xi = (a + b) / 2 + (b - a) / 2 * gauss
                     lengths[k] += (b - a) / 2 * float(weights @ np.hypot(slope_x(xi), slope_y(xi)))
         return lengths
