@@ -2,6 +2,7 @@
 
 from functools import partial
 
+import dolfinx
 import numpy as np
 import pytest
 import ufl
@@ -13,6 +14,8 @@ from geometry import tags
 from geometry.benchmarks import block, ridge
 from geometry.mesh import load
 from variational import electroadhesion, kinematics
+from variational.augmented import AugmentedLagrangian
+from variational.nitsche import Nitsche
 from variational.penalty import Penalty
 from variational.problem import Interface, Ogden, Problem, SaintVenant
 from variational.surface import Surface
@@ -21,14 +24,16 @@ SKIN, FAT, NAIL = Ogden(86.76e3, -14.53, 0.48), Ogden(25e3, 5.0, 0.48), SaintVen
 H_0, D_EQ, VOLTAGE = 0.514e-6, 2e-6, 200.0
 EPS_0 = 8.854e-12
 EPS_N, EPS_T = 1e12, 1e11
+FORMULATIONS = [Penalty(EPS_N, EPS_T), AugmentedLagrangian(EPS_N, EPS_T, 1e-9), *(Nitsche(10.0, t) for t in (1, 0, -1))]
+NAMES = ["penalty", "augmented", "nitsche 1", "nitsche 0", "nitsche -1"]
 STEPS = 0.5 ** np.arange(5)
 NEAR = 1e-9  # m, size of the perturbations: small against the micrometres over which the laws change
 
 
-def make(body, mu_f=0.25, solid=SKIN, degree=2) -> Problem:
+def make(body, mu_f=0.25, solid=SKIN, degree=2, formulation=Penalty(EPS_N, EPS_T)) -> Problem:  # noqa: B008
     """Return a problem on a block, its gaps at D_EQ."""
     surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
-    interface = Interface(Penalty(EPS_N, EPS_T), mu_f, H_0)
+    interface = Interface(formulation, mu_f, H_0)
     problem = Problem(body.mesh, body.cell_tags, surface, {tags.STRATUM_CORNEUM: solid}, interface, degree)
     problem.set_air_gaps(np.array([D_EQ]))
     return problem
@@ -48,10 +53,13 @@ def wave(problem, lowest=-1.5e-6, height=6e-6):
 
 def anchor_apart(problem):
     """Of the points of a facet, let one stick and one slip either way; none is where its spring is slack."""
-    u_x, p_n = problem.surface.evaluate(problem.surface.compile([problem.u[0], problem.contact.p_n]))
-    reach = problem.interface.mu_f * p_n / EPS_T
+    c = problem.contact
+    s, p_n, t_t, gamma_t = problem.surface.evaluate(
+        problem.surface.compile([c.new_anchor, c.p_n, c.t_t, c.springs.gamma_t])
+    )
+    reach, slack = problem.interface.mu_f * p_n / gamma_t, s - t_t / gamma_t
     pull = np.array([0.6, 1.7, -0.6, -1.7])
-    problem.surface.set_history(problem.anchor, u_x + np.where(reach > 0, pull * reach, 1e-7))
+    problem.surface.set_history(problem.anchor, slack + np.where(reach > 0, pull * reach, 1e-7))
 
 
 def direction(problem, scale=NEAR):
@@ -152,6 +160,70 @@ def test_jacobian_of_linear_elements(square):
     move = direction(problem)
     assert distance_to_kinks(problem) > np.abs(move).max()
     np.testing.assert_allclose(rates(taylor(problem, move)[0]), 2, atol=0.02)
+
+
+def states(problem):
+    """Tell of each point whether it touches, is above d_eq, sticks or slips which way; shape (4, facets, points)."""
+    c = problem.contact
+    gap, y, p_n, t_t = problem.surface.evaluate(problem.surface.compile([c.gap, problem.y, c.p_n, c.t_t]))
+    cone = problem.interface.mu_f * p_n * (1 - 1e-8)
+    return np.array([gap < 0, y > D_EQ, (p_n > 0) & (t_t >= cone), (p_n > 0) & (-t_t >= cone)])
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS, ids=NAMES)
+def test_jacobian_of_every_formulation(square, formulation):
+    """The same with points of every state, none of which changes it on the way."""
+    problem = make(square, formulation=formulation)
+    problem.voltage.value = VOLTAGE
+    wave(problem)
+    x = problem.surface.evaluate(problem.surface.compile([ufl.SpatialCoordinate(square.mesh)[0]]))[0]
+    problem.surface.set_history(problem.multiplier, 4e5 * (1 + np.cos(9e3 * x)))
+    anchor_apart(problem)
+    at, move, before = problem.u.x.array.copy(), direction(problem), states(problem)
+    open_, above, forth, back = ~before[0], *before[1:]
+    sticks = ~(open_ | forth | back)
+    assert all(some.any() for some in (open_, above, ~above & open_, forth, back, sticks))
+    problem.u.x.array[:] = at + move
+    assert (states(problem) == before).all()
+    problem.u.x.array[:] = at
+    remainders, linear = taylor(problem, move)
+    assert remainders[0] < 1e-2 * linear
+    np.testing.assert_allclose(rates(remainders), 2, atol=0.02)
+
+
+@pytest.mark.parametrize(("theta", "symmetric"), [(1, True), (0, False), (-1, False)])
+def test_symmetry_of_nitsche(square, theta, symmetric):
+    """Without friction and voltage theta = 1, and it alone, derives from a functional. Tolerance: roundoff."""
+    problem = make(square, mu_f=0.0, formulation=Nitsche(10.0, theta))
+    wave(problem)
+    J = dense(jacobian(problem))
+    skew = np.abs(J - J.T).max() / np.abs(J).max()
+    assert skew < 1e-13 if symmetric else skew > 1e-3
+
+
+@pytest.mark.parametrize("theta", [1, 0, -1])
+def test_nitsche_does_no_work_in_a_translation(square, theta):
+    """The residual adds up to contact, friction and attraction, whatever the state. Tolerance: roundoff."""
+    problem = make(square, formulation=Nitsche(10.0, theta))
+    problem.voltage.value = VOLTAGE
+    wave(problem)
+    anchor_apart(problem)
+    c, area = problem.contact, problem.area
+    values = problem.surface.evaluate(problem.surface.compile([c.t_t, c.p_n, problem.p_el * area[1]]))
+    t_t, p_n, p_el = (float(problem.surface.per_ridge(v)[0]) for v in values)
+    x, y = residual(problem).reshape(-1, 2).sum(axis=0)
+    assert x == pytest.approx(-t_t, abs=1e-11 * p_n)
+    assert y == pytest.approx(-p_n - p_el, abs=1e-11 * p_n)
+
+
+def test_nitsche_refuses_skin_of_two_laws(square):
+    """The traction in the skin is that of one law."""
+    cells = np.arange(square.mesh.topology.index_map(2).size_local, dtype=np.int32)
+    middle = dolfinx.mesh.compute_midpoints(square.mesh, 2, cells)[:, 0]
+    cell_tags = dolfinx.mesh.meshtags(square.mesh, 2, cells, np.where(middle < 0, 1, 2).astype(np.int32))
+    surface = Surface(square.mesh, square.facet_tags, {0: tags.ridge(0)})
+    with pytest.raises(ValueError, match=r"has 2 material laws behind it, of the layers \[1, 2\]"):
+        Problem(square.mesh, cell_tags, surface, {1: SKIN, 2: NAIL}, Interface(Nitsche(10.0), 0.0, H_0))
 
 
 def test_energy(square):

@@ -96,12 +96,13 @@ class Coupling:
         self.set_air_gaps(self.d_eq)
         problem = self.solver.problem
         formulation, charged = problem.interface.formulation, float(problem.voltage.value) != 0.0
+        contact_history = problem.history
         previous: tuple[Array, Array] | None = None
         for sweep in range(self.cap):
             d = self.d_eq
             found, state = self._sweep(creep or sweep > 0)
             r = found - d if charged else np.zeros_like(d)  # without attraction the air gaps do not act
-            error = formulation.error(state, problem.history, problem.interface.mu_f)
+            error = formulation.error(state, contact_history, problem.interface.mu_f)
             self.history.errors.append(problem.mesh.comm.allreduce(error, op=MPI.MAX))
             worst = int(np.argmax(np.abs(r) / d))
             self.history.changes.append(float(np.abs(r[worst]) / d[worst]))
@@ -113,7 +114,8 @@ class Coupling:
                     self.set_air_gaps(found)
                 return
             if not contact:
-                problem.correct_history(formulation.corrected(state, problem.history))
+                contact_history = formulation.corrected(state, contact_history)
+                problem.correct_history(contact_history)
             if not scales:
                 self.set_air_gaps(d + self._step(d, r, previous))
                 previous = d, r

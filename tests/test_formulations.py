@@ -1,0 +1,216 @@
+"""Penalty, Nitsche and augmented Lagrangian solve the same contact problems, on any number of ranks."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+from dolfinx import fem
+from mpi4py import MPI
+from scipy.optimize import brentq
+
+from geometry import tags
+from geometry.benchmarks import block, ridge
+from geometry.mesh import load
+from variational.augmented import AugmentedLagrangian
+from variational.continuation import Continuation, StepFailed, Target
+from variational.coupling import Coupling
+from variational.nitsche import Nitsche
+from variational.penalty import Penalty
+from variational.problem import Interface, Ogden, Problem
+from variational.quantities import Observer
+from variational.roughness.bam import BearingArea
+from variational.solver import Solver
+from variational.surface import Surface
+
+pytestmark = pytest.mark.mpi
+WIDTH, HEIGHT = 1e-3, 0.5e-3
+G_0, ALPHA, NU = 86.76e3, -14.53, 0.48
+MU_F, H_0 = 0.25, 0.514e-6
+IMBALANCE = 1e-9  # N/m, at which solves end
+NITSCHE = [Nitsche(10.0, 0), Nitsche(100.0, 1), Nitsche(10.0, -1)]
+
+
+def make(body, formulation, mu_f=0.0, held=True) -> Continuation:
+    """Return a body above the screen; with ``held`` its sides do not move sideways."""
+    surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
+    skin = {tags.STRATUM_CORNEUM: Ogden(G_0, ALPHA, NU)}
+    problem = Problem(body.mesh, body.cell_tags, surface, skin, Interface(formulation, mu_f, H_0))
+    sides = fem.locate_dofs_topological(problem.V, 1, body.facet_tags.find(tags.SIDES))
+    fixed = [(2 * sides, 0.0)] if held else []
+    solver = Solver(problem, body.facet_tags.find(tags.BONE_RIM), 1.0, IMBALANCE, fixed)
+    return Continuation(Coupling(solver, Observer(problem), BearingArea(H_0)))
+
+
+def contact_force(run: Continuation) -> float:
+    """Return the contact force of the accepted state (N/m)."""
+    return float(run.observer.ridge_loads(run.surface_state).f_contact[0])
+
+
+# -- patch test ----------------------------------------------------------------------------------------
+def confined_stress(stretch: float) -> float:
+    """Return dW/dlambda_2 of Eqs. 1 and 2 at stretches (1, stretch, 1): J = stretch, a = -alpha."""
+    a, bulk = -ALPHA, 2 * G_0 * (1 + NU) / (3 * (1 - 2 * NU))
+    powers = 2 * G_0 / (a * stretch) * stretch ** (-a / 3) * (stretch**a - (stretch**a + 2) / 3)
+    return powers + bulk * (stretch - 1)
+
+
+@pytest.mark.parametrize("voltage", [0.0, 200.0])
+@pytest.mark.parametrize("formulation", [*NITSCHE, AugmentedLagrangian(1.5e12, 1e11, 1e-15)], ids=repr)
+def test_patch(formulation, voltage):
+    """A block pressed flat bears confined compression's pressure and the attraction everywhere, without a bias.
+
+    Tolerance: the imbalance at which solves end, 1e-9 N/m on a tenth of a millimetre, is 1e-9 of the pressure.
+    """
+    run = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), formulation)
+    run.run(Target("press", bone_height=-0.02 * HEIGHT))
+    if voltage:
+        run.run(Target("charge", voltage=voltage))
+    np.testing.assert_allclose(run.surface_state.p_n - run.surface_state.p_el, -confined_stress(0.98), rtol=1e-8)
+    assert np.abs(run.surface_state.y).max(initial=0.0) < 1e-13
+
+
+def test_patch_of_the_penalty():
+    """The skin of the penalty sinks by p_n / eps_n, which is missing in the compression, and no more."""
+    eps_n = 1.5e12
+    run = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), Penalty(eps_n, 1e11))
+    run.run(Target("press", bone_height=-0.02 * HEIGHT))
+    p_n = brentq(lambda p: confined_stress(0.98 + p / eps_n / HEIGHT) + p, 0.0, 1e6, xtol=1e-12, rtol=1e-15)
+    np.testing.assert_allclose(run.surface_state.p_n, p_n, rtol=1e-8)
+    np.testing.assert_allclose(run.surface_state.y, -p_n / eps_n, rtol=1e-8)
+
+
+# -- one ridge -----------------------------------------------------------------------------------------
+@pytest.fixture(scope="module")
+def pressed():
+    """Press one ridge by 60 um without friction; the accepted run by formulation."""
+    body = load(MPI.COMM_WORLD, partial(ridge, 20e-6))
+
+    def press(formulation) -> Continuation:
+        run = make(body, formulation)
+        run.run(Target("press", bone_height=-60e-6))
+        return run
+
+    return press
+
+
+@pytest.fixture(scope="module")
+def exact(pressed) -> Continuation:
+    """The ridge without penetration, to a hundredth of a nanometre."""
+    return pressed(AugmentedLagrangian(1.5e13, 5e11, 1e-11))
+
+
+def test_bias_of_the_penalty(pressed, exact):
+    """The force that a penalty misses is inverse to its stiffness.
+
+    Tolerance: the next term, and facets that touch or not; both are as small against the bias as the bias itself.
+    """
+    stiffness = np.array([3e11, 1.5e12, 7.5e12])
+    bias = np.array([contact_force(exact) - contact_force(pressed(Penalty(eps_n, 5e10))) for eps_n in stiffness])
+    np.testing.assert_allclose(np.diff(np.log(bias)) / np.diff(np.log(stiffness)), -1, atol=0.05)
+
+
+@pytest.mark.parametrize("formulation", [*NITSCHE, AugmentedLagrangian(1.5e13, 5e11, 5e-9)], ids=repr)
+def test_force_of_a_ridge(pressed, exact, formulation):
+    """All agree in the force, on facets of 20 um that miss the limit of fine meshes by 4e-3, to a tenth of that."""
+    run = pressed(formulation)
+    assert contact_force(run) == pytest.approx(contact_force(exact), rel=5e-4)
+    assert contact_force(run) == pytest.approx(run.solver.reaction[1], abs=100 * IMBALANCE)
+
+
+def test_augmented_lagrangian_leaves_no_more_than_its_tolerance(pressed):
+    """What bears pressure is on the screen, neither deeper nor higher than the tolerance."""
+    s = pressed(AugmentedLagrangian(1.5e13, 5e11, 5e-9)).surface_state
+    assert np.abs(s.y[s.p_n > 0]).max(initial=0.0) <= 5e-9
+
+
+def test_contact_length(pressed, exact):
+    """Where the trial pressure is positive: the same length to a tenth of a facet, of a dozen in contact."""
+
+    def length(run: Continuation) -> float:
+        return float(run.observer.ridge_loads(run.surface_state).length[0])
+
+    for formulation in (Penalty(7.5e12, 5e10), *NITSCHE):
+        assert length(pressed(formulation)) == pytest.approx(length(exact), abs=2e-6)
+
+
+# -- friction ------------------------------------------------------------------------------------------
+SLIDING = [Penalty(1e11, 1e10), AugmentedLagrangian(1e12, 1e11, 5e-9), *NITSCHE]
+
+
+def slide(comm, formulation) -> list:
+    """Press a block whose sides are free with friction and move it sideways at constant force; states by step."""
+    run = make(load(comm, partial(block, WIDTH, HEIGHT, 0.125e-3)), formulation, MU_F, held=False)
+    steps = []
+    run.on_accept = lambda *_: steps.append((run.surface_state, run.slip, contact_force(run), run.solver.reaction.copy()))
+    run.run(Target("press", f_ext=2.0))
+    for x in (0.2e-6, 1e-6, 4e-6, 16e-6, 64e-6, 128e-6):
+        run.run(Target("slide", bone_x=x))
+    return steps
+
+
+@pytest.fixture(scope="module", params=SLIDING, ids=repr)
+def slid(request):
+    return request.param, slide(MPI.COMM_WORLD, request.param)
+
+
+def test_full_slip_is_the_cone(slid):
+    """At the end every point slips: f_T = mu_f times the contact force. Tolerance: nodal imbalances of the solve."""
+    _, share, f_contact, reaction = slid[1][-1]
+    assert share == (1.0, True)
+    assert f_contact == pytest.approx(2.0, abs=100 * IMBALANCE)
+    assert reaction[0] == pytest.approx(-MU_F * f_contact, abs=100 * IMBALANCE)
+
+
+def test_stick_before_slip(slid):
+    """The first 0.2 um leave points that stick, and bear less friction than the cone."""
+    k = next(k for k, (*_, reaction) in enumerate(slid[1]) if abs(reaction[0]) > 1e-3)
+    _, (share, _), f_contact, reaction = slid[1][k]
+    assert share < 1
+    assert 0 < -reaction[0] < 0.9 * MU_F * f_contact
+
+
+def test_elastic_slip(slid):
+    """Points of the augmented Lagrangian that stick stay where they were accepted, to its tolerance."""
+    formulation, steps = slid
+    if not isinstance(formulation, AugmentedLagrangian):
+        pytest.skip("its springs yield, or it sticks as well as its elements can")
+    for (before, *_), (after, *_) in zip(steps, steps[1:], strict=False):
+        sticks = (after.p_n > 0) & (np.abs(after.t_t) < MU_F * after.p_n * (1 - 1e-8))
+        assert np.abs(after.x - before.x)[sticks].max(initial=0.0) <= formulation.tolerance
+
+
+@pytest.mark.parametrize("formulation", [SLIDING[1], SLIDING[2]], ids=repr)
+def test_ranks(formulation):
+    """Forces by step are those of one rank, to the tolerances of solves and multipliers."""
+    found, alone = (
+        np.array([[f, *r] for *_, f, r in slide(comm, formulation)]) for comm in (MPI.COMM_WORLD, MPI.COMM_SELF)
+    )
+    np.testing.assert_allclose(found, alone, rtol=0, atol=1e-6)
+
+
+# -- history -------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("formulation", SLIDING[:3], ids=repr)
+def test_rejected_attempts_leave_no_trace(formulation):
+    """After steps that were given up, history and what comes next are as without them."""
+    run = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), formulation, MU_F, held=False)
+    run.run(Target("press", bone_height=-2e-6))
+    run.run(Target("slide", bone_x=0.5e-6))
+    anchor, multiplier = run.problem.anchor.x.array.copy(), run.problem.multiplier.x.array.copy()
+    whole, run.coupling.cap = run.coupling.cap, 0
+    solve = run.coupling.solve
+
+    def one_sweep_too_few(creep=False):
+        run.coupling.cap = whole
+        solve(creep)
+        state = run.observer.state()  # as if another sweep were needed, which the cap forbids
+        run.problem.correct_history(replace(run.problem.history, anchor=state.anchor, pressure=2 * state.p_n))
+        run.coupling.cap = 0
+        solve(creep)
+
+    run.coupling.solve = one_sweep_too_few
+    with pytest.raises(StepFailed):
+        run.run(Target("slide", bone_x=1e-6))
+    run.coupling.solve, run.coupling.cap = solve, whole
+    np.testing.assert_array_equal(run.problem.anchor.x.array, anchor)
+    np.testing.assert_array_equal(run.problem.multiplier.x.array, multiplier)
