@@ -10,6 +10,9 @@ import pytest
 
 from fingerpad import scene as scenes
 from fingerpad.scene import Load, Scene, SceneError
+from variational.augmented import AugmentedLagrangian
+from variational.nitsche import Nitsche
+from variational.penalty import Penalty
 
 SCENES = Path(__file__).parent.parent / "demos/scenes"
 
@@ -110,6 +113,24 @@ def test_scene_cannot_be_changed():
         Scene().f_ext = 1.0
 
 
+@pytest.mark.parametrize(
+    ("given", "law"),
+    [
+        ({}, Penalty(1.5e12, 5e10)),
+        ({"formulation": "penalty", "eps_n": 2e12}, Penalty(2e12, 5e10)),
+        ({"formulation": "nitsche"}, Nitsche(10.0, 0)),
+        ({"formulation": "nitsche", "theta": -1, "gamma_0": 3.0}, Nitsche(3.0, -1)),
+        ({"formulation": "augmented"}, AugmentedLagrangian(1.5e13, 5e11, 5e-9)),
+        ({"formulation": "augmented", "eps_t": 1e11}, AugmentedLagrangian(1.5e13, 1e11, 5e-9)),
+    ],
+)
+def test_formulation(given, law):
+    """A name and its own parameters, each with a default that suits it; the parameters in use give it again."""
+    scene = scenes.load(None, {f"contact.{key}": value for key, value in given.items()})
+    assert scene.contact.law() == law
+    assert scenes.from_data(json.loads(json.dumps(scene.parameters()))).contact.law() == law
+
+
 # -- refusals: values ----------------------------------------------------------------------------------
 @pytest.mark.parametrize(
     ("key", "value", "message"),
@@ -151,6 +172,10 @@ def test_scene_cannot_be_changed():
             "roughness.p_floor is 1000000; it must be below the pressure at zero separation, 2.597e+05 Pa",
         ),
         ("contact.eps_n", 0, "contact.eps_n is 0; it must be greater than 0"),
+        (
+            "contact.formulation", "mortar",
+            "contact.formulation is 'mortar'; it must be 'penalty', 'nitsche' or 'augmented'",
+        ),
         ("contact.length", "area", "contact.length is 'area'; it must be 'pressure' or 'gap'"),
         ("numerics.degree", 4, "numerics.degree is 4; it must be at most 3"),
         ("numerics.degree", 1.5, "numerics.degree is 1.5; it must be a whole number"),
@@ -167,6 +192,32 @@ def test_scene_cannot_be_changed():
 )  # fmt: skip
 def test_impossible_value(key, value, message):
     assert refusal(None, **{key.replace(".", "__"): value}) == message
+
+
+@pytest.mark.parametrize(
+    ("formulation", "key", "value", "message"),
+    [
+        (
+            "penalty",
+            "gamma_0",
+            10.0,
+            "contact.gamma_0 is 10 and contact.formulation is 'penalty', which does not read it",
+        ),
+        (
+            "nitsche",
+            "eps_n",
+            1e12,
+            "contact.eps_n is 1e+12 and contact.formulation is 'nitsche', which does not read it",
+        ),
+        ("augmented", "theta", 0, "contact.theta is 0 and contact.formulation is 'augmented', which does not read it"),
+        ("augmented", "tolerance", 0, "contact.tolerance is 0; it must be greater than 0"),
+        ("nitsche", "gamma_0", -1, "contact.gamma_0 is -1; it must be greater than 0"),
+        ("nitsche", "theta", 2, "contact.theta is 2; it must be -1, 0 or 1"),
+    ],
+)
+def test_impossible_formulation(formulation, key, value, message):
+    """A key that would be silently ignored is refused, also where its value is the default."""
+    assert refusal(None, **{"contact__formulation": formulation, f"contact__{key}": value}) == message
 
 
 def test_impossible_geometry_and_mesh():
