@@ -126,3 +126,18 @@ def test_failure_keeps_the_accepted_steps(tmp_path):
     assert "DIVERGED_MAX_IT" in done.stdout
     assert "Traceback" not in done.stderr
     assert json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["failure"]
+
+
+@pytest.mark.parametrize("formulation", ["nitsche", "augmented"])
+def test_other_formulations(tmp_path, formulation):
+    """Pressed lightly and charged, a scene with another formulation balances its forces as the penalty's does."""
+    scene = tmp_path / "scene.toml"
+    loads = '[[history]]\nname = "press"\nf_ext = 0.5\n[[history]]\nname = "charge"\nvoltage = 50.0\n'
+    mesh = COARSE.read_text(encoding="utf-8").partition("[mesh]")
+    scene.write_text(f'{loads}[contact]\nformulation = "{formulation}"\n{mesh[1]}{mesh[2]}', encoding="utf-8")
+    done = run(tmp_path / "out", "--scene", str(scene))
+    assert done.returncode == 0, done.stdout + done.stderr
+    end = steps(tmp_path / "out")[-1]
+    force = float(end["f_contact"]) - float(end["f_electrostatic"])
+    assert float(end["f_electrostatic"]) > 0
+    assert force == pytest.approx(0.5, abs=1e-7)  # some hundred nodal imbalances of 1e-9 of the load
