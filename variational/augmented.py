@@ -18,8 +18,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import ufl
 
-from variational.contact import Formulation, History, Skin, Springs
+from variational.contact import Contact, Formulation, History, Skin, Springs
 from variational.friction import CONE_ROUNDOFF
 
 if TYPE_CHECKING:
@@ -37,6 +38,14 @@ class AugmentedLagrangian(Formulation):
     def springs(self, skin: Skin) -> Springs:
         """Return springs that the multiplier preloads."""
         return Springs(skin.multiplier, 0.0, skin.constant(self.eps_n), skin.constant(self.eps_t))
+
+    def opening(self, skin: Skin, contact: Contact):
+        """Return the gap where it is open, elsewhere the pressure over the skin's own stiffness, negative.
+
+        The augmented gap has a kink at the edge of contact, as sharp as eps_n is stiff, which would spoil the
+        interpolation by which the edge is located in a facet; over the skin's stiffness the two are alike.
+        """
+        return ufl.conditional(ufl.lt(contact.gap, 0.0), -contact.p_n / skin.stiffness(), skin.y)
 
     def error(self, state: "SurfaceState", history: History, mu_f: float) -> float:
         """Return the largest depth, or opening under pressure, and elastic slip at this rank's points (m)."""

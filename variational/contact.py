@@ -116,6 +116,10 @@ class Formulation(ABC):
         """Return the contact's part of the residual (J/m^2 of reference area) for a test function."""
         return -ufl.dot(contact.traction, v)
 
+    def opening(self, skin: Skin, contact: Contact):
+        """Return a length (m), smooth within a facet, that is negative where the augmented gap is."""
+        return contact.gap
+
     def error(self, state: "SurfaceState", history: History, mu_f: float) -> float:
         """Return the largest error (m) at this rank's points that :meth:`corrected` can lower; mostly none."""
         return 0.0

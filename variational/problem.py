@@ -82,6 +82,7 @@ class Problem:
         multiplier: accepted contact pressure (Pa), read by an augmented Lagrangian.
         history: what the two were last accepted with, and where.
         contact: the projected tractions.
+        opening: length (m) that is negative in contact.
         residual, jacobian: compiled forms.
     """
 
@@ -143,6 +144,7 @@ class Problem:
         )
         formulation = interface.formulation
         self.contact = Contact(skin, formulation.springs(skin), mu_f, self.guess)
+        self.opening = formulation.opening(skin, self.contact)
         dS = surface.measure
         energy += -electroadhesion.potential(self.y, self.d_eq, self.voltage, h_0) * self.area[1] * dS
         residual = ufl.derivative(energy, u, v) + formulation.virtual_work(skin, self.contact, v) * dS

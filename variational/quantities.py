@@ -39,7 +39,7 @@ class SurfaceState:
     x: Array
     y: Array
     gap: Array
-    """Augmented gap (m), negative in contact, see :mod:`variational.contact`."""
+    """Length (m) that is negative in contact, see :meth:`variational.contact.Formulation.opening`."""
     anchor: Array
     p_n: Array
     t_t: Array
@@ -57,7 +57,7 @@ class Observer:
         x = ufl.SpatialCoordinate(problem.mesh)[0] + problem.u[0]
         c, area = problem.contact, problem.area
         self._compiled = self.surface.compile(
-            [x, problem.y, c.gap, c.new_anchor, c.p_n, c.t_t, problem.p_el, area[0], area[1]]
+            [x, problem.y, problem.opening, c.new_anchor, c.p_n, c.t_t, problem.p_el, area[0], area[1]]
         )
 
     def state(self) -> SurfaceState:
