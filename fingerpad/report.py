@@ -116,11 +116,12 @@ class Report:
 
     def _print(self, step: Step, done: float) -> None:
         r = step.row
+        released = f"  jump, {r['energy_released']:.2g} J/m released"
         self.say(
             f"{r['step']:4d} {r['load'][:7]:7s} {r['f_ext']:7.3f} {r['voltage']:5.1f} {r['bone_x'] * 1e3:7.4f} "
             f"{r['bone_height'] * 1e3:8.5f} {r['f_t']:8.4f} {r['mu_app']:7.4f} {r['f_electrostatic']:7.3f} "
             f"{r['ridges_in_contact']:6d} {r['contact_length'] * 1e3:8.4f} {r['newton_iterations']:6d} "
-            f"{r['factorisations']:5d}{'  jump' if r['jump'] else ''}"
+            f"{r['factorisations']:5d}{released if r['jump'] else ''}"
         )
         self.log.info("step %s sweeps %s", json.dumps(r), step.attempt.changes)
         for cut in step.attempt.cutbacks:
@@ -189,6 +190,8 @@ class Report:
             "steps": len(rows),
             "jumps": sum(row["jump"] for row in rows),
             "cutbacks": sum(row["cutbacks"] for row in rows),
+            "energy_released": sum(row["energy_released"] for row in rows if row["jump"]),
+            "dissipation": sum(row["dissipation"] for row in rows),
             "memory_mb": peak,
             "ranks": self.comm.size,
             **{f"seconds_{phase}": value for phase, value in seconds.items()},

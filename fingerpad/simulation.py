@@ -13,6 +13,7 @@ from geometry import fingertip, mesh, tags
 from geometry.profiles import Profiles
 from variational.continuation import Attempt, Continuation, StepFailed, Target
 from variational.coupling import Coupling
+from variational.energy import EnergyBook
 from variational.problem import Interface, Ogden, Problem, SaintVenant
 from variational.quantities import Observer, RidgeLoads, SurfaceState
 from variational.solver import Solver
@@ -77,6 +78,7 @@ class Simulation:
             by_gap=contact.length == "gap",
         )
         self.continuation = Continuation(self.coupling, self._accepted)
+        self.energy = EnergyBook(self.problem, *self._state())
         self.unknowns = self.solver.layout.global_size
         self.full_slip = False
         self._load, self._loads_done = "", 0.0
@@ -108,6 +110,10 @@ class Simulation:
         return self.full_slip
 
     # -- reports ---------------------------------------------------------------------------------------
+    def _state(self) -> tuple[SurfaceState, Array, Array, Array]:
+        solver = self.solver
+        return self.continuation.surface_state, solver.bone, solver.reaction, self.coupling.d_eq
+
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
         state = self.continuation.surface_state
         loads = self.observer.ridge_loads(state)
@@ -124,6 +130,7 @@ class Simulation:
     def _row(self, target: Target, loads: RidgeLoads, attempt: Attempt) -> dict[str, Any]:
         bone, reaction = self.solver.bone, self.solver.reaction
         slipping, full = self.continuation.slip
+        energy = self.energy.step(*self._state())
         f_ext, f_t = float(reaction[1]), -float(reaction[0])
         return {
             "step": self.continuation.steps,
@@ -140,6 +147,9 @@ class Simulation:
             "contact_length": float(loads.length.sum()),
             "slipping": slipping,
             "all_slip": full,
+            "stored": energy.stored,
+            "dissipation": energy.dissipation,
+            "energy_released": energy.released,
             "newton_iterations": attempt.newton,
             "factorisations": attempt.factorisations,
             "sweeps": attempt.sweeps,
