@@ -22,6 +22,7 @@ from variational.surface import Surface
 Array = NDArray[np.float64]
 _SLIDE_ON = 0.2e-3  # m, further sliding that must not change f_t at full slip
 _STEADY = 1e-6  # relative change of f_t that it may cause
+_BALANCED = 1e-6  # largest part of f_ext by which bone and screen may disagree
 
 
 @dataclass(frozen=True)
@@ -121,6 +122,7 @@ class Simulation:
         step = Step(self._row(target, loads, attempt), loads, self.coupling.d_eq, states, attempt, state)
         whole = len(self.scene.loads())
         self.on_step(step, min((self._loads_done + (0.0 if target.name == "touch" else part)) / whole, 1.0))
+        self._check_balance(loads)
         self._check_zone(loads)
 
     @property
@@ -147,6 +149,7 @@ class Simulation:
             "contact_length": float(loads.length.sum()),
             "slipping": slipping,
             "all_slip": full,
+            "imbalance": self.solver.imbalance(),
             "stored": energy.stored,
             "dissipation": energy.dissipation,
             "energy_released": energy.released,
@@ -156,6 +159,19 @@ class Simulation:
             "cutbacks": len(attempt.cutbacks),
             "jump": attempt.pseudo_transient > 0,
         }
+
+    def _check_balance(self, loads: RidgeLoads) -> None:
+        """Stop if the bone does not bear what the screen does: an error of the program, not of the load."""
+        vertical = float((loads.f_contact - loads.f_attraction).sum())
+        screen, bone = np.array([float(loads.f_friction.sum()), vertical]), self.solver.reaction
+        worst = int(np.argmax(np.abs(screen - bone)))
+        if not abs(screen[worst] - bone[worst]) <= _BALANCED * self.solver.force_scale:
+            raise StepFailed(
+                f"step {self.continuation.steps} ({self._load}): the bone bears {bone[worst]:.9g} N/m "
+                f"{('sideways', 'downwards')[worst]} and the screen {screen[worst]:.9g} N/m; forces are not "
+                f"balanced to {_BALANCED:g} of {self.solver.force_scale:g} N/m; try a numerics.tolerance below "
+                f"{self.scene.numerics.tolerance:g}"
+            )
 
     def _check_zone(self, loads: RidgeLoads) -> None:
         """Stop if the skin touches where it was not expected to."""

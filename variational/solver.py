@@ -87,6 +87,8 @@ class Solver:
 
     Attributes:
         control: what is prescribed of the bone.
+        force_scale: force per length (N/m) in which residuals are measured.
+        stiffness: what a prescribed row's metre is worth in N/m (Pa).
         counts: work done so far.
     """
 
@@ -121,7 +123,7 @@ class Solver:
         self._control_rows = False
         self._stale = True  # whether the factorisation must be made anew before it is used
         self._norms: list[float] = []
-        self._stiffness = 1e5  # Pa: what a prescribed row's metre is worth in N/m
+        self.force_scale, self.stiffness = force_scale, 1e5
         self._nodal = np.zeros_like(problem.u.x.array)
         nodes = fem.locate_dofs_topological(problem.V, 1, problem.surface.facets)
         self._skin = 2 * nodes + 1  # vertical displacements of the skin that can touch
@@ -173,7 +175,7 @@ class Solver:
                 f.array_w[-1] += self.control.force
             rows, values = self._prescribed()
             local = rows - self._first_row
-            f.array_w[local] = self._stiffness * (x.array_r[local] - values)
+            f.array_w[local] = self.stiffness * (x.array_r[local] - values)
 
     def _jacobian(self, snes: PETSc.SNES | None, x: PETSc.Vec, A: PETSc.Mat, P: PETSc.Mat) -> None:
         if not (self._stale or self._shifted):
@@ -182,7 +184,7 @@ class Solver:
             A.zeroEntries()
             fem_petsc.assemble_matrix(A, self.problem.jacobian)
             A.assemble()
-            A.zeroRows(self._prescribed()[0], diag=self._stiffness)
+            A.zeroRows(self._prescribed()[0], diag=self.stiffness)
         self.counts.factorisations += 1
         self._stale = False
 
@@ -267,6 +269,17 @@ class Solver:
         if reason <= 0:  # nodes and reaction are those of a rejected iterate
             self._residual(None, self.x, self._f)
         return reason
+
+    def prescribed_rows(self) -> NDArray[np.int64]:
+        """Return the global numbers of this rank's prescribed rows."""
+        return self._prescribed()[0]
+
+    def imbalance(self) -> float:
+        """Return the largest force that the last solve left at a node or on the bone, over ``force_scale``."""
+        forces = np.abs(self._f.array_r)
+        forces[self.prescribed_rows() - self._first_row] = 0.0
+        largest = float(np.max(forces, initial=0.0))
+        return float(self.layout.comm.allreduce(largest, op=MPI.MAX)) / self.force_scale
 
     @property
     def bone(self) -> Array:
