@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from variational.coupling import Coupling
-from variational.solver import Control, NotConverged
+from variational.solver import Control, Memory, NotConverged
 
 Array = NDArray[np.float64]
 
@@ -64,6 +64,7 @@ class _Accepted:
     d_eq: Array
     control: Control
     voltage: float
+    memory: Memory
 
 
 class Continuation:
@@ -106,6 +107,7 @@ class Continuation:
             self.coupling.d_eq.copy(),
             replace(self.solver.control),
             float(self.problem.voltage.value),
+            self.solver.remember(),
         )
 
     def _restore(self) -> None:
@@ -115,6 +117,7 @@ class Continuation:
         self.coupling.set_air_gaps(a.d_eq.copy())
         self.solver.control = replace(a.control)
         self.problem.voltage.value = a.voltage
+        self.solver.recall(a.memory)
 
     def _accept(self) -> None:
         self.surface_state = self.observer.state()
@@ -204,7 +207,7 @@ class Continuation:
                     self._restore()
                     attempt.cutbacks.append(f"{failure} at part {part + step:.4g}")
                     step /= 2
-                    if step < _SMALLEST * largest:
+                    if failure.hopeless or step < _SMALLEST * largest:
                         raise StepFailed(self._describe(target, part, failure)) from failure
             self._accept()
             part += step

@@ -48,15 +48,25 @@ _DEEPEST = 1e-6  # m, how deep open skin may be driven by one of the first steps
 _LIMITED_STEPS = 6
 _SHIFT = 2e9  # Pa/m, eta at the start
 _SHIFT_FALL, _SHIFT_RISE = 0.4, 4.0  # of eta an iteration
+# MUMPS 5 users' guide, section 8: INFOG(1) where a matrix is singular, and where workspace or memory ran out
+_SINGULAR, _MEMORY = (-6, -10), (-5, -7, -8, -9, -11, -13, -14, -15, -17, -18, -19, -20, -22)
 _REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
 
 
 class NotConverged(RuntimeError):
-    """A solve without an equilibrium; ``reason`` is SNES's name for why."""
+    """A solve without an equilibrium.
 
-    def __init__(self, reason: str, inverted: bool) -> None:
+    Attributes:
+        reason: why, by SNES's name or one of MUMPS_OUT_OF_MEMORY, MUMPS_SINGULAR, MUMPS_FAILED, NOT_A_NUMBER,
+            COUPLING_CAP and where.
+        inverted: elements were turned inside out by some iterate.
+        hopeless: a smaller step would fail as well.
+    """
+
+    def __init__(self, reason: str, inverted: bool, hopeless: bool = False) -> None:
         self.reason = reason
         self.inverted = inverted
+        self.hopeless = hopeless
         super().__init__(reason + (", elements inverted (J <= 0) on the way" if inverted else ""))
 
 
@@ -80,6 +90,25 @@ class Counts:
     factorisations: int = 0
     pseudo_transient: int = 0
     """Solves that full Newton steps did not manage."""
+
+
+@dataclass(frozen=True)
+class Memory:
+    """What a solve starts from besides loads and unknowns."""
+
+    reaction: Array
+    guess: float
+    stale: bool
+    control_rows: bool
+
+
+def linear_failure(pc: PETSc.PC) -> tuple[str, bool]:
+    """Return why a factorisation failed, and whether one of another matrix of the same size would as well."""
+    if pc.getFactorSolverType() != PETSc.Mat.SolverType.MUMPS:
+        return "DIVERGED_LINEAR_SOLVE", False
+    code = int(pc.getFactorMatrix().getMumpsInfog(1))
+    name = "MUMPS_SINGULAR" if code in _SINGULAR else "MUMPS_OUT_OF_MEMORY" if code in _MEMORY else "MUMPS_FAILED"
+    return f"{name} (INFOG(1) = {code})", code in _MEMORY
 
 
 class Solver:
@@ -120,6 +149,9 @@ class Solver:
         self._first_row = first
         self.reaction: Array = np.zeros(2)
         self._inverted = self._shifted = False
+        self._not_a_number = ""  # what is not, in the iterate last rejected
+        self._kept_matrix: PETSc.Mat | None = None
+        self._fresh = self._lost = False  # whether the factorisation is newer than what is kept; not to be used
         self._control_rows = False
         self._stale = True  # whether the factorisation must be made anew before it is used
         self._norms: list[float] = []
@@ -167,7 +199,7 @@ class Solver:
             self.layout.add_to_unknowns(self._nodal, f)
             finite = self.layout.comm.allreduce(bool(np.isfinite(f.array_r).all()), op=MPI.LAND)
             if not finite:
-                self._inverted = True
+                self._blame(x)
                 f.set(_OUTSIDE / np.sqrt(self.layout.global_size))
                 return
             self.reaction = -self.layout.rigid_part(f)
@@ -177,8 +209,25 @@ class Solver:
             local = rows - self._first_row
             f.array_w[local] = self.stiffness * (x.array_r[local] - values)
 
+    def _blame(self, x: PETSc.Vec) -> None:
+        """Find out why a residual is not finite; collective."""
+        suspects = {
+            "displacement": x.array_r,
+            "air gaps": self.problem.d_eq.x.array,
+            "history": self.problem.anchor.x.array,
+        }
+        for name, values in suspects.items():
+            if not self.layout.comm.allreduce(bool(np.isfinite(values).all()), op=MPI.LAND):
+                self._not_a_number = name
+                return
+        self._inverted = True
+
     def _jacobian(self, snes: PETSc.SNES | None, x: PETSc.Vec, A: PETSc.Mat, P: PETSc.Mat) -> None:
         if not (self._stale or self._shifted):
+            if self._lost and self._kept_matrix is not None:
+                self._kept_matrix.copy(A, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
+                self._lost = False
+                self.counts.factorisations += 1
             return
         with self.timings.phase("assembly"):
             A.zeroEntries()
@@ -186,7 +235,8 @@ class Solver:
             A.assemble()
             A.zeroRows(self._prescribed()[0], diag=self.stiffness)
         self.counts.factorisations += 1
-        self._stale = False
+        self._stale = self._lost = False
+        self._fresh = True
 
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
         """Judge an iterate by its residual alone, and set the next shift."""
@@ -240,7 +290,7 @@ class Solver:
             NotConverged: with SNES's reason; ``x`` is then the last iterate.
         """
         start = self.x.array_r.copy()
-        self._inverted = False
+        self._inverted, self._not_a_number = False, ""
         reason = self._run(shifted=False)
         if reason <= 0 and not creep:  # the other guess for the points on the cone, which is then kept
             self.x.array_w[:] = start
@@ -252,7 +302,31 @@ class Solver:
             self.x.array_w[:] = start
             reason = self._run(shifted=True)
         if reason <= 0:
-            raise NotConverged(_REASONS.get(reason, str(reason)), self._inverted)
+            raise self._failure(reason)
+
+    def _failure(self, reason: int) -> NotConverged:
+        if self._not_a_number:
+            return NotConverged(f"NOT_A_NUMBER in the {self._not_a_number}", False)
+        if reason == PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE:
+            name, hopeless = linear_failure(self._snes.getKSP().getPC())
+            return NotConverged(name, self._inverted, hopeless)
+        return NotConverged(_REASONS.get(reason, str(reason)), self._inverted)
+
+    def remember(self) -> Memory:
+        """Keep what the next solve starts from besides loads and unknowns: the matrix last factorised, for one."""
+        if self._fresh:
+            if self._kept_matrix is None:
+                self._kept_matrix = self._A.duplicate(copy=True)
+            else:
+                self._A.copy(self._kept_matrix, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
+            self._fresh = False
+        return Memory(self.reaction.copy(), float(self.problem.guess.value), self._stale, self._control_rows)
+
+    def recall(self, memory: Memory) -> None:
+        """Go back to what was last kept, so that a solve repeats to the last bit what it would have done then."""
+        self.reaction, self.problem.guess.value = memory.reaction.copy(), memory.guess
+        self._stale, self._control_rows = memory.stale, memory.control_rows
+        self._lost |= self._fresh
 
     def _run(self, shifted: bool) -> int:
         self._shifted = shifted
