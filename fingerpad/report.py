@@ -48,7 +48,7 @@ class Report:
         self._profiles: list[dict[str, Any]] = []
         self._kept: dict[str, tuple[Snapshot | None, Any]] = {}
         self._tables: dict[str, tuple[TextIO, Any]] = {}
-        self._written = 0
+        self._written = self._checks = 0
         self.log = logging.getLogger("fingerpad")
         if comm.rank == 0:
             folder.mkdir(parents=True, exist_ok=True)
@@ -167,9 +167,16 @@ class Report:
             assert self._simulation is not None
             self._written = self.rows[-1]["step"]
             self._fields.write(float(self._written))
+            self._log_checks()
             kept = gather_mesh(self._simulation.problem), self._sites.positions()
             self._kept[self.rows[-1]["load"]] = kept
         self.seconds += time.perf_counter() - start
+
+    def _log_checks(self) -> None:
+        assert self._simulation is not None
+        for step, check in list(self._simulation.checks.items())[self._checks :]:
+            self.log.log(logging.INFO if check.stable else logging.WARNING, "state of step %d is %s", step, check)
+        self._checks = len(self._simulation.checks)
 
     # -- the end ---------------------------------------------------------------------------------------
     def summary(self, failure: str = "") -> dict[str, Any]:
@@ -199,6 +206,10 @@ class Report:
         normal, slip = self._named_rows()
         for prefix, row in (("normal", normal), ("slip", slip)):
             result |= {f"{prefix}_{name}": None if row is None else row[name] for name in _NAMED}
+            check = None if row is None else self._simulation.checks.get(row["step"])
+            result[f"{prefix}_stable"] = None if check is None else check.stable
+            result[f"{prefix}_lambda_min"] = None if check is None else check.frozen.lambda_min
+            result[f"{prefix}_gain"] = None if check is None else check.gain
         if failure:
             result["failure"] = failure
         result["parameters"] = self.scene.parameters()

@@ -16,7 +16,8 @@ from variational.coupling import Coupling
 from variational.energy import EnergyBook
 from variational.problem import Interface, Ogden, Problem, SaintVenant
 from variational.quantities import Observer, RidgeLoads, SurfaceState
-from variational.solver import Solver
+from variational.solver import NotConverged, Solver
+from variational.stability import Stability, StabilityCheck
 from variational.surface import Surface
 
 Array = NDArray[np.float64]
@@ -38,10 +39,34 @@ class Step:
     surface: SurfaceState
 
 
+@dataclass(frozen=True)
+class Checked:
+    """Stability of an accepted state."""
+
+    frozen: Stability
+    """At frozen air gaps."""
+    gain: float
+    """Largest measured gain of a ridge's loop over the scales, zero without voltage or where none was measured."""
+
+    @property
+    def stable(self) -> bool:
+        """Whether the skin stays, each ridge's air gap following its pressure."""
+        return self.frozen.stable and self.gain < 1
+
+    def __str__(self) -> str:
+        """Return the verdict in words."""
+        verdict = "stable" if self.stable else "not stable"
+        unsettled = "" if self.frozen.settled else ", not settled"
+        return (
+            f"{verdict}: lambda_min {self.frozen.lambda_min:.4g} Pa/m{unsettled}, gain of the air gaps {self.gain:.3g}"
+        )
+
+
 class Simulation:
     """A scene's finger and the path of its loads.
 
     Attributes:
+        checks: stability of the state at the end of each load, at first full slip and after each jump, by step.
         full_slip: whether full slip was reached, and held over a further 0.2 mm.
         unknowns: number of unknowns.
     """
@@ -82,6 +107,8 @@ class Simulation:
         self.energy = EnergyBook(self.problem, *self._state())
         self.unknowns = self.solver.layout.global_size
         self.full_slip = False
+        self.checks: dict[int, Checked] = {}
+        self._stability = StabilityCheck(self.solver)
         self._load, self._loads_done = "", 0.0
         self._other_skin = _skin_nodes(self.problem, body.facet_tags.find(tags.OUTER_SKIN))
 
@@ -95,10 +122,12 @@ class Simulation:
         for k, load in enumerate(loads):
             self._load, self._loads_done = load.name, float(k)
             self.continuation.run(_target(load))
+            self._check_stability()
             while load.until_full_slip and self.continuation.slip[1]:
                 if self._slides_on(load):
                     break
                 self.continuation.run(_target(load))
+                self._check_stability()
             self.on_load()
 
     def _slides_on(self, load: Load) -> bool:
@@ -110,6 +139,19 @@ class Simulation:
         self.full_slip = steady and self.continuation.slip[1]
         return self.full_slip
 
+    def _check_stability(self) -> None:
+        step = self.continuation.steps
+        if step not in self.checks:
+            gain = self.coupling.gain[self.observer.ridge_loads(self.continuation.surface_state).length > 0]
+            known = gain[np.isfinite(gain)]
+            largest = float(known.max()) if len(known) and self._voltage > 0 else 0.0
+            try:
+                self.checks[step] = Checked(self._stability.check(), largest)
+            except NotConverged as failure:
+                raise StepFailed(
+                    f"step {step} ({self._load}): its stability cannot be examined: {failure}"
+                ) from failure
+
     # -- reports ---------------------------------------------------------------------------------------
     def _state(self) -> tuple[SurfaceState, Array, Array, Array]:
         solver = self.solver
@@ -118,6 +160,8 @@ class Simulation:
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
         state = self.continuation.surface_state
         loads = self.observer.ridge_loads(state)
+        if attempt.pseudo_transient > 0:
+            self._check_stability()
         states = [self.closure.state(float(p), self._voltage) for p in loads.p_c]
         step = Step(self._row(target, loads, attempt), loads, self.coupling.d_eq, states, attempt, state)
         whole = len(self.scene.loads())

@@ -21,6 +21,7 @@ from variational.solver import NotConverged, Solver
 
 Array = NDArray[np.float64]
 _LARGEST_GAIN = 0.9
+_MOVED = 1e-4  # of d_eq: what a gain is measured over, far above the loop's tolerance
 
 
 @dataclass
@@ -39,6 +40,9 @@ class Coupling:
     Attributes:
         d_eq: equivalent air gap of each ridge (m).
         history: sweeps of the last solve.
+        gain: d closure(p_c) / d d_eq of each ridge, the secant over the sweeps of the last solve that moved its
+            air gap; NaN where none did yet. Below one the ridge's loop contracts: its state is stable if that of
+            frozen air gaps is.
     """
 
     def __init__(
@@ -64,6 +68,7 @@ class Coupling:
         self.tolerance, self.cap, self.by_gap = tolerance, cap, by_gap
         self.history = CouplingHistory()
         self.d_eq = closure(np.zeros(len(observer.surface.names))).d_eq
+        self.gain = np.full_like(self.d_eq, np.nan)
 
     def set_air_gaps(self, d_eq: Array) -> None:
         """Impose air gaps (m), shape (ridges,)."""
@@ -74,7 +79,11 @@ class Coupling:
         """Solve at the current air gaps and return what the closure makes of the pressures (m)."""
         self.solver.solve(creep)
         with self.solver.timings.phase("coupling"):
-            return self.closure(self.observer.ridge_loads(by_gap=self.by_gap).p_c).d_eq
+            d_eq = self.closure(self.observer.ridge_loads(by_gap=self.by_gap).p_c).d_eq
+        if not np.isfinite(d_eq).all():
+            ridge = self.observer.surface.names[int(np.argmin(np.isfinite(d_eq)))]
+            raise NotConverged(f"NOT_A_NUMBER in the air gap of ridge {ridge}", False)
+        return d_eq
 
     def solve(self, creep: bool = False) -> None:
         """Find the state in which air gaps and pressures agree.
@@ -83,25 +92,35 @@ class Coupling:
             creep: see :meth:`variational.solver.Solver.solve`.
 
         Raises:
-            NotConverged: the macroscale's, or ``COUPLING_CAP`` with the ridge that moved most.
+            NotConverged: the macroscale's, ``COUPLING_CAP`` with the ridge that moved most, or ``NOT_A_NUMBER``
+                with the ridge of which the closure made one.
         """
         self.history = CouplingHistory()
         self.set_air_gaps(self.d_eq)
         if float(self.solver.problem.voltage.value) == 0.0:
             self.set_air_gaps(self._sweep(creep))  # no attraction: the air gaps do not act
             return
+        first: tuple[Array, Array] | None = None
         previous: tuple[Array, Array] | None = None
         for _ in range(self.cap):
             d = self.d_eq
             r = self._sweep(creep or previous is not None) - d
+            first = first or (d, r)
             worst = int(np.argmax(np.abs(r) / d))
             self.history.changes.append(float(np.abs(r[worst]) / d[worst]))
             self.history.ridges.append(self.observer.surface.names[worst])
             if self.history.changes[-1] <= self.tolerance:
+                self._measure_gain(d, r, first)
                 return
             self.set_air_gaps(d + self._step(d, r, previous))
             previous = d, r
         raise NotConverged(f"COUPLING_CAP at ridge {self.history.ridges[-1]}", False)
+
+    def _measure_gain(self, d: Array, r: Array, first: tuple[Array, Array]) -> None:
+        moved = d - first[0]
+        known = np.abs(moved) > _MOVED * d
+        self.gain = self.gain.copy()
+        self.gain[known] = 1 + (r - first[1])[known] / moved[known]
 
     @staticmethod
     def _step(d: Array, r: Array, previous: tuple[Array, Array] | None) -> Array:
