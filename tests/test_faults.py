@@ -207,6 +207,7 @@ def trajectory(chance: float, seed: int) -> tuple[list[dict[str, np.ndarray]], i
     def capricious(creep=False):
         solve(creep)
         if draw.uniform() < chance:
+            solver.problem.guess.value *= -1  # as an attempt does that took the other guess too
             raise NotConverged("drawn", False)
 
     solver.solve = capricious

@@ -48,8 +48,13 @@ _DEEPEST = 1e-6  # m, how deep open skin may be driven by one of the first steps
 _LIMITED_STEPS = 6
 _SHIFT = 2e9  # Pa/m, eta at the start
 _SHIFT_FALL, _SHIFT_RISE = 0.4, 4.0  # of eta an iteration
-# MUMPS 5 users' guide, section 8: INFOG(1) where a matrix is singular, and where workspace or memory ran out
-_SINGULAR, _MEMORY = (-6, -10), (-5, -7, -8, -9, -11, -13, -14, -15, -17, -18, -19, -20, -22)
+# INFOG(1) in the users' guide of MUMPS 5, section 8. Workspace is estimated before pivoting, which depends on the
+# matrix; memory ran out for any matrix of the size.
+_MUMPS = {
+    "MUMPS_SINGULAR": (-6, -10),
+    "MUMPS_OUT_OF_WORKSPACE": (-8, -9, -11, -14, -15, -17, -18, -20),
+    "MUMPS_OUT_OF_MEMORY": (-5, -7, -13, -19, -22),
+}
 _REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
 
 
@@ -57,8 +62,8 @@ class NotConverged(RuntimeError):
     """A solve without an equilibrium.
 
     Attributes:
-        reason: why, by SNES's name or one of MUMPS_OUT_OF_MEMORY, MUMPS_SINGULAR, MUMPS_FAILED, NOT_A_NUMBER,
-            COUPLING_CAP and where.
+        reason: why, by SNES's name or one of MUMPS_OUT_OF_MEMORY, MUMPS_OUT_OF_WORKSPACE, MUMPS_SINGULAR,
+            MUMPS_FAILED, NOT_A_NUMBER and COUPLING_CAP.
         inverted: elements were turned inside out by some iterate.
         hopeless: a smaller step would fail as well.
     """
@@ -107,8 +112,8 @@ def linear_failure(pc: PETSc.PC) -> tuple[str, bool]:
     if pc.getFactorSolverType() != PETSc.Mat.SolverType.MUMPS:
         return "DIVERGED_LINEAR_SOLVE", False
     code = int(pc.getFactorMatrix().getMumpsInfog(1))
-    name = "MUMPS_SINGULAR" if code in _SINGULAR else "MUMPS_OUT_OF_MEMORY" if code in _MEMORY else "MUMPS_FAILED"
-    return f"{name} (INFOG(1) = {code})", code in _MEMORY
+    name = next((name for name, codes in _MUMPS.items() if code in codes), "MUMPS_FAILED")
+    return f"{name} (INFOG(1) = {code})", name == "MUMPS_OUT_OF_MEMORY"
 
 
 class Solver:
