@@ -16,6 +16,7 @@ _PHASES = {
     "assembly": "residuals and Jacobians",
     "factorisation": "factorisations and back-substitutions",
     "coupling": "ridge pressures and closure",
+    "stability": "stability of the states reached",
     "output": "tables, fields, pictures",
 }
 _COUNTS = ("unknowns", "steps", "jumps", "cutbacks", "newton_iterations", "factorisations")

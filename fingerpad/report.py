@@ -48,7 +48,7 @@ class Report:
         self._profiles: list[dict[str, Any]] = []
         self._kept: dict[str, tuple[Snapshot | None, Any]] = {}
         self._tables: dict[str, tuple[TextIO, Any]] = {}
-        self._written = 0
+        self._written = self._checks = 0
         self.log = logging.getLogger("fingerpad")
         if comm.rank == 0:
             folder.mkdir(parents=True, exist_ok=True)
@@ -116,11 +116,12 @@ class Report:
 
     def _print(self, step: Step, done: float) -> None:
         r = step.row
+        released = f"  jump, {r['energy_released']:.2g} J/m released"
         self.say(
             f"{r['step']:4d} {r['load'][:7]:7s} {r['f_ext']:7.3f} {r['voltage']:5.1f} {r['bone_x'] * 1e3:7.4f} "
             f"{r['bone_height'] * 1e3:8.5f} {r['f_t']:8.4f} {r['mu_app']:7.4f} {r['f_electrostatic']:7.3f} "
             f"{r['ridges_in_contact']:6d} {r['contact_length'] * 1e3:8.4f} {r['newton_iterations']:6d} "
-            f"{r['factorisations']:5d}{'  jump' if r['jump'] else ''}"
+            f"{r['factorisations']:5d}{released if r['jump'] else ''}"
         )
         self.log.info("step %s sweeps %s", json.dumps(r), step.attempt.changes)
         for cut in step.attempt.cutbacks:
@@ -166,9 +167,16 @@ class Report:
             assert self._simulation is not None
             self._written = self.rows[-1]["step"]
             self._fields.write(float(self._written))
+            self._log_checks()
             kept = gather_mesh(self._simulation.problem), self._sites.positions()
             self._kept[self.rows[-1]["load"]] = kept
         self.seconds += time.perf_counter() - start
+
+    def _log_checks(self) -> None:
+        assert self._simulation is not None
+        for step, check in list(self._simulation.checks.items())[self._checks :]:
+            self.log.log(logging.INFO if check.stable else logging.WARNING, "state of step %d is %s", step, check)
+        self._checks = len(self._simulation.checks)
 
     # -- the end ---------------------------------------------------------------------------------------
     def summary(self, failure: str = "") -> dict[str, Any]:
@@ -189,6 +197,8 @@ class Report:
             "steps": len(rows),
             "jumps": sum(row["jump"] for row in rows),
             "cutbacks": sum(row["cutbacks"] for row in rows),
+            "energy_released": sum(row["energy_released"] for row in rows if row["jump"]),
+            "dissipation": sum(row["dissipation"] for row in rows),
             "memory_mb": peak,
             "ranks": self.comm.size,
             **{f"seconds_{phase}": value for phase, value in seconds.items()},
@@ -196,6 +206,10 @@ class Report:
         normal, slip = self._named_rows()
         for prefix, row in (("normal", normal), ("slip", slip)):
             result |= {f"{prefix}_{name}": None if row is None else row[name] for name in _NAMED}
+            check = None if row is None else self._simulation.checks.get(row["step"])
+            result[f"{prefix}_stable"] = None if check is None else check.stable
+            result[f"{prefix}_lambda_min"] = None if check is None else check.frozen.lambda_min
+            result[f"{prefix}_gain"] = None if check is None else check.gain
         if failure:
             result["failure"] = failure
         result["parameters"] = self.scene.parameters()

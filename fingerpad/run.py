@@ -5,9 +5,11 @@ from typing import Any
 
 from mpi4py import MPI
 
+from fingerpad.advice import advice
+from fingerpad.interrupt import Interrupt
 from fingerpad.report import Report
 from fingerpad.scene import Scene
-from fingerpad.simulation import Simulation
+from fingerpad.simulation import Simulation, Step
 from variational import jit
 from variational.continuation import StepFailed
 
@@ -23,12 +25,19 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
     failure = ""
     jit.sweep(comm)
     try:
-        simulation = Simulation(scene, comm, report.step, report.load_reached)
-        report.open(simulation)
-        try:
-            simulation.run()
-        except StepFailed as error:
-            failure = str(error)
+        with Interrupt(comm) as interrupt:
+
+            def on_step(step: Step, done: float) -> None:
+                report.step(step, done)
+                interrupt.stop_if_asked(step.row["step"])
+
+            simulation = Simulation(scene, comm, on_step, report.load_reached)
+            report.open(simulation)
+            try:
+                simulation.run()
+            except StepFailed as error:
+                failure = "; ".join(filter(None, (str(error), advice(error))))
+        if failure:
             report.say(f"fingerpad: {failure}")
             report.log.error(failure)
         report.load_reached()

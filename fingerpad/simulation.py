@@ -13,14 +13,17 @@ from geometry import fingertip, mesh, tags
 from geometry.profiles import Profiles
 from variational.continuation import Attempt, Continuation, StepFailed, Target
 from variational.coupling import Coupling
+from variational.energy import EnergyBook
 from variational.problem import Interface, Ogden, Problem, SaintVenant
 from variational.quantities import Observer, RidgeLoads, SurfaceState
-from variational.solver import Solver
+from variational.solver import NotConverged, Solver
+from variational.stability import Stability, StabilityCheck
 from variational.surface import Surface
 
 Array = NDArray[np.float64]
 _SLIDE_ON = 0.2e-3  # m, further sliding that must not change f_t at full slip
 _STEADY = 1e-6  # relative change of f_t that it may cause
+_BALANCED = 1e-6  # largest part of f_ext by which bone and screen may disagree
 
 
 @dataclass(frozen=True)
@@ -36,10 +39,34 @@ class Step:
     surface: SurfaceState
 
 
+@dataclass(frozen=True)
+class Checked:
+    """Stability of an accepted state."""
+
+    frozen: Stability
+    """At frozen air gaps."""
+    gain: float
+    """Largest measured gain of a ridge's loop over the scales, zero without voltage or where none was measured."""
+
+    @property
+    def stable(self) -> bool:
+        """Whether the skin stays, each ridge's air gap following its pressure."""
+        return self.frozen.stable and self.gain < 1
+
+    def __str__(self) -> str:
+        """Return the verdict in words."""
+        verdict = "stable" if self.stable else "not stable"
+        unsettled = "" if self.frozen.settled else ", not settled"
+        return (
+            f"{verdict}: lambda_min {self.frozen.lambda_min:.4g} Pa/m{unsettled}, gain of the air gaps {self.gain:.3g}"
+        )
+
+
 class Simulation:
     """A scene's finger and the path of its loads.
 
     Attributes:
+        checks: stability of the state at the end of each load, at first full slip and after each jump, by step.
         full_slip: whether full slip was reached, and held over a further 0.2 mm.
         unknowns: number of unknowns.
     """
@@ -77,8 +104,11 @@ class Simulation:
             by_gap=contact.length == "gap",
         )
         self.continuation = Continuation(self.coupling, self._accepted)
+        self.energy = EnergyBook(self.problem, *self._state())
         self.unknowns = self.solver.layout.global_size
         self.full_slip = False
+        self.checks: dict[int, Checked] = {}
+        self._stability = StabilityCheck(self.solver)
         self._load, self._loads_done = "", 0.0
         self._other_skin = _skin_nodes(self.problem, body.facet_tags.find(tags.OUTER_SKIN))
 
@@ -92,10 +122,12 @@ class Simulation:
         for k, load in enumerate(loads):
             self._load, self._loads_done = load.name, float(k)
             self.continuation.run(_target(load))
+            self._check_stability()
             while load.until_full_slip and self.continuation.slip[1]:
                 if self._slides_on(load):
                     break
                 self.continuation.run(_target(load))
+                self._check_stability()
             self.on_load()
 
     def _slides_on(self, load: Load) -> bool:
@@ -107,14 +139,34 @@ class Simulation:
         self.full_slip = steady and self.continuation.slip[1]
         return self.full_slip
 
+    def _check_stability(self) -> None:
+        step = self.continuation.steps
+        if step not in self.checks:
+            gain = self.coupling.gain[self.observer.ridge_loads(self.continuation.surface_state).length > 0]
+            known = gain[np.isfinite(gain)]
+            largest = float(known.max()) if len(known) and self._voltage > 0 else 0.0
+            try:
+                self.checks[step] = Checked(self._stability.check(), largest)
+            except NotConverged as failure:
+                raise StepFailed(
+                    f"step {step} ({self._load}): its stability cannot be examined: {failure}"
+                ) from failure
+
     # -- reports ---------------------------------------------------------------------------------------
+    def _state(self) -> tuple[SurfaceState, Array, Array, Array]:
+        solver = self.solver
+        return self.continuation.surface_state, solver.bone, solver.reaction, self.coupling.d_eq
+
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
         state = self.continuation.surface_state
         loads = self.observer.ridge_loads(state)
+        if attempt.pseudo_transient > 0:
+            self._check_stability()
         states = [self.closure.state(float(p), self._voltage) for p in loads.p_c]
         step = Step(self._row(target, loads, attempt), loads, self.coupling.d_eq, states, attempt, state)
         whole = len(self.scene.loads())
         self.on_step(step, min((self._loads_done + (0.0 if target.name == "touch" else part)) / whole, 1.0))
+        self._check_balance(loads)
         self._check_zone(loads)
 
     @property
@@ -124,6 +176,7 @@ class Simulation:
     def _row(self, target: Target, loads: RidgeLoads, attempt: Attempt) -> dict[str, Any]:
         bone, reaction = self.solver.bone, self.solver.reaction
         slipping, full = self.continuation.slip
+        energy = self.energy.step(*self._state())
         f_ext, f_t = float(reaction[1]), -float(reaction[0])
         return {
             "step": self.continuation.steps,
@@ -140,12 +193,29 @@ class Simulation:
             "contact_length": float(loads.length.sum()),
             "slipping": slipping,
             "all_slip": full,
+            "imbalance": self.solver.imbalance(),
+            "stored": energy.stored,
+            "dissipation": energy.dissipation,
+            "energy_released": energy.released,
             "newton_iterations": attempt.newton,
             "factorisations": attempt.factorisations,
             "sweeps": attempt.sweeps,
             "cutbacks": len(attempt.cutbacks),
             "jump": attempt.pseudo_transient > 0,
         }
+
+    def _check_balance(self, loads: RidgeLoads) -> None:
+        """Stop if the bone does not bear what the screen does: an error of the program, not of the load."""
+        vertical = float((loads.f_contact - loads.f_attraction).sum())
+        screen, bone = np.array([float(loads.f_friction.sum()), vertical]), self.solver.reaction
+        worst = int(np.argmax(np.abs(screen - bone)))
+        if not abs(screen[worst] - bone[worst]) <= _BALANCED * self.solver.force_scale:
+            raise StepFailed(
+                f"step {self.continuation.steps} ({self._load}): the bone bears {bone[worst]:.9g} N/m "
+                f"{('sideways', 'downwards')[worst]} and the screen {screen[worst]:.9g} N/m; forces are not "
+                f"balanced to {_BALANCED:g} of {self.solver.force_scale:g} N/m; try a numerics.tolerance below "
+                f"{self.scene.numerics.tolerance:g}"
+            )
 
     def _check_zone(self, loads: RidgeLoads) -> None:
         """Stop if the skin touches where it was not expected to."""

@@ -249,3 +249,32 @@ def test_tolerance_belongs_to_its_solver(body):
     coarse, fine = Solver(problem, rim, 1e3, 1e-3), Solver(problem, rim, 1.0, 1e-6)
     assert coarse._snes.getTolerances()[1] == pytest.approx(1.0)
     assert fine._snes.getTolerances()[1] == pytest.approx(1e-6)
+
+
+# -- what a solve leaves -------------------------------------------------------------------------------
+def test_imbalance_is_the_largest_free_force(body):
+    """The figure reported is that of the residual assembled anew, over the free unknowns, per force scale."""
+    solver = make(body)
+    press(solver, 5.0)
+    problem, layout = solver.problem, solver.layout
+    f = layout.create_vector()
+    f.set(0.0)
+    layout.add_to_unknowns(fem.assemble_vector(problem.residual).array.copy(), f)
+    if layout.owns_rigid:
+        f.array_w[-1] += 5.0
+        f.array_w[-2] = 0.0  # the bone's x is prescribed, and so are the sides'
+    sides = fem.locate_dofs_topological(problem.V, 1, body.facet_tags.find(tags.SIDES))
+    rows = layout.rows[2 * sides] - f.getOwnershipRange()[0]
+    f.array_w[rows[(rows >= 0) & (rows < layout.local_size)]] = 0.0
+    largest = max(problem.mesh.comm.allgather(float(np.abs(f.array_r).max(initial=0.0))))
+    assert solver.imbalance() == pytest.approx(largest, rel=1e-6)
+    assert 0 < solver.imbalance() < TOLERANCE
+
+
+def test_imbalance_of_a_body_out_of_balance(body):
+    """A tolerance of a hundredth of the force leaves more than one of a billionth, and says so."""
+    solver = make(body)
+    coarse = Solver(solver.problem, body.facet_tags.find(tags.BONE_RIM), 5.0, 1e-2)
+    coarse.control = Control(0.0, -0.01 * HEIGHT)
+    coarse.solve()
+    assert 1e-9 < coarse.imbalance() < 1e-2

@@ -127,3 +127,11 @@ class Formulation(ABC):
     def corrected(self, state: "SurfaceState", history: History) -> History:
         """Return the history with which to solve again where there is an error."""
         return history
+
+    def stored(self, state: "SurfaceState") -> Array:
+        """Return the energy of the contact's springs (J/m^2 of reference area) at the points; mostly there are none."""
+        return np.zeros_like(state.p_n)
+
+    def slip(self, before: "SurfaceState", after: "SurfaceState") -> Array:
+        """Return how far each of this rank's points slipped over the screen (m) from one state to the next."""
+        return after.x - before.x

@@ -37,6 +37,7 @@ class Target:
 # How far one step may go: parts of sqrt(f_ext) and of U^2, and metres of the bone.
 _FORCE, _VOLTAGE, _SINK, _SLIDE = 0.067, 0.25, 40e-6, 60e-6
 _SMALLEST = 1e-3  # step below which a load is given up, over the largest
+_MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on
 _FEW = 6  # factorisations; a step that took no more lets the next one grow
 
 
@@ -65,6 +66,7 @@ class _Accepted:
     d_eq: Array
     control: Control
     voltage: float
+    reaction: Array
 
 
 class Continuation:
@@ -106,6 +108,7 @@ class Continuation:
             self.coupling.d_eq.copy(),
             replace(self.solver.control),
             float(self.problem.voltage.value),
+            self.solver.reaction.copy(),
         )
 
     def _restore(self) -> None:
@@ -116,6 +119,7 @@ class Continuation:
         self.problem.set_history(a.history)
         self.solver.control = replace(a.control)
         self.problem.voltage.value = a.voltage
+        self.solver.reaction = a.reaction.copy()
 
     def _accept(self) -> None:
         self.surface_state = self.observer.state()
@@ -205,7 +209,7 @@ class Continuation:
                     self._restore()
                     attempt.cutbacks.append(f"{failure} at part {part + step:.4g}")
                     step /= 2
-                    if step < _SMALLEST * largest:
+                    if failure.hopeless or step < _SMALLEST * largest:
                         raise StepFailed(self._describe(target, part, failure)) from failure
             self._accept()
             part += step
@@ -227,7 +231,7 @@ class Continuation:
     def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool) -> None:
         counts = self.solver.counts
         newton, factorisations, shifted = counts.newton, counts.factorisations, counts.pseudo_transient
-        self.solver.new_load(*load)
+        self.solver.new_load(*load, slipping=self.slip[0] > _MANY)
         try:
             self.coupling.solve(creep)
         finally:

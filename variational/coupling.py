@@ -25,6 +25,7 @@ from variational.solver import NotConverged, Solver
 
 Array = NDArray[np.float64]
 _LARGEST_GAIN = 0.9
+_MOVED = 1e-4  # of d_eq: what a gain is measured over, far above the loop's tolerance
 
 
 @dataclass
@@ -45,6 +46,9 @@ class Coupling:
     Attributes:
         d_eq: equivalent air gap of each ridge (m).
         history: sweeps of the last solve.
+        gain: d closure(p_c) / d d_eq of each ridge, the secant over the sweeps of the last solve that moved its
+            air gap; NaN where none did yet. Below one the ridge's loop contracts: its state is stable if that of
+            frozen air gaps is.
     """
 
     def __init__(
@@ -70,6 +74,7 @@ class Coupling:
         self.tolerance, self.cap, self.by_gap = tolerance, cap, by_gap
         self.history = CouplingHistory()
         self.d_eq = closure(np.zeros(len(observer.surface.names))).d_eq
+        self.gain = np.full_like(self.d_eq, np.nan)
 
     def set_air_gaps(self, d_eq: Array) -> None:
         """Impose air gaps (m), shape (ridges,)."""
@@ -81,7 +86,11 @@ class Coupling:
         self.solver.solve(creep)
         with self.solver.timings.phase("coupling"):
             state = self.observer.state()
-            return self.closure(self.observer.ridge_loads(state, self.by_gap).p_c).d_eq, state
+            d_eq = self.closure(self.observer.ridge_loads(state, self.by_gap).p_c).d_eq
+        if not np.isfinite(d_eq).all():
+            ridge = self.observer.surface.names[int(np.argmin(np.isfinite(d_eq)))]
+            raise NotConverged(f"NOT_A_NUMBER in the air gap of ridge {ridge}", False)
+        return d_eq, state
 
     def solve(self, creep: bool = False) -> None:
         """Find the state in which air gaps and pressures agree, and the contact's conditions hold.
@@ -90,18 +99,21 @@ class Coupling:
             creep: see :meth:`variational.solver.Solver.solve`.
 
         Raises:
-            NotConverged: the macroscale's, or ``COUPLING_CAP`` with the ridge that moved most or the contact's error.
+            NotConverged: the macroscale's, ``COUPLING_CAP`` with the ridge that moved most or the contact's error, or
+                ``NOT_A_NUMBER`` with the ridge of which the closure made one.
         """
         self.history = CouplingHistory()
         self.set_air_gaps(self.d_eq)
         problem = self.solver.problem
         formulation, charged = problem.interface.formulation, float(problem.voltage.value) != 0.0
         contact_history = problem.history
+        first: tuple[Array, Array] | None = None
         previous: tuple[Array, Array] | None = None
         for sweep in range(self.cap):
             d = self.d_eq
             found, state = self._sweep(creep or sweep > 0)
             r = found - d if charged else np.zeros_like(d)  # without attraction the air gaps do not act
+            first = first or (d, r)
             error = formulation.error(state, contact_history, problem.interface.mu_f)
             self.history.errors.append(problem.mesh.comm.allreduce(error, op=MPI.MAX))
             worst = int(np.argmax(np.abs(r) / d))
@@ -110,7 +122,9 @@ class Coupling:
             scales = self.history.changes[-1] <= self.tolerance
             contact = self.history.errors[-1] <= formulation.tolerance
             if scales and contact:
-                if not charged:
+                if charged:
+                    self._measure_gain(d, r, first)
+                else:
                     self.set_air_gaps(found)
                 return
             if not contact:
@@ -122,6 +136,12 @@ class Coupling:
         ridge, error = self.history.ridges[-1], self.history.errors[-1]
         where = f"a contact error of {error:.2g} m" if scales else f"ridge {ridge}"
         raise NotConverged(f"COUPLING_CAP at {where}", False)
+
+    def _measure_gain(self, d: Array, r: Array, first: tuple[Array, Array]) -> None:
+        moved = d - first[0]
+        known = np.abs(moved) > _MOVED * d
+        self.gain = self.gain.copy()
+        self.gain[known] = 1 + (r - first[1])[known] / moved[known]
 
     @staticmethod
     def _step(d: Array, r: Array, previous: tuple[Array, Array] | None) -> Array:

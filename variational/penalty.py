@@ -8,8 +8,17 @@ Mechanics, 2nd ed., ch. 6). The skin sinks by :math:`p_n / \epsilon_n`, and what
 """
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
 
 from variational.contact import Formulation, Skin, Springs
+
+if TYPE_CHECKING:
+    from variational.quantities import SurfaceState
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -22,3 +31,11 @@ class Penalty(Formulation):
     def springs(self, skin: Skin) -> Springs:
         """Return springs that nothing preloads."""
         return Springs(0.0, 0.0, skin.constant(self.eps_n), skin.constant(self.eps_t))
+
+    def stored(self, state: "SurfaceState") -> Array:
+        """Return the energy of the springs (J/m^2 of reference area)."""
+        return np.asarray((state.p_n**2 / self.eps_n + state.t_t**2 / self.eps_t) / 2)
+
+    def slip(self, before: "SurfaceState", after: "SurfaceState") -> Array:
+        """Return how far the tangential springs were dragged (m)."""
+        return after.anchor - before.anchor

@@ -52,15 +52,30 @@ _HALVINGS = 5  # of a step that would turn elements inside out or
 _GROWS = 10.0  # make the residual grow more than this
 _SHIFT = 2e9  # Pa/m, eta at the start
 _SHIFT_FALL, _SHIFT_RISE = 0.4, 4.0  # of eta an iteration
+# INFOG(1) in the users' guide of MUMPS 5, section 8. Workspace is estimated before pivoting, which depends on the
+# matrix; memory ran out for any matrix of the size.
+_MUMPS = {
+    "MUMPS_SINGULAR": (-6, -10),
+    "MUMPS_OUT_OF_WORKSPACE": (-8, -9, -11, -14, -15, -17, -18, -20),
+    "MUMPS_OUT_OF_MEMORY": (-5, -7, -13, -19, -22),
+}
 _REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
 
 
 class NotConverged(RuntimeError):
-    """A solve without an equilibrium; ``reason`` is SNES's name for why."""
+    """A solve without an equilibrium.
 
-    def __init__(self, reason: str, inverted: bool) -> None:
+    Attributes:
+        reason: why, by SNES's name or one of MUMPS_OUT_OF_MEMORY, MUMPS_OUT_OF_WORKSPACE, MUMPS_SINGULAR,
+            MUMPS_FAILED, NOT_A_NUMBER and COUPLING_CAP.
+        inverted: elements were turned inside out by some iterate.
+        hopeless: a smaller step would fail as well.
+    """
+
+    def __init__(self, reason: str, inverted: bool, hopeless: bool = False) -> None:
         self.reason = reason
         self.inverted = inverted
+        self.hopeless = hopeless
         super().__init__(reason + (", elements inverted (J <= 0) on the way" if inverted else ""))
 
 
@@ -86,11 +101,22 @@ class Counts:
     """Solves that full Newton steps did not manage."""
 
 
+def linear_failure(pc: PETSc.PC) -> tuple[str, bool]:
+    """Return why a factorisation failed, and whether one of another matrix of the same size would as well."""
+    if pc.getFactorSolverType() != PETSc.Mat.SolverType.MUMPS:
+        return "DIVERGED_LINEAR_SOLVE", False
+    code = int(pc.getFactorMatrix().getMumpsInfog(1))
+    name = next((name for name, codes in _MUMPS.items() if code in codes), "MUMPS_FAILED")
+    return f"{name} (INFOG(1) = {code})", name == "MUMPS_OUT_OF_MEMORY"
+
+
 class Solver:
     """Solves a :class:`Problem` for given loads; owns the vectors SNES works on.
 
     Attributes:
         control: what is prescribed of the bone.
+        force_scale: force per length (N/m) in which residuals are measured.
+        stiffness: what a prescribed row's metre is worth in N/m (Pa).
         counts: work done so far.
     """
 
@@ -122,13 +148,14 @@ class Solver:
         self._first_row = first
         self.reaction: Array = np.zeros(2)
         self._inverted = self._shifted = False
+        self._not_a_number = ""  # what is not, in the iterate last rejected
         self._control_rows = False
         self._stale = True  # whether the factorisation must be made anew before it is used
         self._kept = False  # whether the present iteration uses a factorisation made before it
         self._refused = False  # whether the present iteration stayed where it was
         self._ahead = False  # whether the residual of the next iterate is known
         self._norms: list[float] = []
-        self._stiffness = 1e5  # Pa: what a prescribed row's metre is worth in N/m
+        self.force_scale, self.stiffness = force_scale, 1e5
         self._nodal = np.zeros_like(problem.u.x.array)
         nodes = fem.locate_dofs_topological(problem.V, 1, problem.surface.facets)
         self._skin = 2 * nodes + 1  # vertical displacements of the skin that can touch
@@ -176,7 +203,7 @@ class Solver:
             self.layout.add_to_unknowns(self._nodal, f)
             finite = self.layout.comm.allreduce(bool(np.isfinite(f.array_r).all()), op=MPI.LAND)
             if not finite:
-                self._inverted = True
+                self._blame(x)
                 f.set(_OUTSIDE / np.sqrt(self.layout.global_size))
                 return
             self.reaction = -self.layout.rigid_part(f)
@@ -184,7 +211,20 @@ class Solver:
                 f.array_w[-1] += self.control.force
             rows, values = self._prescribed()
             local = rows - self._first_row
-            f.array_w[local] = self._stiffness * (x.array_r[local] - values)
+            f.array_w[local] = self.stiffness * (x.array_r[local] - values)
+
+    def _blame(self, x: PETSc.Vec) -> None:
+        """Find out why a residual is not finite; collective."""
+        suspects = {
+            "displacement": x.array_r,
+            "air gaps": self.problem.d_eq.x.array,
+            "history": self.problem.anchor.x.array,
+        }
+        for name, values in suspects.items():
+            if not self.layout.comm.allreduce(bool(np.isfinite(values).all()), op=MPI.LAND):
+                self._not_a_number = name
+                return
+        self._inverted = True
 
     def _jacobian(self, snes: PETSc.SNES | None, x: PETSc.Vec, A: PETSc.Mat, P: PETSc.Mat) -> None:
         self._kept = not (self._stale or self._shifted)
@@ -194,7 +234,7 @@ class Solver:
             A.zeroEntries()
             fem_petsc.assemble_matrix(A, self.problem.jacobian)
             A.assemble()
-            A.zeroRows(self._prescribed()[0], diag=self._stiffness)
+            A.zeroRows(self._prescribed()[0], diag=self.stiffness)
         self.counts.factorisations += 1
         self._stale = False
 
@@ -259,9 +299,16 @@ class Solver:
         return float(self.layout.comm.allreduce(part, op=MPI.MIN))
 
     # -- use -------------------------------------------------------------------------------------------
-    def new_load(self, control: Control, voltage: float) -> None:
-        """Prescribe a load; the next solve starts from the tangent of the present state, not from a kept one."""
+    def new_load(self, control: Control, voltage: float, slipping: bool = False) -> None:
+        """Prescribe a load; the next solve starts from the tangent of the present state, not from a kept one.
+
+        Args:
+            control: what is prescribed of the bone.
+            voltage: (V).
+            slipping: points on the friction cone are first taken for slipping on, not for sticking.
+        """
         self.control, self.problem.voltage.value = control, voltage
+        self.problem.guess.value = SLIPS if slipping else STICKS
         self._stale = True
 
     def solve(self, creep: bool = False) -> None:
@@ -275,7 +322,7 @@ class Solver:
             NotConverged: with SNES's reason; ``x`` is then the last iterate.
         """
         start = self.x.array_r.copy()
-        self._inverted = False
+        self._inverted, self._not_a_number = False, ""
         reason = self._run(shifted=False)
         if reason <= 0 and not creep:  # the other guess for the points on the cone, which is then kept
             self.x.array_w[:] = start
@@ -287,7 +334,15 @@ class Solver:
             self.x.array_w[:] = start
             reason = self._run(shifted=True)
         if reason <= 0:
-            raise NotConverged(_REASONS.get(reason, str(reason)), self._inverted)
+            raise self._failure(reason)
+
+    def _failure(self, reason: int) -> NotConverged:
+        if self._not_a_number:
+            return NotConverged(f"NOT_A_NUMBER in the {self._not_a_number}", False)
+        if reason == PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE:
+            name, hopeless = linear_failure(self._snes.getKSP().getPC())
+            return NotConverged(name, self._inverted, hopeless)
+        return NotConverged(_REASONS.get(reason, str(reason)), self._inverted)
 
     def _run(self, shifted: bool) -> int:
         self._shifted = shifted
@@ -305,6 +360,17 @@ class Solver:
         if reason <= 0:  # nodes and reaction are those of a rejected iterate
             self._residual(None, self.x, self._f)
         return reason
+
+    def prescribed_rows(self) -> NDArray[np.int64]:
+        """Return the global numbers of this rank's prescribed rows."""
+        return self._prescribed()[0]
+
+    def imbalance(self) -> float:
+        """Return the largest force that the last solve left at a node or on the bone, over ``force_scale``."""
+        forces = np.abs(self._f.array_r)
+        forces[self.prescribed_rows() - self._first_row] = 0.0
+        largest = float(np.max(forces, initial=0.0))
+        return float(self.layout.comm.allreduce(largest, op=MPI.MAX)) / self.force_scale
 
     @property
     def bone(self) -> Array:

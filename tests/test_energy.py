@@ -1,0 +1,214 @@
+"""The energy balance closes on smooth paths, each of its terms is a derivative, and a jump leaves what it releases."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from geometry.benchmarks import block, ridge
+from geometry.mesh import load
+from tests import spring
+from tests.test_contact import HEIGHT, MU_F, WIDTH, make
+from variational.energy import Balance, EnergyBook
+from variational.quantities import Observer
+from variational.solver import Control, Solver
+
+D_EQ, VOLTAGE = 2e-6, 100.0
+PHASES = ("press", "charge", "slide", "back", "discharge", "lift")
+
+
+class Walk:
+    """Leads a solver from state to state and keeps its book."""
+
+    def __init__(self, solver: Solver) -> None:
+        self.solver, self.observer = solver, Observer(solver.problem)
+        self.state = self.observer.state()
+        self.book = EnergyBook(solver.problem, self.state, solver.bone, solver.reaction, np.array([D_EQ]))
+
+    def to(self, control: Control, voltage: float = 0.0, d_eq: float = D_EQ) -> Balance:
+        solver, problem = self.solver, self.solver.problem
+        problem.set_air_gaps(np.array([d_eq]))
+        problem.voltage.value, solver.control = voltage, control
+        solver.solve(creep=True)
+        self.state = self.observer.state()
+        balance = self.book.step(self.state, solver.bone, solver.reaction, np.array([d_eq]))
+        problem.surface.set_history(problem.anchor, self.state.anchor)
+        return balance
+
+
+def cycle(body, depth: float, far: float, steps: int) -> dict[str, list[Balance]]:
+    """Press, charge while the air gap shrinks, slide, and all the way back."""
+    walk = Walk(make(body, MU_F, eps_n=1e11, eps_t=1e10, held=False))
+    up = np.arange(1, steps + 1) / steps
+    way = far * np.arange(1, 2 * steps + 1) / (2 * steps)
+    down, back = 1 - up, far - way
+    small = 0.7 * D_EQ
+
+    def charge(part: float) -> Balance:
+        return walk.to(Control(0.0, -depth), VOLTAGE * np.sqrt(part), D_EQ + part * (small - D_EQ))
+
+    return {
+        "press": [walk.to(Control(0.0, -depth * part)) for part in up],
+        "charge": [charge(part) for part in up],
+        "slide": [walk.to(Control(x, -depth), VOLTAGE, small) for x in way],
+        "back": [walk.to(Control(x, -depth), VOLTAGE, small) for x in back],
+        "discharge": [charge(part) for part in down],
+        "lift": [walk.to(Control(0.0, -depth * part)) for part in down],
+    }
+
+
+@pytest.fixture(scope="module", params=["block", "ridge"])
+def cycles(request):
+    """Cycles of 8, 16, 32 and 64 steps a phase, without jumps."""
+    flat = request.param == "block"
+    model = partial(block, WIDTH, HEIGHT, 0.25e-3) if flat else partial(ridge, 20e-6)
+    depth, far = (2e-6, 30e-6) if flat else (20e-6, 150e-6)
+    body = load(MPI.COMM_WORLD, model)
+    return [cycle(body, depth, far, steps) for steps in (8, 16, 32, 64)]
+
+
+def total(phase: list[Balance], name: str) -> float:
+    return sum(abs(getattr(balance, name)) for balance in phase)
+
+
+@pytest.mark.parametrize("phase", PHASES)
+def test_balance_closes_with_the_square_of_the_step(cycles, phase):
+    """The imbalances of a phase add up to a quarter when the step is halved.
+
+    Over three halvings the rates measured lie between 1.78 and 2.25. One halving's lie between 1.3 and 3.4: points
+    touch, part and start to slip somewhere inside a step.
+    """
+    errors = np.array([total(c[phase], "released") for c in cycles])
+    assert np.log2(errors[0] / errors[-1]) / 3 > 1.75
+    assert (np.diff(errors) < 0).all()
+
+
+def test_balance_of_the_cycle(cycles):
+    """At 64 steps what is unexplained is below 0.5 % of the energy turned over, that stored in the press."""
+    imbalance = sum(total(phase, "released") for phase in cycles[-1].values())
+    assert imbalance < 0.005 * total(cycles[-1]["press"], "change")
+
+
+def test_cycle_returns(cycles):
+    """The body is as it was, so nothing is stored. Tolerance: the solves' on the energy turned over."""
+    end = cycles[-1]["lift"][-1].stored
+    assert abs(end) < 1e-9 * total(cycles[-1]["press"], "change")
+
+
+def test_friction_dissipates(cycles):
+    """No step of friction gives energy back."""
+    assert all(balance.dissipation >= 0 for phase in cycles[0].values() for balance in phase)
+
+
+# -- the terms, each against a difference of energies ------------------------------------------------------
+@pytest.fixture
+def walk():
+    """A ridge pressed and charged without friction."""
+    walk = Walk(make(load(MPI.COMM_WORLD, partial(ridge, 20e-6)), held=False))
+    for part in (0.25, 0.5, 0.75, 1.0):
+        walk.to(Control(0.0, -20e-6 * part))
+    walk.to(Control(0.0, -20e-6), VOLTAGE)
+    return walk
+
+
+def stored(walk: Walk) -> float:
+    """Return the stored energy in the present state, equilibrium or not."""
+    solver = walk.solver
+    balance = walk.book.step(walk.observer.state(), solver.bone, solver.reaction, np.array([D_EQ]))
+    return balance.stored
+
+
+@pytest.mark.mpi
+def test_work_of_the_voltage_is_the_energys_change(walk):
+    """At frozen shape the energy is linear in U^2. Tolerance: roundoff of a difference of energies."""
+    before = stored(walk)
+    walk.solver.problem.voltage.value = 1.5 * VOLTAGE
+    solver = walk.solver
+    balance = walk.book.step(walk.observer.state(), solver.bone, solver.reaction, np.array([D_EQ]))
+    assert balance.voltage == pytest.approx(balance.stored - before, rel=1e-9)
+
+
+@pytest.mark.mpi
+def test_work_of_the_air_gap_is_the_energys_change(walk):
+    """At frozen shape, by the trapezoidal rule. Tolerance: its error for 1 % of the gap."""
+    before, d_eq = stored(walk), np.array([1.01 * D_EQ])
+    problem, solver = walk.solver.problem, walk.solver
+    problem.set_air_gaps(d_eq)
+    balance = walk.book.step(walk.observer.state(), solver.bone, solver.reaction, d_eq)
+    assert balance.air_gap == pytest.approx(balance.stored - before, rel=1e-4)
+
+
+@pytest.mark.mpi
+def test_work_of_the_bone_is_the_energys_change(walk):
+    """Without friction, over 0.1 um of sinking, by the trapezoidal rule, whose error is 1e-4 here."""
+    balance = walk.to(Control(0.0, -20.1e-6), VOLTAGE)
+    assert balance.external == pytest.approx(balance.change, rel=1e-3)
+    assert balance.external > 0
+
+
+def test_contact_springs_give_the_contact_forces():
+    """The springs' energy falls by the work of p_n and t_t on sticking skin: central differences, exact for springs."""
+    solver = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), mu_f=10.0)
+    problem, observer = solver.problem, Observer(solver.problem)
+    energies, step = [], 1e-9
+    for sign in (-1, 0, 1):
+        problem.u.interpolate(lambda x, s=sign: np.stack([5e-8 + s * step + 0 * x[0], -1e-7 + s * step + 0 * x[0]]))
+        state = observer.state()
+        energies.append(problem.surface.per_ridge(problem.interface.formulation.stored(state))[0])
+        if sign == 0:
+            force = problem.surface.per_ridge(state.p_n + state.t_t)[0]
+    assert -(energies[2] - energies[0]) / (2 * step) == pytest.approx(force, rel=1e-9)
+
+
+def test_dissipation_of_full_slip():
+    """A block that slips everywhere dissipates its friction times the way. Tolerance: elastic skin still adjusts."""
+    body = load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3))
+    walk = Walk(make(body, MU_F, eps_n=1e11, eps_t=1e10, held=False))
+    walk.to(Control(0.0, -2e-6))
+    for x in (4e-6, 20e-6, 40e-6, 60e-6):
+        balance = walk.to(Control(x, -2e-6))
+    assert walk.observer.slip(walk.state) == (1.0, True)
+    assert balance.dissipation == pytest.approx(-walk.solver.reaction[0] * 20e-6, rel=1e-6)
+
+
+# -- a jump ------------------------------------------------------------------------------------------------
+def released_by_pull_in() -> float:
+    """Return the energy per length that the spring releases from the fold to where it rests inside d_eq.
+
+    The energy per area is k (g - y)^2 / 2 + phi(y), with g the skin's height without attraction.
+    """
+    pull = spring.HALF / (spring.H_0 + spring.FOLD) ** 2
+    g = spring.FOLD + pull / spring.STIFFNESS
+    inside = spring.HALF / (spring.H_0 + spring.D_EQ) ** 2
+    end = g - inside / spring.STIFFNESS
+    phi = (
+        -spring.HALF / (spring.H_0 + spring.FOLD),
+        -spring.HALF / (spring.H_0 + spring.D_EQ) - inside * (spring.D_EQ - end),
+    )
+    springs = [spring.STIFFNESS / 2 * (g - y) ** 2 for y in (spring.FOLD, end)]
+    return spring.WIDTH * (springs[0] + phi[0] - springs[1] - phi[1])
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("steps", [8, 16, 32])
+def test_energy_released_by_pull_in(steps):
+    """Lowering the bone makes the skin jump to the screen; the balance leaves the closed form's energy.
+
+    Where in the step it jumps is not known: the bone's work is uncertain by half the reaction's jump times the step.
+    The spring is linear to its strain, below 1 %.
+    """
+    solver = spring.charged()
+    walk = Walk(solver)  # its gap is the spring's too
+    walk.to(Control(), spring.VOLTAGE)
+    balances, reactions = [], []
+    for part in np.arange(1, steps + 1) / steps:
+        balances.append(walk.to(Control(0.0, -2e-6 * part), spring.VOLTAGE))
+        reactions.append(solver.reaction[1])
+    released = np.array([balance.released for balance in balances])
+    jump = int(np.argmax(released))
+    expected = released_by_pull_in()
+    uncertain = abs(reactions[jump] - reactions[jump - 1]) / 2 * 2e-6 / steps
+    assert released[jump] > 0
+    assert released[jump] == pytest.approx(expected, abs=uncertain + 0.01 * expected)
+    assert np.abs(np.delete(released, jump)).sum() < 0.02 * expected

@@ -1,0 +1,256 @@
+"""Faults put into a run: each ends in a named error with what to try, with every accepted step on disk."""
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from fingerpad.run import run
+from fingerpad.scene import from_data
+from geometry.benchmarks import block
+from geometry.mesh import load
+from tests.test_contact import H_0, HEIGHT, MU_F, WIDTH, make
+from variational.continuation import Attempt, Continuation
+from variational.coupling import Coupling
+from variational.quantities import Observer
+from variational.roughness.bam import BearingArea
+from variational.roughness.closure import AirGap
+from variational.solver import Control, NotConverged, Solver
+
+ROOT = Path(__file__).resolve().parents[1]
+MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
+HISTORY = [{"name": "press", "bone_height": -60e-6}, {"name": "charge", "voltage": 100.0}]
+GOOD = 2  # steps accepted before a fault
+
+
+@pytest.fixture
+def scene():
+    """A finger pressed in two steps and charged in four."""
+
+    def make_scene(**numerics):
+        return from_data({"mesh": MESH, "history": HISTORY, "numerics": numerics})
+
+    return make_scene
+
+
+def accepted(folder: Path) -> list[dict[str, str]]:
+    """Return the accepted steps that are on disk, each complete."""
+    file = folder / "steps.csv"
+    if not file.exists():
+        return []
+    with file.open(encoding="utf-8", newline="") as lines:
+        rows = list(csv.DictReader(lines))
+    assert all(None not in row and None not in row.values() for row in rows)
+    return rows
+
+
+def ends(scene, folder: Path, *words: str, steps: int = GOOD) -> None:
+    """Run a scene that fails, and check what it says and leaves."""
+    summary = run(scene, folder, MPI.COMM_WORLD)
+    for word in words:
+        assert word in summary["failure"]
+    assert json.loads((folder / "summary.json").read_text(encoding="utf-8"))["failure"] == summary["failure"]
+    assert summary["failure"] in (folder / "run.log").read_text(encoding="utf-8")
+    rows = accepted(folder)
+    assert [int(row["step"]) for row in rows] == list(range(1, steps + 1))
+    assert summary["steps"] == steps
+    assert all(np.isfinite(float(row[name])) for row in rows for name in ("f_ext", "f_contact", "stored", "imbalance"))
+
+
+def test_undisturbed(scene, tmp_path):
+    """Without a fault the scene runs to its end."""
+    summary = run(scene(), tmp_path, MPI.COMM_WORLD)
+    assert "failure" not in summary
+    assert len(accepted(tmp_path)) == summary["steps"] > GOOD
+    assert summary["normal_stable"] is True
+
+
+@pytest.fixture
+def before_solves(monkeypatch):
+    """Return a function that has something done to the solver before each solve after the good steps."""
+
+    def install(act):
+        solve, accept, count = Solver.solve, Continuation._accept, [0]
+
+        def counted(self):
+            accept(self)
+            count[0] += 1
+
+        def disturbed(self, creep=False):
+            if count[0] >= GOOD:
+                act(self)
+            solve(self, creep)
+
+        monkeypatch.setattr(Continuation, "_accept", counted)
+        monkeypatch.setattr(Solver, "solve", disturbed)
+
+    return install
+
+
+def test_not_a_number_in_the_displacement(scene, tmp_path, before_solves):
+    def act(solver):
+        solver.x.array_w[7] = np.nan
+
+    before_solves(act)
+    ends(scene(), tmp_path, "step 3 (charge", "NOT_A_NUMBER in the displacement", "try")
+
+
+def test_not_a_number_from_the_closure(scene, tmp_path, monkeypatch):
+    original = BearingArea.__call__
+
+    def broken(self, p_c):
+        gap = original(self, p_c)
+        d_eq = np.where((np.asarray(p_c) > 0) & (Continuation_steps() >= GOOD), np.nan, gap.d_eq)
+        return AirGap(d_eq, gap.derivative)
+
+    def Continuation_steps():
+        return len(accepted(tmp_path))
+
+    monkeypatch.setattr(BearingArea, "__call__", broken)
+    ends(scene(), tmp_path, "NOT_A_NUMBER in the air gap of ridge", "try")
+
+
+def test_inverted_elements(scene, tmp_path, before_solves):
+    """Nodes thrown about by a tenth of a millimetre turn elements inside out."""
+
+    def act(solver):
+        solver.x.array_w[:] += 1e-4 * np.random.default_rng(0).uniform(-1, 1, solver.layout.local_size)
+
+    before_solves(act)
+    ends(scene(), tmp_path, "step 3 (charge", "elements inverted (J <= 0)", "try a smaller f_ext")
+
+
+def test_mumps_out_of_memory(scene, tmp_path, before_solves):
+    """MUMPS may use one megabyte: it says so, and no smaller step is tried in vain."""
+
+    def act(solver):
+        solver._snes.getKSP().getPC().getFactorMatrix().setMumpsIcntl(23, 1)
+        solver._stale = True
+
+    before_solves(act)
+    ends(scene(), tmp_path, "step 3 (charge", "MUMPS_OUT_OF_MEMORY (INFOG(1) = -", "try a larger mesh.contact")
+    assert (tmp_path / "run.log").read_text(encoding="utf-8").count(" cut: ") == 0
+
+
+def test_fixed_point_at_its_cap(scene, tmp_path):
+    ends(scene(coupling_cap=1), tmp_path, "COUPLING_CAP at ridge", "try a larger numerics.coupling_cap")
+
+
+def test_bone_and_screen_disagree(scene, tmp_path, monkeypatch):
+    """A reaction that is wrong by 1e-5 of f_ext is not passed over."""
+    kept = Solver._residual
+
+    def wrong(self, snes, x, f):
+        kept(self, snes, x, f)
+        self.reaction[1] += 1e-5
+
+    monkeypatch.setattr(Solver, "_residual", wrong)
+    ends(scene(), tmp_path, "forces are not balanced", "try", steps=1)
+
+
+# -- killed ------------------------------------------------------------------------------------------------
+def start(folder: Path) -> subprocess.Popen:
+    """Start the demo in a process of its own and wait for its first steps."""
+    scene = ROOT / "demos" / "scenes" / "coarse.toml"
+    command = [sys.executable, str(ROOT / "demos" / "demo_fingerpad.py"), "--scene", str(scene), "--out", str(folder)]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    until = time.monotonic() + 300
+    while len(accepted(folder)) < GOOD:
+        assert process.poll() is None, process.communicate()
+        assert time.monotonic() < until
+        time.sleep(0.05)
+    return process
+
+
+def test_killed(tmp_path):
+    """What was accepted before a kill is on disk, whole, and no summary pretends that the run ended."""
+    with start(tmp_path) as process:
+        process.kill()
+        process.communicate()
+    rows = accepted(tmp_path)
+    assert len(rows) >= GOOD
+    assert [int(row["step"]) for row in rows] == list(range(1, len(rows) + 1))
+    assert not (tmp_path / "summary.json").exists()
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_asked_to_stop(tmp_path, number):
+    """The run ends after the step it is at, names the signal, and leaves a summary."""
+    with start(tmp_path) as process:
+        process.send_signal(number)
+        out, err = process.communicate(timeout=300)
+    assert process.returncode == 1
+    assert f"stopped by {number.name} after step" in out
+    assert "Traceback" not in err
+    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+    assert number.name in summary["failure"]
+    assert len(accepted(tmp_path)) == summary["steps"] >= GOOD
+
+
+# -- rejected iterates -------------------------------------------------------------------------------------
+def trajectory(chance: float, seed: int) -> tuple[list[dict[str, np.ndarray]], int]:
+    """Press, charge and slide a block; after a solve, reject by chance and try the same step again."""
+    solver = make(load(MPI.COMM_SELF, lambda: block(WIDTH, HEIGHT, 0.125e-3)), MU_F, 1e11, 1e10, held=False)
+    coupling = Coupling(solver, Observer(solver.problem), BearingArea(H_0))
+    continuation = Continuation(coupling)
+    draw, solve, rejected = np.random.default_rng(seed), solver.solve, 0
+
+    def capricious(creep=False):
+        solve(creep)
+        if draw.uniform() < chance:
+            solver.problem.guess.value *= -1  # as an attempt does that took the other guess too
+            raise NotConverged("drawn", False)
+
+    solver.solve = capricious
+    loads = [(Control(0.0, -4e-6 * part), 0.0) for part in (0.5, 1.0)]
+    loads += [(Control(0.0, None, 2.0), voltage) for voltage in (0.0, 60.0, 90.0)]
+    loads += [(Control(x, None, 2.0), 90.0) for x in (1e-6, 3e-6, 8e-6, 20e-6, 40e-6, 80e-6, 60e-6, 20e-6)]
+    states = []
+    for control, voltage in loads:
+        while True:
+            try:
+                continuation._try((Control(control.x, control.y, control.force), voltage), Attempt(), creep=True)
+                break
+            except NotConverged as failure:
+                assert failure.reason == "drawn"
+                rejected += 1
+                continuation._restore()
+        continuation._accept()
+        problem, state = solver.problem, continuation.surface_state
+        states.append(
+            {
+                "unknowns": solver.x.array_r.copy(),
+                "displacement": problem.u.x.array.copy(),
+                "friction history": problem.anchor.x.array.copy(),
+                "air gaps": coupling.d_eq.copy(),
+                "reaction": solver.reaction.copy(),
+                "traction": state.t_t.copy(),
+                "imbalance": np.array(solver.imbalance()),
+                "guess": problem.guess.value.copy(),
+            }
+        )
+    return states, rejected
+
+
+@pytest.fixture(scope="module")
+def undisturbed():
+    return trajectory(0.0, 0)[0]
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_rejections_leave_no_trace(undisturbed, seed):
+    """A run with rejections at random is the undisturbed one, bit for bit."""
+    disturbed, rejected = trajectory(0.3, seed)
+    assert rejected >= 5
+    for k, (state, other) in enumerate(zip(undisturbed, disturbed, strict=True)):
+        for name, value in state.items():
+            assert np.array_equal(value, other[name]), f"{name} of step {k + 1}"

@@ -1,0 +1,117 @@
+"""Eigenvalues and inertia of states before and beyond pull-in, against a spring's closed form."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from geometry.benchmarks import block
+from geometry.mesh import load
+from tests import spring
+from tests.test_contact import HEIGHT, MU_F, VOLTAGE, WIDTH, make
+from variational.quantities import Observer
+from variational.solver import Control
+from variational.stability import StabilityCheck
+
+pytestmark = pytest.mark.mpi
+BEFORE, BEYOND = 1.05, 0.95  # of (h_0 + y) at the fold
+HEIGHTS = [part * (spring.FOLD + spring.H_0) - spring.H_0 for part in (1.5, BEFORE, 1.005, 0.995, BEYOND, 0.85)]
+
+
+@pytest.fixture(scope="module")
+def solver():
+    return spring.charged()
+
+
+@pytest.mark.parametrize("y", HEIGHTS)
+def test_least_eigenvalue_of_a_spring(solver, y):
+    """With the skin flat at height y it is k - p_el', positive above the fold and negative on the middle branch.
+
+    Tolerance: 1e-5 of the spring's stiffness, of which the eigenvalue is a small difference.
+    """
+    spring.place(solver, y)
+    assert Observer(solver.problem).state().y == pytest.approx(y, rel=1e-6)
+    found = StabilityCheck(solver).check()
+    assert found.settled
+    assert found.lambda_min == pytest.approx(spring.net_stiffness(y), abs=1e-5 * spring.STIFFNESS)
+    assert found.stable == (y > spring.FOLD)
+
+
+@pytest.mark.parametrize("y", HEIGHTS)
+def test_inertia_agrees(solver, y):
+    """One negative pivot on the middle branch, none before: the skin as a whole is drawn to the screen."""
+    spring.place(solver, y)
+    assert StabilityCheck(solver).negative_pivots() == (0 if y > spring.FOLD else 1)
+
+
+@pytest.mark.parametrize("eta", [2e7, 2e8, 2e10, 2e11])
+def test_shift_does_not_matter(solver, eta):
+    """The same eigenvalue, about -1.3e9 Pa/m, be the shift below it or above. Tolerance: that of its settling."""
+    y = HEIGHTS[4]
+    spring.place(solver, y)
+    found = StabilityCheck(solver).check(eta)
+    assert found.lambda_min == pytest.approx(spring.net_stiffness(y), abs=2e-6 * max(eta, 1e10))
+
+
+def test_fold_is_at_two_thirds():
+    """A linear spring is pulled in where the skin has come down a third of h_0 + gap (parallel plates)."""
+    pull = spring.HALF / (spring.H_0 + spring.FOLD) ** 2
+    start = spring.FOLD + pull / spring.STIFFNESS
+    assert spring.H_0 + spring.FOLD == pytest.approx(2 / 3 * (spring.H_0 + start), rel=1e-12)
+
+
+def test_leaves_the_state_alone(solver):
+    """Displacement, shift and guess are as before, and the two factorisations are counted."""
+    spring.place(solver, HEIGHTS[0])
+    problem, counts = solver.problem, solver.counts
+    before = problem.u.x.array.copy(), solver.x.array_r.copy(), problem.guess.value.copy()
+    count = counts.factorisations
+    StabilityCheck(solver).check()
+    StabilityCheck(solver).negative_pivots()
+    np.testing.assert_array_equal(problem.u.x.array, before[0])
+    np.testing.assert_array_equal(solver.x.array_r, before[1])
+    assert problem.guess.value == before[2]
+    assert problem.eta.value == 0
+    assert counts.factorisations == count + 2
+
+
+@pytest.fixture(scope="module")
+def sliding():
+    """A pressed, charged block that slips everywhere."""
+    solver = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), MU_F, 1e11, 1e10, held=False)
+    problem, observer = solver.problem, Observer(solver.problem)
+    problem.voltage.value = VOLTAGE / 2
+    for x in (0.0, 30e-6, 60e-6, 120e-6):
+        solver.control = Control(x, -4e-6)
+        solver.solve(creep=True)
+        state = observer.state()
+        problem.surface.set_history(problem.anchor, state.anchor)
+    assert observer.slip(state) == (1.0, True)
+    return solver
+
+
+def test_pressed_and_sliding_is_stable(sliding):
+    """A block held down by its bone stays, slipping too."""
+    found = StabilityCheck(sliding).check()
+    assert found.settled
+    assert found.stable
+
+
+def test_inertia_of_slipping_points_is_refused(sliding):
+    with pytest.raises(ValueError, match="not symmetric"):
+        StabilityCheck(sliding).negative_pivots()
+
+
+def test_agrees_with_all_eigenvalues(sliding):
+    """Arnoldi's least eigenvalue is that of the whole dense pencil, friction included. Tolerance: its settling."""
+    check = StabilityCheck(sliding)
+    K, M = check._tangent(0.0), check._assemble(check._mass, 0.0)
+    if K.comm.size > 1:
+        pytest.skip("dense matrices are for one rank")
+    n = K.getSize()[0]
+    K, M = (A.getValues(range(n), range(n)) for A in (K, M))
+    growth = np.linalg.eigvals(np.linalg.solve(K + 2e9 * M, 2e9 * M))
+    growth = growth[np.abs(growth) > 1e-6]
+    least = np.real(2e9 * (1 / growth - 1)).min()
+    assert check.check().lambda_min == pytest.approx(least, rel=1e-4)

@@ -1,0 +1,126 @@
+r"""Where the energy goes: the balance of stored energy, work and friction from one accepted state to the next.
+
+At an equilibrium the residual (:mod:`~variational.problem`) is work free but for the bone, so along a path of them
+
+.. math:: d\Big(E + \int \tfrac12 \epsilon_n \langle -y \rangle^2 + \tfrac12 \epsilon_t (u_x - s)^2 \,dS\Big)
+          = -R \cdot du^{bone} + \frac{\partial E}{\partial U^2}\, dU^2
+          + \sum_j \frac{\partial E}{\partial d_{eq,j}}\, d d_{eq,j} - \int |t_t| \, |ds| \,dS
+
+with E strain energy and the attraction's potential, R the force on the bone, s the friction's anchor. The potential
+is proportional to U^2; its derivative is the work of the voltage source less what the charged gap keeps. An air gap
+that follows the pressure (:mod:`~variational.coupling`) does work as well. Work is taken by the trapezoidal rule. A
+point slips only while it is on its cone, so its traction is the mean of the cone's radii at both ends, whatever it bore
+before it slipped: that is of second order along smooth paths, as the rest is, and right where a step spans sticking
+and slipping or a reversal. What is left over,
+
+.. math:: \text{released} = \text{external} + \text{voltage} + \text{air gap} - \Delta \text{stored} - \text{dissipated}
+
+vanishes with the square of the step on a smooth path. At a jump, where the body moves without the loads, it is the
+energy that a viscous or inertial body dissipates (Mielke and Roubicek 2015, doi 10.1007/978-1-4939-2706-7), up to half
+the jump of each force times its load's step, since it is not known where in the step the jump took place.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import ufl
+from dolfinx import fem
+from mpi4py import MPI
+from numpy.typing import NDArray
+
+from variational import electroadhesion
+from variational.problem import Problem
+from variational.quantities import SurfaceState
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Energies per length (J/m) of one accepted step; work is done on the body."""
+
+    stored: float
+    """Strain, attraction and contact springs after the step."""
+    change: float
+    """Of what is stored."""
+    external: float
+    """Work of the bone."""
+    voltage: float
+    """Work of the voltage at frozen shape."""
+    air_gap: float
+    """Work of the changing equivalent air gaps at frozen shape."""
+    dissipation: float
+    """Spent by friction, >= 0."""
+
+    @property
+    def released(self) -> float:
+        """What the loads' work leaves unexplained: the energy released by a jump, otherwise the step's error."""
+        return self.external + self.voltage + self.air_gap - self.change - self.dissipation
+
+
+@dataclass(frozen=True)
+class _State:
+    stored: float
+    bone: Array
+    reaction: Array
+    square: float  # U^2
+    d_eq: Array
+    potential: float  # of the attraction, for U = 1 V
+    gap_force: Array  # its derivative with respect to each ridge's d_eq
+    surface: SurfaceState
+
+
+class EnergyBook:
+    """Keeps the energies of accepted states; reads the problem and changes nothing in it."""
+
+    def __init__(self, problem: Problem, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array) -> None:
+        """Start from an equilibrium; arguments as in :meth:`step`."""
+        self._problem = problem
+        d = ufl.variable(problem.d_eq)
+        phi = electroadhesion.potential(problem.y, d, 1.0, problem.interface.h_0)
+        width = -problem.area[1]  # current dx per reference length
+        self._compiled = problem.surface.compile([phi * width, ufl.diff(phi, d) * width])
+        self._last = self._state(surface, bone, reaction, d_eq)
+
+    def _state(self, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array) -> _State:
+        problem, integrate = self._problem, self._problem.surface.per_ridge
+        bulk = problem.mesh.comm.allreduce(float(fem.assemble_scalar(problem.energy)), op=MPI.SUM)
+        potential, gap_force = problem.surface.evaluate(self._compiled)
+        springs = float(integrate(problem.interface.formulation.stored(surface)).sum())
+        square = float(problem.voltage.value) ** 2
+        return _State(
+            bulk + springs,
+            np.array(bone),
+            np.array(reaction),
+            square,
+            np.array(d_eq),
+            float(integrate(potential).sum()),
+            square * integrate(gap_force),
+            surface,
+        )
+
+    def step(self, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array) -> Balance:
+        """Close the book on a step; collective.
+
+        Args:
+            surface: the skin in the state accepted, as solved, before its friction history moved on.
+            bone: its translation (m), shape (2,).
+            reaction: force per length of the body on the bone (N/m), shape (2,).
+            d_eq: air gap of each ridge in that state (m), shape (ridges,).
+        """
+        a, b = self._last, self._state(surface, bone, reaction, d_eq)
+        self._last = b
+        return Balance(
+            stored=b.stored,
+            change=b.stored - a.stored,
+            external=-float((a.reaction + b.reaction) / 2 @ (b.bone - a.bone)),
+            voltage=(a.potential + b.potential) / 2 * (b.square - a.square),
+            air_gap=float((a.gap_force + b.gap_force) / 2 @ (b.d_eq - a.d_eq)),
+            dissipation=self._dissipation(a.surface, b.surface),
+        )
+
+    def _dissipation(self, a: SurfaceState, b: SurfaceState) -> float:
+        # A point that bears nothing is carried along: no slip.
+        slip = np.where(b.p_n > 0, np.abs(self._problem.interface.formulation.slip(a, b)), 0.0)
+        cone = self._problem.interface.mu_f * (a.p_n + b.p_n) / 2
+        return float(self._problem.surface.per_ridge(cone * slip).sum())
