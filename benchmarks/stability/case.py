@@ -1,0 +1,118 @@
+"""One run of the stability map as plain data; no dolfinx in here, so that the plan and the pictures start at once."""
+
+import hashlib
+import json
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any, Literal
+
+REFERENCE_SIZE = 1.25e-6
+"""Contact size (m) of the run with which others are compared."""
+
+
+@dataclass(frozen=True)
+class Formulation:
+    """A treatment of the contact, with its one numerical parameter."""
+
+    symbol: str
+    unit: str
+    default: float
+    values: tuple[float, ...]
+    """Values on the map, five decades."""
+    laws: Callable[[float], dict[str, Any]]
+    """From the parameter to the arguments of :class:`variational.problem.Interface` that depend on it."""
+
+
+# One line to add a formulation, one to add an element: all maps and tables follow.
+FORMULATIONS = {
+    "penalty": Formulation(
+        r"$\epsilon_n$",
+        "Pa/m",
+        1.5e12,
+        (1.5e10, 1.5e11, 1.5e12, 1.5e13, 1.5e14, 1.5e15),
+        lambda eps_n: {"eps_n": eps_n, "eps_t": 5e10},
+    )
+}
+ELEMENTS: dict[str, dict[str, Any]] = {"P1": {"degree": 1}, "P2": {"degree": 2}}
+"""Arguments of :class:`variational.problem.Problem` for each element."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A strip pressed, charged and dragged to full slip; SI units, forces per ridge and out-of-plane length."""
+
+    formulation: str = "penalty"
+    parameter: float = 1.5e12
+    element: str = "P2"
+    contact_size: float = 5e-6
+    force: float = 4.4
+    """The finger's 75 N/m over its 17 ridges in contact (N/m)."""
+    indentation: float = 0.0
+    """If not zero, the bone is lowered by so much (m) instead of being pressed by the force."""
+    voltage: float = 200.0
+    nu: float = 0.48
+    """Poisson's ratio of all layers."""
+    mu_f: float = 0.25
+    step_scale: float = 1.0
+    """Factor on the largest steps of force, voltage and sliding."""
+    slide: float = 1e-3
+    """Farthest the bone slides towards full slip (m); zero for no sliding."""
+    ridges: int = 1
+    height: float = 1.5e-3
+    """Of the strip (m)."""
+    sides: Literal["carried", "free"] = "carried"
+    """Lateral faces: moved sideways with the bone and free to slide up and down, or free."""
+    creep: bool = True
+    """Whether pseudo-transient continuation is allowed."""
+
+    @property
+    def key(self) -> str:
+        """Name under which the result is kept: a hash of all parameters."""
+        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()[:16]
+
+    @property
+    def reference(self) -> "Case":
+        """The run on the finest mesh with the same physical parameters and default numerical ones."""
+        default = Case()
+        return replace(
+            self,
+            formulation=default.formulation,
+            parameter=default.parameter,
+            element=default.element,
+            step_scale=default.step_scale,
+            creep=True,
+            contact_size=REFERENCE_SIZE,
+        )
+
+
+@dataclass
+class Outcome:
+    """What became of a case; lengths in m, forces per out-of-plane length in N/m, of the last accepted state."""
+
+    status: Literal["converged", "continuation", "failed"]
+    """Reached by Newton's method, with the help of pseudo-transient continuation, or not at all."""
+    reason: str = ""
+    """Name of the failure, e.g. SNES's."""
+    message: str = ""
+    load: str = ""
+    """The load in which it ended."""
+    full_slip: bool = False
+    seconds: float = 0.0
+    unknowns: int = 0
+    steps: int = 0
+    newton: int = 0
+    factorisations: int = 0
+    cutbacks: int = 0
+    jumps: int = 0
+    """Solves that needed pseudo-transient continuation."""
+    inverted: dict[str, int] = field(default_factory=dict)
+    """Failed solves that ended with J <= 0, by layer."""
+    dermis_j: float = 1.0
+    """Least J in the dermis."""
+    penetration: float = 0.0
+    f_ext: float = 0.0
+    f_t: float = 0.0
+    contact_length: float = 0.0
+    normal_length: float = 0.0
+    """Contact length before sliding."""
+    bone_height: float = 0.0

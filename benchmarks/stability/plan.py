@@ -1,0 +1,163 @@
+"""What the stability map runs: pairs of parameters around the default, named failures, and their references."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from benchmarks.stability.case import ELEMENTS, FORMULATIONS, Case
+
+MOST = 400
+"""Solves of the whole map, references included."""
+DEFAULT = Case()
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Values of one field of :class:`Case`."""
+
+    field: str
+    label: str
+    values: tuple[float, ...]
+    unit: float = 1.0
+    """SI value of the unit in which the label counts."""
+
+    def thin(self) -> "Axis":
+        """Return every other value and the default, for formulations that are not the default one."""
+        kept = [v for k, v in enumerate(self.values) if k % 2 == 0 or v == getattr(DEFAULT, self.field)]
+        return replace(self, values=tuple(kept))
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One map: all pairs of values of two axes around a base."""
+
+    title: str
+    base: Case
+    x: Axis
+    y: Axis
+
+    def case(self, x: float, y: float) -> Case:
+        """Return the case at a pair of values."""
+        return replace(self.base, **{self.x.field: x, self.y.field: y})
+
+    def cases(self) -> Iterator[Case]:
+        """Return all cases, y by y."""
+        return (self.case(x, y) for y in self.y.values for x in self.x.values)
+
+
+@dataclass(frozen=True)
+class Chart:
+    """A picture: one row of small multiples for each panel."""
+
+    name: str
+    title: str
+    panels: tuple[Panel, ...]
+
+
+@dataclass(frozen=True)
+class Named:
+    """A known failure and the runs that show it, each with the words that tell it from the others."""
+
+    name: str
+    says: str
+    """What is to be seen."""
+    cases: tuple[tuple[str, Case], ...]
+    referenced: bool = False
+    """Whether it takes references to show it."""
+
+
+VOLTAGE = Axis("voltage", "voltage (V)", (0.0, 50.0, 100.0, 150.0, 200.0, 300.0, 400.0))
+FEW_VOLTAGES = Axis("voltage", "voltage (V)", (0.0, 100.0, 200.0, 300.0, 400.0))
+FORCE = Axis("force", "force per ridge (N/m)", (0.5, 1.5, 4.4, 12.0, 30.0))
+SIZE = Axis("contact_size", "contact size (µm)", (3e-6, 5e-6, 10e-6, 20e-6, 40e-6), 1e-6)
+FEW_SIZES = Axis("contact_size", "contact size (µm)", (5e-6, 10e-6, 20e-6, 40e-6), 1e-6)
+STEP = Axis("step_scale", "step size / default", (0.25, 0.5, 1.0, 2.0, 4.0))
+NU = Axis("nu", "Poisson's ratio", (0.3, 0.4, 0.48, 0.49, 0.499, 0.4999))
+
+
+def charts() -> list[Chart]:
+    """Return the pictures; each formulation adds a row to all but the last, which compares elements."""
+    pairs = [
+        ("voltage_force", "Voltage and force", VOLTAGE, FORCE),
+        ("size_voltage", "Contact size and voltage", SIZE, FEW_VOLTAGES),
+        ("step_voltage", "Step size and voltage", STEP, FEW_VOLTAGES),
+    ]
+    rows: dict[str, list[Panel]] = {name: [] for name, *_ in pairs}
+    parameter_rows = []
+    for name, formulation in FORMULATIONS.items():
+        base = replace(DEFAULT, formulation=name, parameter=formulation.default)
+        main = name == DEFAULT.formulation
+        for chart, _, x, y in pairs:
+            rows[chart].append(Panel(name, base, x, y) if main else Panel(name, base, x.thin(), y.thin()))
+        axis = Axis("parameter", f"{formulation.symbol} ({formulation.unit})", formulation.values)
+        parameter_rows.append(Panel(name, base, SIZE if main else SIZE.thin(), axis))
+    result = [Chart(name, title, tuple(rows[name])) for name, title, *_ in pairs]
+    result.append(Chart("size_parameter", "Contact size and parameter of the contact", tuple(parameter_rows)))
+    elements = tuple(Panel(name, replace(DEFAULT, element=name), NU, FEW_SIZES) for name in ELEMENTS)
+    return [*result, Chart("nu_size", "Poisson's ratio and contact size", elements)]
+
+
+def named() -> list[Named]:
+    """Return the known failures with the runs that reproduce them."""
+    coarse = replace(DEFAULT, contact_size=10e-6)
+    free = replace(coarse, sides="free")
+    squeezed = replace(free, indentation=30e-6, voltage=0.0, slide=0.0)
+    smooth = replace(DEFAULT, mu_f=0.0, slide=0.0, force=1.0)
+    lengths = [
+        (f"{size * 1e6:g} µm, {element}, {u:g} V", replace(smooth, contact_size=size, element=element, voltage=u))
+        for size, element in ((5e-6, "P2"), (20e-6, "P2"), (40e-6, "P2"), (20e-6, "P1"))
+        for u in (200.0, 400.0)
+    ]
+    trailing = replace(free, ridges=3, force=1.0)
+    return [
+        Named(
+            "locking",
+            "Locking of first-order elements near ν = 0.5: force at a given indentation of 30 µm, free sides, 10 µm.",
+            tuple(
+                (f"{e}, ν = {nu}", replace(squeezed, element=e, nu=nu)) for nu in (0.48, 0.4999) for e in ("P1", "P2")
+            ),
+            referenced=True,
+        ),
+        Named(
+            "penalty",
+            "Ill-conditioning at high penalty, 10 µm.",
+            tuple(
+                (f"ε_n = {eps_n:g} Pa/m", replace(coarse, parameter=eps_n))
+                for eps_n in (1.5e12, 1.5e14, 1.5e16, 1.5e18)
+            ),
+        ),
+        Named(
+            "edge",
+            "The contact's edge trapped between the nodes of coarse surfaces when voltage should move it: pressed by "
+            "1 N/m and charged, without friction and sliding.",
+            tuple(lengths),
+            referenced=True,
+        ),
+        Named(
+            "snap-off",
+            "Newton's method cycling when a trailing ridge snaps off: three ridges with free sides, 1 N/m each, 10 µm.",
+            (
+                ("with pseudo-transient continuation", trailing),
+                ("Newton alone, with cutback", replace(trailing, creep=False)),
+            ),
+        ),
+        Named(
+            "inversion",
+            "J <= 0 in the dermis under a large force: three ridges with free sides under 20 N/m each, 0 V, 10 µm.",
+            (("20 N/m a ridge", replace(trailing, force=20.0, voltage=0.0)),),
+        ),
+    ]
+
+
+def cases() -> list[Case]:
+    """Return everything to be run, each once: named runs first, references last.
+
+    Raises:
+        ValueError: more than MOST.
+    """
+    shown = [case for chart in charts() for panel in chart.panels for case in panel.cases()]
+    runs = [case for name in named() for _, case in name.cases] + shown
+    compared = [case for name in named() if name.referenced for _, case in name.cases] + shown
+    unique = list(dict.fromkeys([*runs, *(case.reference for case in compared)]))
+    if len(unique) > MOST:
+        raise ValueError(f"the map has {len(unique)} solves; at most {MOST}: make the axes shorter")
+    return unique
