@@ -134,9 +134,9 @@ def test_line_that_was_cut_short(tmp_path):
 
 
 def test_time_limit(tmp_path):
-    """A run that takes too long is stopped and says so."""
-    found = caching.solve(TINY, limit=0.05)
-    assert (found.status, found.reason, found.seconds) == ("failed", "TIME_LIMIT", 0.05)
+    """A run that takes too long is stopped and says so; starting Python with dolfinx alone takes a second."""
+    found = caching.solve(TINY, limit=1)
+    assert (found.status, found.reason, found.seconds) == ("failed", "TIME_LIMIT", 1)
 
 
 def test_crash_is_an_outcome():

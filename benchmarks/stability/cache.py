@@ -7,6 +7,7 @@ stopped has lost the runs in hand; started again it goes on, and with all lines 
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -18,6 +19,7 @@ from pathlib import Path
 from benchmarks.stability.case import Case, Outcome
 
 _ROOT = Path(__file__).resolve().parents[2]
+_STUCK = 20  # times its limit that a process may take by the clock
 
 
 class Cache:
@@ -60,24 +62,22 @@ def solve(case: Case, limit: float) -> Outcome:
 
     Args:
         case: what to run.
-        limit: seconds after which the process is stopped.
+        limit: seconds of processor time, the same on a busy machine, after which the process ends.
     """
     path = os.pathsep.join([str(_ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
-    threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
-    command = [sys.executable, "-m", "benchmarks.stability.solve", json.dumps(asdict(case))]
-    start = time.perf_counter()
+    env = os.environ | {"PYTHONPATH": path, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    command = [sys.executable, "-m", "benchmarks.stability.solve", json.dumps(asdict(case)), str(limit)]
     try:
-        done = subprocess.run(
-            command, env=os.environ | threads | {"PYTHONPATH": path}, capture_output=True, text=True, timeout=limit
-        )
+        done = subprocess.run(command, env=env, capture_output=True, text=True, timeout=_STUCK * limit)
     except subprocess.TimeoutExpired:
-        return Outcome("failed", "TIME_LIMIT", f"not done after {limit:g} s", seconds=limit)
+        return Outcome("failed", "STUCK", f"not done after {_STUCK * limit:g} s", seconds=limit)
+    if done.returncode == -signal.SIGXCPU:
+        return Outcome("failed", "TIME_LIMIT", f"not done after {limit:g} s of processor time", seconds=limit)
     try:
         return Outcome(**json.loads(done.stdout.splitlines()[-1]))
     except (IndexError, TypeError, json.JSONDecodeError):
         last = (done.stderr.strip().splitlines() or ["no message"])[-1]
-        reason = f"CRASH_{done.returncode}"
-        return Outcome("failed", reason, last, seconds=time.perf_counter() - start)
+        return Outcome("failed", f"CRASH_{done.returncode}", last)
 
 
 def run_all(
@@ -94,7 +94,7 @@ def run_all(
         cases: in the order in which they are started.
         cache: is written after each run.
         jobs: processes at a time.
-        limit: seconds for one run.
+        limit: seconds of processor time for one run.
         hours: after which no further run is started.
         report: called with each case, its outcome and the number of those left.
 

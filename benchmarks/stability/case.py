@@ -98,6 +98,7 @@ class Outcome:
     """The load in which it ended."""
     full_slip: bool = False
     seconds: float = 0.0
+    """Processor time (s)."""
     unknowns: int = 0
     steps: int = 0
     newton: int = 0

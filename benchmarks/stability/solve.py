@@ -1,15 +1,19 @@
 """Run one case of the stability map in this process.
 
-python3 -m benchmarks.stability.solve CASE
+python3 -m benchmarks.stability.solve CASE LIMIT
 
-CASE is JSON, the last line printed is the outcome as JSON. The bone's rim is the strip's flat top. The lateral faces
-are carried by the neighbours: they move sideways with the bone and freely up and down. A free stump of soft dermis
-under a stiff epidermis tips over before it slips; faces glued to the bone would hold the epidermis up, which is 90
-times stiffer than the dermis that should. Carried ridges behave like one of many equal ones, and 4.4 N/m on each give
-the finger's contact length and friction. Only the case of a trailing ridge that snaps off has free faces.
+CASE is JSON, and so is the outcome, the last line printed; after LIMIT seconds of processor time the process ends.
+
+The bone's rim is the strip's flat top. The lateral faces are carried by the neighbours: they move sideways with the
+bone and freely up and down. A free stump of soft dermis under a stiff epidermis tips over before it slips; faces glued
+to the bone would hold the epidermis up, which is 24 times stiffer than the dermis that should. Carried ridges behave
+like one of many equal ones, and 4.4 N/m on each give the finger's contact length and friction. Only where a trailing
+ridge is to snap off, or dermis to bulge, have they to be free.
 """
 
 import json
+import math
+import resource
 import sys
 import time
 from collections.abc import Callable
@@ -116,7 +120,7 @@ def targets(case: Case) -> list[Target]:
 
 def run(case: Case) -> Outcome:
     """Reach the loads of a case; a failure is an outcome like any other."""
-    start = time.perf_counter()
+    start = time.process_time()
     build = partial(strip.build, Fingertip(), mesh_size(case.contact_size), case.ridges, case.height)
     body = load(MPI.COMM_WORLD, build, strip.LAYERS)
     problem = _problem(case, body)
@@ -151,10 +155,12 @@ def run(case: Case) -> Outcome:
         out.status = "continuation" if out.jumps else "converged"
     out.newton, out.factorisations = solver.counts.newton, solver.counts.factorisations
     out.full_slip, out.inverted, out.dermis_j = walk.slip[1], walk.inverted, walk.least_j(tags.DERMIS)
-    out.seconds = time.perf_counter() - start
+    out.seconds = time.process_time() - start
     return out
 
 
 if __name__ == "__main__":
+    limit = math.ceil(float(sys.argv[2]))
+    resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 10))
     jit.sweep(MPI.COMM_WORLD)
     print(json.dumps(asdict(run(Case(**json.loads(sys.argv[1]))))))
