@@ -2,9 +2,12 @@
 
 import json
 from dataclasses import asdict, replace
+from functools import partial
 
+import numpy as np
 import pytest
 from matplotlib.image import imread
+from mpi4py import MPI
 
 from benchmarks import stability_map
 from benchmarks.stability import cache as caching
@@ -12,7 +15,12 @@ from benchmarks.stability import pictures, plan, results, table
 from benchmarks.stability.cache import Cache, run_all
 from benchmarks.stability.case import Case, Outcome
 from benchmarks.stability.loop import loop
+from benchmarks.stability.solve import make_problem, make_solver, mesh_size
+from geometry import strip
+from geometry.mesh import load
+from geometry.parameters import Fingertip
 from variational.roughness.bam import BearingArea
+from variational.solver import Control
 
 # A press of half an newton a metre on facets of 60 um: two seconds a run.
 TINY = Case(contact_size=60e-6, force=0.5, voltage=50.0, element="P1", slide=0.0)
@@ -101,6 +109,37 @@ def test_tiny_map_converges(tiny, chart):
         assert found.f_ext == pytest.approx(0.5, rel=1e-7)
         assert found.newton >= found.steps > 1
         assert found.contact_length > 0 < found.penetration
+
+
+def test_longer_steps_are_fewer(tiny, tmp_path):
+    """Twice as long, of the press alone: at most half as many and one, the touch counted apart."""
+    usual, longer = replace(TINY, voltage=0.0), replace(TINY, voltage=0.0, step_scale=2.0)
+    cache = Cache(tmp_path / "runs.jsonl")
+    run_all([longer], cache, jobs=1, limit=300, hours=1)
+    touch = 1
+    assert cache.get(longer).steps - touch <= (tiny.get(usual).steps - touch) / 2 + 1
+
+
+def test_friction_at_full_slip(tmp_path):
+    """Without voltage the screen drags with mu_0 times the force. Tolerance: the solve's."""
+    case = replace(TINY, voltage=0.0, slide=1e-3)
+    cache = Cache(tmp_path / "runs.jsonl")
+    run_all([case], cache, jobs=1, limit=300, hours=1)
+    assert cache.get(case).full_slip
+    assert cache.get(case).f_t == pytest.approx(0.25 * 0.5, rel=1e-6)
+
+
+@pytest.mark.parametrize("sides", ["carried", "free"])
+def test_strip_off_the_screen_follows_the_bone(sides):
+    """Lifted and moved sideways without touching, all of it translates alike, lateral faces included."""
+    case = replace(TINY, sides=sides)
+    build = partial(strip.build, Fingertip(), mesh_size(case.contact_size))
+    body = load(MPI.COMM_WORLD, build, strip.LAYERS)
+    problem = make_problem(case, body)
+    solver = make_solver(case, body, problem)
+    solver.control = Control(5e-6, 2e-6)
+    solver.solve()
+    np.testing.assert_allclose(problem.u.x.array.reshape(-1, 2), [[5e-6, 2e-6]] * problem.V.dofmap.index_map.size_local)
 
 
 def test_failure_is_recorded_with_its_reason(tiny):

@@ -12,7 +12,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterable
-from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import asdict
 from pathlib import Path
 
@@ -102,7 +102,7 @@ def run_all(
         The number of cases that were not run for want of time.
     """
     waiting, end = cache.missing(cases), time.monotonic() + 3600 * hours
-    running = {}
+    running: dict[Future[Outcome], Case] = {}
     with ThreadPoolExecutor(jobs) as pool:
         while running or (waiting and time.monotonic() < end):
             while waiting and len(running) < jobs and time.monotonic() < end:

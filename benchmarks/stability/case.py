@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal
 
+Status = Literal["converged", "continuation", "failed"]
 REFERENCE_SIZE = 1.25e-6
 """Contact size (m) of the run with which others are compared."""
 
@@ -89,7 +90,7 @@ class Case:
 class Outcome:
     """What became of a case; lengths in m, forces per out-of-plane length in N/m, of the last accepted state."""
 
-    status: Literal["converged", "continuation", "failed"]
+    status: Status
     """Reached by Newton's method, with the help of pseudo-transient continuation, or not at all."""
     reason: str = ""
     """Name of the failure, e.g. SNES's."""

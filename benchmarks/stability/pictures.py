@@ -5,27 +5,27 @@ from pathlib import Path
 
 import matplotlib
 from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm, Normalize, to_rgb
+from matplotlib.colors import LogNorm, Normalize, to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
 from benchmarks.stability import results
 from benchmarks.stability.cache import Cache
-from benchmarks.stability.case import Case
+from benchmarks.stability.case import Case, Status
 from benchmarks.stability.plan import DEFAULT, Axis, Chart, Panel
 
-COLOURS = {"converged": "#56B4E9", "continuation": "#E69F00", "failed": "#D55E00"}
-SYMBOLS = {"converged": "●", "continuation": "▲", "failed": "✕"}
-NAMES = {"converged": "converged", "continuation": "through continuation", "failed": "failed"}
+COLOURS: dict[Status, str] = {"converged": "#56B4E9", "continuation": "#E69F00", "failed": "#D55E00"}
+SYMBOLS: dict[Status, str] = {"converged": "●", "continuation": "▲", "failed": "✕"}
+NAMES: dict[Status, str] = {"converged": "converged", "continuation": "through continuation", "failed": "failed"}
 _STYLE = {"font.size": 10, "axes.titlesize": 10, "figure.titlesize": 13, "axes.grid": False}
 Value = Callable[[Case, Cache], float | None]
 
 
-def _cell(ax: Axes, k: int, i: int, colour: str | tuple[float, ...], text: str, default: bool) -> None:
+def _cell(ax: Axes, k: int, i: int, colour: str, text: str, default: bool) -> None:
     ax.add_patch(Rectangle((k, i), 1, 1, facecolor=colour, edgecolor="white", lw=1.5))
     if default:
         ax.add_patch(Rectangle((k + 0.06, i + 0.06), 0.88, 0.88, fill=False, ec="black", lw=1.8, zorder=3))
-    red, green, blue = to_rgb(colour[:3] if not isinstance(colour, str) else colour)
+    red, green, blue = to_rgb(colour)
     ink = "black" if 0.3 * red + 0.59 * green + 0.11 * blue > 0.45 else "white"
     ax.text(k + 0.5, i + 0.5, text, ha="center", va="center", color=ink, fontsize=8, linespacing=1.1)
 
@@ -78,7 +78,8 @@ def _values(ax: Axes, panel: Panel, cache: Cache, value: Value, norm: Normalize,
                 _cell(ax, k, i, "#EEEEEE", SYMBOLS["failed"] if failed else "–", False)
                 continue
             number *= scale
-            _cell(ax, k, i, colours(norm(max(abs(number), norm.vmin or 0.0))), _short(number), _is_default(case, panel))
+            colour = to_hex(colours(norm(max(abs(number), norm.vmin or 0.0))))
+            _cell(ax, k, i, colour, _short(number), _is_default(case, panel))
     _frame(ax, panel, f"{panel.title}: {words}")
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 from benchmarks.stability.case import ELEMENTS, FORMULATIONS, Case
 
@@ -37,7 +38,8 @@ class Panel:
 
     def case(self, x: float, y: float) -> Case:
         """Return the case at a pair of values."""
-        return replace(self.base, **{self.x.field: x, self.y.field: y})
+        values: dict[str, Any] = {self.x.field: x, self.y.field: y}
+        return replace(self.base, **values)
 
     def cases(self) -> Iterator[Case]:
         """Return all cases, y by y."""

@@ -90,7 +90,8 @@ def mesh_size(contact: float) -> MeshSize:
     return MeshSize(contact=contact, interface=float(np.clip(4 * contact, 20e-6, 80e-6)))
 
 
-def _problem(case: Case, body: TaggedMesh) -> Problem:
+def make_problem(case: Case, body: TaggedMesh) -> Problem:
+    """Return the forms of a case on its mesh."""
     surface = Surface(body.mesh, body.facet_tags, {j: tags.ridge(j) for j in body.ridges()})
     laws = FORMULATIONS[case.formulation].laws(case.parameter)
     interface = Interface(mu_f=case.mu_f, h_0=_H_0, **laws)
@@ -98,7 +99,8 @@ def _problem(case: Case, body: TaggedMesh) -> Problem:
     return Problem(body.mesh, body.cell_tags, surface, solids, interface, **ELEMENTS[case.element])
 
 
-def _solver(case: Case, body: TaggedMesh, problem: Problem) -> Solver:
+def make_solver(case: Case, body: TaggedMesh, problem: Problem) -> Solver:
+    """Return the solver with the lateral faces of a case."""
     rim, sides = (body.facet_tags.find(tag) for tag in (tags.BONE_RIM, tags.SIDES))
     scale = case.force * case.ridges
     if case.sides == "free":
@@ -123,8 +125,8 @@ def run(case: Case) -> Outcome:
     start = time.process_time()
     build = partial(strip.build, Fingertip(), mesh_size(case.contact_size), case.ridges, case.height)
     body = load(MPI.COMM_WORLD, build, strip.LAYERS)
-    problem = _problem(case, body)
-    solver, observer = _solver(case, body, problem), Observer(problem)
+    problem = make_problem(case, body)
+    solver, observer = make_solver(case, body, problem), Observer(problem)
     coupling = (Coupling if case.creep else PlainCoupling)(solver, observer, BearingArea(_H_0))
     out = Outcome("converged", unknowns=solver.layout.global_size)
 
