@@ -2,8 +2,8 @@
 
 environment/run python3 benchmarks/stability_map.py [--jobs 2] [--hours 6] [--draw]
 
-Results are kept in results/stability/runs.jsonl after each run; started again, only what is missing is run. Change of
-the solver: delete that file.
+Results are kept in results/stability/runs.jsonl after each run; started again, only what is missing is run. After a
+change of the solver delete that file.
 """
 
 import argparse
@@ -22,13 +22,14 @@ _ROOT = Path(__file__).resolve().parents[1]
 _CLOSURE = BearingArea(h_0=0.514e-6, p_floor=1.0)
 
 
-def show(cache: Cache, charts: list[plan.Chart], named: list[plan.Named], left: int, out: Path, docs: Path) -> None:
+def show(cache: Cache, left: int, out: Path, docs: Path) -> None:
     """Draw the charts and write the page from what the cache holds."""
+    charts = plan.charts()
+    (docs / "stability").mkdir(parents=True, exist_ok=True)
     for chart in charts:
         pictures.draw(chart, cache, out / f"{chart.name}.png")
-        (docs / "stability").mkdir(parents=True, exist_ok=True)
         shutil.copy(out / f"{chart.name}.png", docs / "stability")
-    table.write(docs / "stability.md", charts, named, _CLOSURE, cache, left)
+    table.write(docs / "stability.md", charts, plan.neighbours(), plan.named(), _CLOSURE, cache, left)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -50,7 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not args.draw:
         run_all(cases, cache, args.jobs, args.limit, args.hours, report)
     left = len(cache.missing(cases))
-    show(cache, plan.charts(), plan.named(), left, args.out, args.docs)
+    show(cache, left, args.out, args.docs)
     print(f"{args.docs / 'stability.md'}" + (f"; {left} runs are missing" if left else ""))
     return 1 if left and not args.draw else 0
 

@@ -53,6 +53,11 @@ def test_map_is_not_too_large():
     assert len(set(plan.cases())) == len(plan.cases()) <= plan.MOST
 
 
+def test_neighbours_of_the_default_are_in_the_map():
+    """What the choice of the default rests on costs no further runs."""
+    assert {case for _, case in plan.neighbours().cases} <= set(plan.cases())
+
+
 def test_too_large_a_map_is_refused(monkeypatch):
     monkeypatch.setattr(plan, "MOST", 100)
     with pytest.raises(ValueError, match="solves; at most 100"):
@@ -90,7 +95,16 @@ def test_default_is_the_products():
 
 def test_reference_keeps_the_physics():
     """Only what is numerical is put back; a reference is its own."""
-    case = Case(parameter=1.5e10, element="P1", contact_size=40e-6, step_scale=4.0, creep=False, voltage=300.0, nu=0.3)
+    case = Case(
+        parameter=1.5e10,
+        element="P1",
+        contact_size=40e-6,
+        step_scale=4.0,
+        creep=False,
+        detour=400.0,
+        voltage=300.0,
+        nu=0.3,
+    )
     assert case.reference == Case(contact_size=1.25e-6, voltage=300.0, nu=0.3)
     assert case.reference.reference == case.reference
 
@@ -236,7 +250,7 @@ def test_picture(tiny, chart, tmp_path):
 def test_page(tiny, chart, tmp_path):
     """It holds each run of charts and named failures, with the reason of one that failed."""
     named = plan.Named("hopeless", "A penalty too high.", (("1.5e20 Pa/m", HOPELESS),))
-    table.write(tmp_path / "stability.md", [chart], [named], CLOSURE, tiny, left=0)
+    table.write(tmp_path / "stability.md", [chart], plan.neighbours(), [named], CLOSURE, tiny, left=0)
     text = (tmp_path / "stability.md").read_text()
     assert text.count("| ● converged |") == 4
     assert f"✕ failed: {tiny.get(HOPELESS).reason}" in text
@@ -245,9 +259,9 @@ def test_page(tiny, chart, tmp_path):
 
 def test_tables_are_whole(tiny, chart, tmp_path):
     """All rows of a table have as many cells as its head."""
-    table.write(tmp_path / "stability.md", [chart], plan.named(), CLOSURE, tiny, left=3)
+    table.write(tmp_path / "stability.md", [chart], plan.neighbours(), plan.named(), CLOSURE, tiny, left=3)
     blocks = [b.splitlines() for b in (tmp_path / "stability.md").read_text().split("\n\n") if b.startswith("|")]
-    assert len(blocks) == 2 + len(plan.named())
+    assert len(blocks) == 3 + len(plan.named())  # the default's, the fixed point's and the chart's
     for block in blocks:
         assert len({line.count("|") for line in block}) == 1
 

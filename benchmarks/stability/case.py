@@ -51,6 +51,8 @@ class Case:
     indentation: float = 0.0
     """If not zero, the bone is lowered by so much (m) instead of being pressed by the force."""
     voltage: float = 200.0
+    detour: float = 0.0
+    """If not zero, a voltage (V) reached between the press and the final voltage."""
     nu: float = 0.48
     """Poisson's ratio of all layers."""
     mu_f: float = 0.25
@@ -82,6 +84,7 @@ class Case:
             element=default.element,
             step_scale=default.step_scale,
             creep=True,
+            detour=0.0,
             contact_size=REFERENCE_SIZE,
         )
 

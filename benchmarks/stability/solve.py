@@ -113,8 +113,7 @@ def targets(case: Case) -> list[Target]:
     """Return the loads of a case, one after the other."""
     pressed = Target("press", bone_height=-case.indentation)
     loads = [pressed if case.indentation else Target("press", f_ext=case.force * case.ridges)]
-    if case.voltage:
-        loads.append(Target("charge", voltage=case.voltage))
+    loads += [Target("charge", voltage=voltage) for voltage in (case.detour, case.voltage) if voltage]
     if case.slide:
         loads.append(Target("slide", bone_x=case.slide, until_full_slip=True))
     return loads
