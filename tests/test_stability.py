@@ -54,7 +54,7 @@ def test_map_is_not_too_large():
 
 
 def test_neighbours_of_the_default_are_in_the_map():
-    """What the choice of the default rests on costs no further runs."""
+    """What the choice of the default rests on is run."""
     assert {case for _, case in plan.neighbours().cases} <= set(plan.cases())
 
 

@@ -18,7 +18,8 @@ Made by `environment/run python3 benchmarks/stability_map.py`; do not edit. One 
 the snap-off), pressed by a force, charged and dragged until it slips everywhere. Its lateral faces move sideways with
 the bone and freely up and down, as if the neighbours were equal: 4.4 N/m a ridge then give the finger's contact length
 and friction. Errors are relative to a run with contact size 1.25 µm, P2 elements, the default penalty and the same
-physical parameters. {symbols}. Iterations are Newton's, over the whole history; *load* is the one in which a run ended.
+physical parameters. {symbols}. Iterations
+are Newton's, over the whole history; *load* is the one in which a run ended.
 """
 _LOOP = """
 ### The fixed point near the fold
@@ -85,7 +86,8 @@ def named_section(named: Named, cache: Cache, level: int = 3) -> str:
         if named.referenced:
             row += [percent(results.friction_error(case, cache) if case.slide else None)]
             row += [percent(results.length_error(case, cache))]
-            row += [f"{o.f_ext:.4g}" if o else "–", percent(results.force_error(case, cache))]
+            row += [f"{o.f_ext:.4g}" if o else "–"]
+            row += [percent(results.force_error(case, cache) if case.indentation else None)]
         rows.append(row)
     return f"\n{'#' * level} {named.name.capitalize()}\n\n{named.says}\n\n" + _table(head, rows)
 
@@ -147,7 +149,7 @@ def write(
     symbols = ", ".join(f"{SYMBOLS[s]} {NAMES[s]}" for s in NAMES)
     text = _INTRODUCTION.format(symbols=symbols[0].upper() + symbols[1:])
     seconds = sum(o.seconds for o in cache.outcomes.values())
-    text += f"\n{len(cache.outcomes)} solves, {seconds / 3600:.1f} hours of one core"
+    text += f"\n{len(cache.outcomes)} solves, {seconds / 60:.0f} minutes of one core"
     text += f"; {left} more have not been run.\n" if left else ".\n"
     text += named_section(default, cache, 2) + "\n## Known failures, reproduced\n"
     text += "".join(named_section(one, cache) for one in named) + loop_section(closure)
