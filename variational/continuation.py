@@ -83,6 +83,7 @@ class Continuation:
         coupling: Coupling,
         on_accept: Callable[[Target, float, Attempt], None] = lambda target, part, attempt: None,
         touch_depth: float = 5e-6,
+        step_scale: float = 1.0,
     ) -> None:
         """Start from the unloaded body.
 
@@ -90,10 +91,11 @@ class Continuation:
             coupling: solves at fixed loads.
             on_accept: called with the target, the part of it reached and how, after each accepted step.
             touch_depth: how far the bone is lowered by displacement before force takes over (m).
+            step_scale: factor on the largest steps of force, voltage and displacement.
         """
         self.coupling, self.solver = coupling, coupling.solver
         self.problem, self.observer = self.solver.problem, coupling.observer
-        self.on_accept, self.touch_depth = on_accept, touch_depth
+        self.on_accept, self.touch_depth, self.step_scale = on_accept, touch_depth, step_scale
         self.steps = 0
         self.surface_state = self.observer.state()
         self.slip = (0.0, False)
@@ -177,7 +179,7 @@ class Continuation:
 
     def _largest_step(self, target: Target) -> float:
         """Return the largest part of a target that one step may cover."""
-        a, steps = self._now, [1.0]
+        a, steps = self._now, [np.inf]
         if target.f_ext is not None:
             change = abs(np.sqrt(target.f_ext) - np.sqrt(max(a.control.force, 0.0)))
             steps.append(_FORCE * np.sqrt(max(target.f_ext, a.control.force)) / max(change, 1e-300))
@@ -188,7 +190,7 @@ class Continuation:
             steps.append(_SINK / max(abs(target.bone_height - self._height()), 1e-300))
         if target.bone_x is not None:
             steps.append(_SLIDE / max(abs(target.bone_x - a.control.x), 1e-300))
-        return float(min(steps))
+        return float(min(1.0, self.step_scale * min(steps)))
 
     def _reach(self, target: Target) -> None:
         at, largest = self._loads(target), self._largest_step(target)

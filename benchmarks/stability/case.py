@@ -1,0 +1,131 @@
+"""One run of the stability map as plain data; no dolfinx in here, so that the plan and the pictures start at once."""
+
+import hashlib
+import json
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any, Literal
+
+from variational.augmented import AugmentedLagrangian
+from variational.contact import Formulation
+from variational.nitsche import Nitsche
+from variational.penalty import Penalty
+
+Status = Literal["converged", "continuation", "failed"]
+REFERENCE_SIZE = 1.25e-6
+"""Contact size (m) of the run with which others are compared."""
+
+
+@dataclass(frozen=True)
+class Treatment:
+    """A formulation of the contact, with its one numerical parameter."""
+
+    label: str
+    """Symbol and unit of the parameter."""
+    default: float
+    values: tuple[float, ...]
+    """Values on the map, five decades."""
+    law: Callable[[float], Formulation]
+    """From the parameter to the formulation."""
+    everywhere: bool = True
+    """Whether it is on every chart, not on that of its parameter alone."""
+
+
+_EPS_N = (1.5e10, 1.5e11, 1.5e12, 1.5e13, 1.5e14, 1.5e15)
+_GAMMA_0 = (0.1, 1.0, 10.0, 100.0, 1e3, 1e4)
+_STIFFNESS, _OVER_SKIN = r"$\epsilon_n$ (Pa/m)", r"$\gamma_0$"
+# One line to add a formulation, one to add an element: all maps and tables follow.
+FORMULATIONS = {
+    "penalty": Treatment(_STIFFNESS, 1.5e12, _EPS_N, lambda eps_n: Penalty(eps_n, 5e10)),
+    "augmented": Treatment(_STIFFNESS, 1.5e13, _EPS_N, lambda eps_n: AugmentedLagrangian(eps_n, eps_n / 30, 5e-9)),
+    "Nitsche, θ = 0": Treatment(_OVER_SKIN, 10.0, _GAMMA_0, lambda gamma_0: Nitsche(gamma_0, 0)),
+    "Nitsche, θ = 1": Treatment(_OVER_SKIN, 100.0, _GAMMA_0, lambda gamma_0: Nitsche(gamma_0, 1), everywhere=False),
+    "Nitsche, θ = -1": Treatment(_OVER_SKIN, 10.0, _GAMMA_0, lambda gamma_0: Nitsche(gamma_0, -1), everywhere=False),
+}
+ELEMENTS: dict[str, dict[str, Any]] = {"P1": {"degree": 1}, "P2": {"degree": 2}}
+"""Arguments of :class:`variational.problem.Problem` for each element."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A strip pressed, charged and dragged to full slip; SI units, forces per ridge and out-of-plane length."""
+
+    formulation: str = "penalty"
+    parameter: float = 1.5e12
+    element: str = "P2"
+    contact_size: float = 5e-6
+    force: float = 4.4
+    """The finger's 75 N/m over its 17 ridges in contact (N/m)."""
+    indentation: float = 0.0
+    """If not zero, the bone is lowered by so much (m) instead of being pressed by the force."""
+    voltage: float = 200.0
+    detour: float = 0.0
+    """If not zero, a voltage (V) reached between the press and the final voltage."""
+    nu: float = 0.48
+    """Poisson's ratio of all layers."""
+    mu_f: float = 0.25
+    step_scale: float = 1.0
+    """Factor on the largest steps of force, voltage and sliding."""
+    slide: float = 1e-3
+    """Farthest the bone slides towards full slip (m); zero for no sliding."""
+    ridges: int = 1
+    height: float = 1.5e-3
+    """Of the strip (m)."""
+    sides: Literal["carried", "free"] = "carried"
+    """Lateral faces: moved sideways with the bone and free to slide up and down, or free."""
+    creep: bool = True
+    """Whether pseudo-transient continuation is allowed."""
+
+    @property
+    def key(self) -> str:
+        """Name under which the result is kept: a hash of all parameters."""
+        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()[:16]
+
+    @property
+    def reference(self) -> "Case":
+        """The run on the finest mesh with the same physical parameters and default numerical ones."""
+        default = Case()
+        return replace(
+            self,
+            formulation=default.formulation,
+            parameter=default.parameter,
+            element=default.element,
+            step_scale=default.step_scale,
+            creep=True,
+            detour=0.0,
+            contact_size=REFERENCE_SIZE,
+        )
+
+
+@dataclass
+class Outcome:
+    """What became of a case; lengths in m, forces per out-of-plane length in N/m, of the last accepted state."""
+
+    status: Status
+    """Reached by Newton's method, with the help of pseudo-transient continuation, or not at all."""
+    reason: str = ""
+    """Name of the failure, e.g. SNES's."""
+    message: str = ""
+    load: str = ""
+    """The load in which it ended."""
+    full_slip: bool = False
+    seconds: float = 0.0
+    """Processor time (s)."""
+    unknowns: int = 0
+    steps: int = 0
+    newton: int = 0
+    factorisations: int = 0
+    cutbacks: int = 0
+    jumps: int = 0
+    """Solves that needed pseudo-transient continuation."""
+    inverted: dict[str, int] = field(default_factory=dict)
+    """Failed solves that ended with J <= 0, by layer."""
+    dermis_j: float = 1.0
+    """Least J in the dermis."""
+    penetration: float = 0.0
+    f_ext: float = 0.0
+    f_t: float = 0.0
+    contact_length: float = 0.0
+    normal_length: float = 0.0
+    """Contact length before sliding."""
+    bone_height: float = 0.0

@@ -1,0 +1,166 @@
+"""Run one case of the stability map in this process.
+
+python3 -m benchmarks.stability.solve CASE LIMIT
+
+CASE is JSON, and so is the outcome, the last line printed; after LIMIT seconds of processor time the process ends.
+
+The bone's rim is the strip's flat top. The lateral faces are carried by the neighbours: they move sideways with the
+bone and freely up and down. A free stump of soft dermis under a stiff epidermis tips over before it slips; faces glued
+to the bone would hold the epidermis up, which is 24 times stiffer than the dermis that should. Carried ridges behave
+like one of many equal ones, and 4.4 N/m on each give the finger's contact length and friction. Only where a trailing
+ridge is to snap off, or dermis to bulge, have they to be free.
+"""
+
+import json
+import math
+import resource
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import asdict
+from functools import partial
+
+import basix
+import numpy as np
+import ufl
+from dolfinx import fem
+from mpi4py import MPI
+from numpy.typing import NDArray
+
+from benchmarks.stability.case import ELEMENTS, FORMULATIONS, Case, Outcome
+from geometry import strip, tags
+from geometry.mesh import TaggedMesh, load
+from geometry.parameters import Fingertip, MeshSize
+from variational import compat, jit
+from variational.continuation import Attempt, Continuation, StepFailed, Target
+from variational.coupling import Coupling
+from variational.kinematics import deformation_gradient
+from variational.problem import Interface, Ogden, Problem
+from variational.quantities import Observer, SurfaceState
+from variational.roughness.bam import BearingArea
+from variational.solver import Control, NotConverged, Solver
+from variational.surface import Surface
+
+_H_0 = 0.514e-6  # m
+_SKIN = {tags.STRATUM_CORNEUM: 86.76e3, tags.VIABLE_EPIDERMIS: 61.75e3, tags.DERMIS: 2.55e3}  # Pa
+_ALPHA = -14.53
+
+
+class CarriedSolver(Solver):
+    """Prescribes, in place of fixed values, the bone's translation in x."""
+
+    def _prescribed(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        self._fixed_values[:] = self.control.x
+        return super()._prescribed()
+
+
+class PlainCoupling(Coupling):
+    """Sweeps without pseudo-transient continuation."""
+
+    def _sweep(self, creep: bool) -> tuple[NDArray[np.float64], SurfaceState]:
+        return super()._sweep(False)
+
+
+class Recorder(Continuation):
+    """Counts, by layer, failed solves that end with elements inside out; of cut steps nobody else knows."""
+
+    def __init__(self, case: Case, coupling: Coupling, on_accept: Callable[[Target, float, Attempt], None]) -> None:
+        super().__init__(coupling, on_accept, step_scale=case.step_scale)
+        points, _ = basix.make_quadrature(basix.CellType.triangle, 2)
+        self._jacobian = fem.Expression(ufl.det(deformation_gradient(self.problem.u)), np.asarray(points))
+        self.inverted: dict[str, int] = {}
+
+    def least_j(self, tag: int) -> float:
+        """Return the smallest ratio of current to reference volume at the quadrature points of a layer."""
+        cells = self.problem.cell_tags.find(tag)
+        return float(compat.evaluate_on_cells(self._jacobian, self.problem.mesh, cells).min())
+
+    def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool) -> None:
+        try:
+            super()._try(load, attempt, creep)
+        except NotConverged as failure:
+            for name, tag in tags.LAYERS.items():
+                if failure.inverted and tag in strip.LAYERS and self.least_j(tag) <= 0:
+                    self.inverted[name] = self.inverted.get(name, 0) + 1
+            raise
+
+
+def mesh_size(contact: float) -> MeshSize:
+    """Return element sizes: interfaces follow the contact, between 20 and 80 um."""
+    return MeshSize(contact=contact, interface=float(np.clip(4 * contact, 20e-6, 80e-6)))
+
+
+def make_problem(case: Case, body: TaggedMesh) -> Problem:
+    """Return the forms of a case on its mesh."""
+    surface = Surface(body.mesh, body.facet_tags, {j: tags.ridge(j) for j in body.ridges()})
+    interface = Interface(FORMULATIONS[case.formulation].law(case.parameter), case.mu_f, _H_0)
+    solids = {tag: Ogden(shear, _ALPHA, case.nu) for tag, shear in _SKIN.items()}
+    return Problem(body.mesh, body.cell_tags, surface, solids, interface, **ELEMENTS[case.element])
+
+
+def make_solver(case: Case, body: TaggedMesh, problem: Problem) -> Solver:
+    """Return the solver with the lateral faces of a case."""
+    rim, sides = (body.facet_tags.find(tag) for tag in (tags.BONE_RIM, tags.SIDES))
+    scale = case.force * case.ridges
+    if case.sides == "free":
+        return Solver(problem, rim, scale)
+    on_rim, on_sides = (fem.locate_dofs_topological(problem.V, 1, facets) for facets in (rim, sides))
+    return CarriedSolver(problem, rim, scale, fixed=[(2 * np.setdiff1d(on_sides, on_rim), 0.0)])
+
+
+def targets(case: Case) -> list[Target]:
+    """Return the loads of a case, one after the other."""
+    pressed = Target("press", bone_height=-case.indentation)
+    loads = [pressed if case.indentation else Target("press", f_ext=case.force * case.ridges)]
+    loads += [Target("charge", voltage=voltage) for voltage in (case.detour, case.voltage) if voltage]
+    if case.slide:
+        loads.append(Target("slide", bone_x=case.slide, until_full_slip=True))
+    return loads
+
+
+def run(case: Case) -> Outcome:
+    """Reach the loads of a case; a failure is an outcome like any other."""
+    start = time.process_time()
+    build = partial(strip.build, Fingertip(), mesh_size(case.contact_size), case.ridges, case.height)
+    body = load(MPI.COMM_WORLD, build, strip.LAYERS)
+    problem = make_problem(case, body)
+    solver, observer = make_solver(case, body, problem), Observer(problem)
+    coupling = (Coupling if case.creep else PlainCoupling)(solver, observer, BearingArea(_H_0))
+    out = Outcome("converged", unknowns=solver.layout.global_size)
+
+    def accepted(target: Target, part: float, attempt: Attempt) -> None:
+        state = walk.surface_state
+        loads = observer.ridge_loads(state)
+        pressed = state.p_n > 0
+        out.steps, out.cutbacks = walk.steps, out.cutbacks + len(attempt.cutbacks)
+        out.jumps += attempt.pseudo_transient
+        out.penetration = float(np.max(-state.y[pressed], initial=0.0))
+        out.f_ext, out.bone_height = float(solver.reaction[1]), float(solver.bone[1])
+        # What the screen exerts on the skin: carried faces bear a part that the bone does not feel.
+        out.f_t = float((loads.f_attraction_x - loads.f_friction).sum())
+        out.contact_length = float(loads.length.sum())
+        if target.name != "slide":
+            out.normal_length = out.contact_length
+
+    walk = Recorder(case, coupling, accepted)
+    try:
+        for target in targets(case):
+            out.load = target.name
+            walk.run(target)
+    except StepFailed as failure:
+        cause = failure.__cause__
+        out.status, out.message = "failed", str(failure)
+        out.reason = cause.reason if isinstance(cause, NotConverged) else str(failure)
+    else:
+        out.status = "continuation" if out.jumps else "converged"
+    out.newton, out.factorisations = solver.counts.newton, solver.counts.factorisations
+    out.full_slip, out.inverted, out.dermis_j = walk.slip[1], walk.inverted, walk.least_j(tags.DERMIS)
+    out.seconds = time.process_time() - start
+    return out
+
+
+if __name__ == "__main__":
+    limit = math.ceil(float(sys.argv[2]))
+    resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 10))
+    jit.sweep(MPI.COMM_WORLD)
+    print(json.dumps(asdict(run(Case(**json.loads(sys.argv[1]))))))
