@@ -197,6 +197,8 @@ class Report:
             "steps": len(rows),
             "jumps": sum(row["jump"] for row in rows),
             "cutbacks": sum(row["cutbacks"] for row in rows),
+            "penetration": max((row["penetration"] for row in rows), default=0.0),
+            "imbalance": max((row["imbalance"] for row in rows), default=0.0),
             "energy_released": sum(row["energy_released"] for row in rows if row["jump"]),
             "dissipation": sum(row["dissipation"] for row in rows),
             "memory_mb": peak,

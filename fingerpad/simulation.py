@@ -193,6 +193,7 @@ class Simulation:
             "contact_length": float(loads.length.sum()),
             "slipping": slipping,
             "all_slip": full,
+            "penetration": self.observer.penetration(self.continuation.surface_state),
             "imbalance": self.solver.imbalance(),
             "stored": energy.stored,
             "dissipation": energy.dissipation,

@@ -37,7 +37,7 @@ class Target:
 # How far one step may go: parts of sqrt(f_ext) and of U^2, and metres of the bone.
 _FORCE, _VOLTAGE, _SINK, _SLIDE = 0.067, 0.25, 40e-6, 60e-6
 _SMALLEST = 1e-3  # step below which a load is given up, over the largest
-_MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on
+_MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on when the bone moves
 _FEW = 6  # factorisations; a step that took no more lets the next one grow
 
 
@@ -233,7 +233,8 @@ class Continuation:
     def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool) -> None:
         counts = self.solver.counts
         newton, factorisations, shifted = counts.newton, counts.factorisations, counts.pseudo_transient
-        self.solver.new_load(*load, slipping=self.slip[0] > _MANY)
+        moves = load[0].x != self._now.control.x
+        self.solver.new_load(*load, slipping=moves and self.slip[0] > _MANY)
         try:
             self.coupling.solve(creep)
         finally:

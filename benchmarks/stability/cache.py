@@ -1,25 +1,16 @@
-"""Cases run in processes of their own, two at a time, each result kept as a line of JSON as soon as it is there.
+"""Cases run in processes of their own, each result kept as a line of JSON as soon as it is there.
 
-A run that is killed, crashes in the linear solver or takes too long costs that run and no other: a thread of the pool
-only waits for a fresh process, which, unlike a worker of a process pool, can be stopped by itself. The map that is
-stopped has lost the runs in hand; started again it goes on, and with all lines there it only draws.
+The map that is stopped has lost the runs in hand; started again it goes on, and with all lines there it only draws.
 """
 
 import json
-import os
-import signal
-import subprocess
-import sys
-import time
 from collections.abc import Callable, Iterable
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import asdict
 from pathlib import Path
 
 from benchmarks.stability.case import Case, Outcome
-
-_ROOT = Path(__file__).resolve().parents[2]
-_STUCK = 20  # times its limit that a process may take by the clock
+from fingerpad import processes
+from fingerpad.processes import Pool
 
 
 class Cache:
@@ -64,20 +55,13 @@ def solve(case: Case, limit: float) -> Outcome:
         case: what to run.
         limit: seconds of processor time, the same on a busy machine, after which the process ends.
     """
-    path = os.pathsep.join([str(_ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
-    env = os.environ | {"PYTHONPATH": path, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-    command = [sys.executable, "-m", "benchmarks.stability.solve", json.dumps(asdict(case)), str(limit)]
+    end = processes.run("benchmarks.stability.solve", [json.dumps(asdict(case)), str(limit)], limit)
+    if end.reason:
+        return Outcome("failed", end.reason, end.message, seconds=0.0 if end.reason.startswith("CRASH") else limit)
     try:
-        done = subprocess.run(command, env=env, capture_output=True, text=True, timeout=_STUCK * limit)
-    except subprocess.TimeoutExpired:
-        return Outcome("failed", "STUCK", f"not done after {_STUCK * limit:g} s", seconds=limit)
-    if done.returncode == -signal.SIGXCPU:
-        return Outcome("failed", "TIME_LIMIT", f"not done after {limit:g} s of processor time", seconds=limit)
-    try:
-        return Outcome(**json.loads(done.stdout.splitlines()[-1]))
+        return Outcome(**json.loads(end.stdout.splitlines()[-1]))
     except (IndexError, TypeError, json.JSONDecodeError):
-        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
-        return Outcome("failed", f"CRASH_{done.returncode}", last)
+        return Outcome("failed", "CRASH", "no outcome printed")
 
 
 def run_all(
@@ -101,16 +85,9 @@ def run_all(
     Returns:
         The number of cases that were not run for want of time.
     """
-    waiting, end = cache.missing(cases), time.monotonic() + 3600 * hours
-    running: dict[Future[Outcome], Case] = {}
-    with ThreadPoolExecutor(jobs) as pool:
-        while running or (waiting and time.monotonic() < end):
-            while waiting and len(running) < jobs and time.monotonic() < end:
-                case = waiting.pop(0)
-                running[pool.submit(solve, case, limit)] = case
-            done, _ = wait(running, return_when=FIRST_COMPLETED)
-            for future in done:
-                case, outcome = running.pop(future), future.result()
-                cache.add(case, outcome)
-                report(case, outcome, len(waiting) + len(running))
-    return len(waiting)
+
+    def done(case: Case, outcome: Outcome, left: int) -> None:
+        cache.add(case, outcome)
+        report(case, outcome, left)
+
+    return Pool[Case, Outcome](lambda case: solve(case, limit), jobs, hours).run(cache.missing(cases), done)

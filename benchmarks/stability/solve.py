@@ -12,8 +12,6 @@ ridge is to snap off, or dermis to bulge, have they to be free.
 """
 
 import json
-import math
-import resource
 import sys
 import time
 from collections.abc import Callable
@@ -28,6 +26,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from benchmarks.stability.case import ELEMENTS, FORMULATIONS, Case, Outcome
+from fingerpad.processes import limit_processor_time
 from geometry import strip, tags
 from geometry.mesh import TaggedMesh, load
 from geometry.parameters import Fingertip, MeshSize
@@ -160,7 +159,6 @@ def run(case: Case) -> Outcome:
 
 
 if __name__ == "__main__":
-    limit = math.ceil(float(sys.argv[2]))
-    resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 10))
+    limit_processor_time(float(sys.argv[2]))
     jit.sweep(MPI.COMM_WORLD)
     print(json.dumps(asdict(run(Case(**json.loads(sys.argv[1]))))))

@@ -1,0 +1,92 @@
+"""Many scenes, each run in a process of its own and kept by what it is made of.
+
+A scene's folder is named by a hash of all its parameters: run again, a sweep computes only what has changed, and one
+that is killed has lost the runs in hand. The hash knows nothing of the program: after a change of the mechanics the
+folder must be deleted.
+
+    python3 -m fingerpad.sweep SCENE.json FOLDER LIMIT    one run, as the sweep starts it
+"""
+
+import hashlib
+import json
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from fingerpad.processes import End, Pool, limit_processor_time, run
+from fingerpad.scene import Scene
+
+Summary = dict[str, Any]
+_LIMIT = 900.0  # s of processor time for one scene
+
+
+def key(scene: Scene) -> str:
+    """Return the name under which a scene's results are kept."""
+    return hashlib.sha256(json.dumps(scene.parameters(), sort_keys=True).encode()).hexdigest()[:16]
+
+
+def result(scene: Scene, folder: Path) -> Summary | None:
+    """Return the summary of a scene that has been run in a sweep's folder, whatever came of it."""
+    try:
+        return dict(json.loads((folder / key(scene) / "summary.json").read_text(encoding="utf-8")))
+    except (OSError, json.JSONDecodeError):
+        return None
+
+
+def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int = 2, limit: float = _LIMIT) -> dict[str, Summary]:
+    """Run what has not been run yet, with a progress bar.
+
+    Args:
+        scenes: by name.
+        folder: of all results.
+        jobs: processes at a time.
+        limit: seconds of processor time for one scene.
+
+    Returns:
+        The summaries by name. That of a run that crashed or took too long holds ``failure`` alone, and it is run
+        again the next time; what it left is in its folder.
+    """
+    found = {name: result(scene, folder) for name, scene in scenes.items()}
+    broken: dict[str, Summary] = {}
+
+    def job(name: str) -> End:
+        place = folder / key(scenes[name])
+        place.mkdir(parents=True, exist_ok=True)
+        (place / "scene.json").write_text(json.dumps(scenes[name].parameters(), indent=1), encoding="utf-8")
+        return run("fingerpad.sweep", [str(place / "scene.json"), str(place), str(limit)], limit)
+
+    def done(name: str, end: End, left: int) -> None:
+        summary = result(scenes[name], folder)
+        if summary is None:
+            broken[name] = {"failure": f"{end.reason or 'CRASH'}: {end.message}"}
+        words = (summary or broken[name]).get("failure") or "done"
+        bar.console.print(f"{name}: {words}", highlight=False, markup=False, soft_wrap=True)
+        bar.advance(task)
+
+    missing = [name for name, summary in found.items() if summary is None]
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
+    with Progress(*columns, TimeElapsedColumn(), TimeRemainingColumn(), transient=True) as bar:
+        bar.disable = not bar.console.is_terminal
+        task = bar.add_task("scenes", total=len(missing))
+        Pool[str, End](job, jobs).run(missing, done)
+    return {name: result(scene, folder) or broken[name] for name, scene in scenes.items()}
+
+
+def _one(scene: Path, folder: Path) -> None:
+    import petsc4py
+
+    petsc4py.init([sys.argv[0]])
+    from mpi4py import MPI
+
+    from fingerpad.run import run as run_scene
+    from fingerpad.scene import from_data
+
+    run_scene(from_data(json.loads(scene.read_text(encoding="utf-8"))), folder, MPI.COMM_WORLD)
+
+
+if __name__ == "__main__":
+    limit_processor_time(float(sys.argv[3]))
+    _one(Path(sys.argv[1]), Path(sys.argv[2]))

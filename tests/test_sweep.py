@@ -1,0 +1,88 @@
+"""Sweeps: what names a run, what is run again, and what a run that is stopped costs."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from fingerpad import sweep as module
+from fingerpad.processes import End, Pool
+from fingerpad.processes import run as run_module
+from fingerpad.scene import from_data
+from fingerpad.sweep import key, result, sweep
+
+
+@pytest.fixture
+def started(monkeypatch):
+    """Arguments of the runs that were started; each leaves a summary with the force of its scene."""
+    runs = []
+
+    def run(name, arguments, limit):
+        runs.append(arguments)
+        scene = json.loads(Path(arguments[0]).read_text(encoding="utf-8"))
+        if scene["f_ext"] == 666:
+            return End(-11, "CRASH_-11", "segmentation fault", "")
+        Path(arguments[1], "summary.json").write_text(json.dumps({"f_ext": scene["f_ext"]}), encoding="utf-8")
+        return End(0, "", "", "")
+
+    monkeypatch.setattr(module, "run", run)
+    return runs
+
+
+def scenes(*forces):
+    return {f"{force} N/m": from_data({"f_ext": force}) for force in forces}
+
+
+def test_key_follows_every_parameter():
+    keys = {key(from_data(data)) for data in ({}, {"voltage": 100}, {"mesh": {"contact": 1e-5}}, {"friction": 0.3})}
+    assert len(keys) == 4
+    assert key(from_data({})) == key(from_data({"voltage": 200.0}))
+
+
+def test_only_what_is_new_is_run(started, tmp_path):
+    sweep(scenes(10, 20), tmp_path)
+    summaries = sweep(scenes(10, 20, 30), tmp_path)
+    assert len(started) == 3
+    assert {name: s["f_ext"] for name, s in summaries.items()} == {"10 N/m": 10, "20 N/m": 20, "30 N/m": 30}
+
+
+def test_crash_is_told_and_tried_again(started, tmp_path):
+    for _ in range(2):
+        assert sweep(scenes(666), tmp_path)["666 N/m"] == {"failure": "CRASH_-11: segmentation fault"}
+    assert len(started) == 2
+
+
+def test_summary_cut_short_is_no_result(started, tmp_path):
+    scene = from_data({"f_ext": 10})
+    (tmp_path / key(scene)).mkdir()
+    (tmp_path / key(scene) / "summary.json").write_text('{"f_ext": 1')
+    assert result(scene, tmp_path) is None
+
+
+def test_run_out_of_time_is_named(tmp_path):
+    """A second of processor time is not enough to mesh the default finger and compile its forms."""
+    summary = sweep({"slow": from_data({})}, tmp_path, limit=1.0)["slow"]
+    assert summary == {"failure": "TIME_LIMIT: not done after 1 s of processor time"}
+
+
+def echo(k):
+    return End(0, "", "", str(k))
+
+
+def test_pool_stops_starting_when_time_is_over():
+    ends = []
+    left = Pool[int, End](echo, jobs=2, hours=0.0).run(range(3), lambda *end: ends.append(end))
+    assert (left, ends) == (3, [])
+
+
+def test_pool_reports_every_job_once():
+    ends = []
+    assert Pool[int, End](echo, jobs=2).run(range(5), lambda k, end, left: ends.append((k, left))) == 0
+    assert sorted(k for k, _ in ends) == [0, 1, 2, 3, 4]
+    assert sorted((left for _, left in ends), reverse=True) == [4, 3, 2, 1, 0]
+
+
+def test_crash_says_its_last_words():
+    end = run_module("fingerpad.sweep", ["no scene.json", "nowhere", "5"], 5.0)
+    assert end.reason == "CRASH_1"
+    assert "no scene.json" in end.message
