@@ -174,8 +174,8 @@ class Contact(_Part):
 class Numerics(_Part):
     """Discretisation and tolerances."""
 
-    degree: Annotated[int, Field(strict=True, ge=1, le=3)] = 2
-    """Polynomial degree of the displacement."""
+    element: Literal["P1", "P2", "P2 reduced", "P2-P1"] = "P2"
+    """Displacement, and pressure where there is one; see :mod:`variational.element`."""
     quadrature_points: Annotated[int, Field(strict=True, ge=2, le=8)] = 4
     """Gauss points on a surface facet."""
     tolerance: Tolerance = 1e-9
@@ -187,8 +187,10 @@ class Numerics(_Part):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Numerics":
-        if self.degree >= self.quadrature_points:
-            raise ValueError(f"degree is {self.degree}; it must be below quadrature_points, {self.quadrature_points}")
+        if self.element != "P1" and self.quadrature_points < 3:
+            raise ValueError(
+                f"quadrature_points is {self.quadrature_points}; it must be at least 3 for element {show(self.element)}"
+            )
         return self
 
 

@@ -152,10 +152,16 @@ def test_scene_cannot_be_changed():
         ),
         ("contact.eps_n", 0, "contact.eps_n is 0; it must be greater than 0"),
         ("contact.length", "area", "contact.length is 'area'; it must be 'pressure' or 'gap'"),
-        ("numerics.degree", 4, "numerics.degree is 4; it must be at most 3"),
-        ("numerics.degree", 1.5, "numerics.degree is 1.5; it must be a whole number"),
+        (
+            "numerics.element", "P3",
+            "numerics.element is 'P3'; it must be 'P1', 'P2', 'P2 reduced' or 'P2-P1'",
+        ),
+        ("numerics.coupling_cap", 1.5, "numerics.coupling_cap is 1.5; it must be a whole number"),
         ("numerics.quadrature_points", 9, "numerics.quadrature_points is 9; it must be at most 8"),
-        ("numerics.quadrature_points", 2, "numerics.degree is 2; it must be below numerics.quadrature_points, 2"),
+        (
+            "numerics.quadrature_points", 2,
+            "numerics.quadrature_points is 2; it must be at least 3 for numerics.element 'P2'",
+        ),
         ("numerics.tolerance", 0, "numerics.tolerance is 0; it must be greater than 0"),
         ("numerics.coupling_cap", 0, "numerics.coupling_cap is 0; it must be at least 1"),
         (

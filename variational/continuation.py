@@ -59,7 +59,6 @@ class Attempt:
 @dataclass
 class _Accepted:
     x: Array
-    u: Array
     anchor: Array
     d_eq: Array
     control: Control
@@ -101,7 +100,6 @@ class Continuation:
     def _snapshot(self) -> _Accepted:
         return _Accepted(
             self.solver.x.array_r.copy(),
-            self.problem.u.x.array.copy(),
             self._history.copy(),
             self.coupling.d_eq.copy(),
             replace(self.solver.control),
@@ -111,7 +109,7 @@ class Continuation:
     def _restore(self) -> None:
         a = self._now
         self.solver.x.array_w[:] = a.x
-        self.problem.u.x.array[:] = a.u
+        self.solver.to_fields(self.solver.x)
         self.coupling.set_air_gaps(a.d_eq.copy())
         self.solver.control = replace(a.control)
         self.problem.voltage.value = a.voltage

@@ -104,11 +104,12 @@ class Solver:
             problem: forms.
             rim_facets: the facets glued to the bone.
             force_scale: force per length (N/m) in which residuals are measured.
-            tolerance: norm of the nodal forces' imbalance (N/m) at convergence, over ``force_scale``.
+            tolerance: norm of the nodal forces' imbalance (N/m) at convergence, over ``force_scale``; volume defects
+                count as forces, see :mod:`variational.pressure`.
             fixed: further prescribed unknowns: (local indices, displacement in m).
         """
         self.problem, self.control, self.counts = problem, Control(), Counts()
-        self.layout = RigidRimLayout(problem.V, rim_facets)
+        self.layout = RigidRimLayout(problem.V, rim_facets, problem.pressure)
         self.timings = Timings()
         rows = np.concatenate([self.layout.rows[dofs] for dofs, _ in fixed] or [np.empty(0, PETSc.IntType)])
         values = np.concatenate([np.full(len(dofs), value) for dofs, value in fixed] or [np.empty(0)])
@@ -123,6 +124,7 @@ class Solver:
         self._norms: list[float] = []
         self._stiffness = 1e5  # Pa: what a prescribed row's metre is worth in N/m
         self._nodal = np.zeros_like(problem.u.x.array)
+        self._defects = np.zeros_like(problem.pressure.unknown.x.array) if problem.pressure else np.empty(0)
         nodes = fem.locate_dofs_topological(problem.V, 1, problem.surface.facets)
         self._skin = 2 * nodes + 1  # vertical displacements of the skin that can touch
         self._skin_height = problem.V.tabulate_dof_coordinates()[nodes, 1]
@@ -156,13 +158,23 @@ class Solver:
             values = np.concatenate([values, bone])
         return rows, values
 
+    def to_fields(self, x: PETSc.Vec) -> None:
+        """Write unknowns into the problem's displacement and, if it has one, pressure."""
+        self.layout.to_nodes(x, self.problem.u.x.array)
+        if self.problem.pressure:
+            self.layout.to_pressure(x, self.problem.pressure.unknown.x.array)
+
     def _residual(self, snes: PETSc.SNES | None, x: PETSc.Vec, f: PETSc.Vec) -> None:
         with self.timings.phase("assembly"):
-            self.layout.to_nodes(x, self.problem.u.x.array)
+            self.to_fields(x)
             self._nodal[:] = 0.0
             fem.assemble_vector(self._nodal, self.problem.residual)
             f.set(0.0)
             self.layout.add_to_unknowns(self._nodal, f)
+            if self.problem.pressure:
+                self._defects[:] = 0.0
+                fem.assemble_vector(self._defects, self.problem.pressure_residual)
+                self.layout.add_to_pressure(self._defects, f)
             finite = self.layout.comm.allreduce(bool(np.isfinite(f.array_r).all()), op=MPI.LAND)
             if not finite:
                 self._inverted = True
@@ -180,7 +192,12 @@ class Solver:
             return
         with self.timings.phase("assembly"):
             A.zeroEntries()
-            fem_petsc.assemble_matrix(A, self.problem.jacobian)
+            if self.problem.pressure:
+                blocks = [self.problem.jacobian, *self.problem.pressure_jacobian]
+                for form, part in zip(blocks, ((0, 0), (0, 1), (1, 0), (1, 1)), strict=True):
+                    self.layout.add_to_matrix(A, form, part)
+            else:
+                fem_petsc.assemble_matrix(A, self.problem.jacobian)
             A.assemble()
             A.zeroRows(self._prescribed()[0], diag=self._stiffness)
         self.counts.factorisations += 1
