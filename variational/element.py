@@ -21,7 +21,7 @@ element locks. By name:
     jumps from one layer to the next, as the true one does: what is continuous is the traction, not its volumetric
     part. With a pressure continuous throughout, two layers pressed flat would already have a wrong stress.
 
-A law without a volumetric part of its own (Saint Venant-Kirchhoff: nail and bed, nu = 0.3) is integrated like P2
+A law without a volumetric part of its own (Saint Venant-Kirchhoff: nail and bed, nu = 0.3) is integrated in full
 in all of them, and has no pressure.
 """
 
