@@ -4,6 +4,7 @@ import argparse
 import contextlib
 import io
 import json
+import math
 import re
 import sys
 import tomllib
@@ -225,8 +226,8 @@ _FORMULATION_KEYS = {
 class Numerics(_Part):
     """Discretisation and tolerances."""
 
-    degree: Annotated[int, Field(strict=True, ge=1, le=3)] = 2
-    """Polynomial degree of the displacement."""
+    element: Literal["P1", "P2", "P2 reduced", "P2-P1"] = "P2"
+    """Displacement, and pressure where there is one; see :mod:`variational.element`."""
     quadrature_points: Annotated[int, Field(strict=True, ge=2, le=8)] = 4
     """Gauss points on a surface facet."""
     tolerance: Tolerance = 1e-9
@@ -238,8 +239,10 @@ class Numerics(_Part):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Numerics":
-        if self.degree >= self.quadrature_points:
-            raise ValueError(f"degree is {self.degree}; it must be below quadrature_points, {self.quadrature_points}")
+        if self.element != "P1" and self.quadrature_points < 3:
+            raise ValueError(
+                f"quadrature_points is {self.quadrature_points}; it must be at least 3 for element {show(self.element)}"
+            )
         return self
 
 
@@ -309,6 +312,7 @@ class Scene(_Part):
         return self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
 
 
+_FORCE, _WIDENS = 75.0, 0.27  # N/m; ridges in contact grow as this power of the force (15 at 46 N/m, 17 at 73 N/m)
 _DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 _OPTIONS = {"f_ext": "f_ext", "voltage": "voltage", "contact_size": "mesh.contact", "friction": "friction"}
 
@@ -345,9 +349,23 @@ def from_data(data: Mapping[str, Any]) -> Scene:
     """
     try:
         # As JSON, because there a list is a tuple and a table is a model even under strict rules.
-        return Scene.model_validate_json(json.dumps(data, default=str), strict=True)
+        return Scene.model_validate_json(json.dumps(_wide_enough(data), default=str), strict=True)
     except ValidationError as error:
         raise SceneError(first_error(error, Scene)) from None
+
+
+def _wide_enough(data: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Mesh more ridges to touch under a larger force, if the scene does not say how many."""
+    mesh, history = data.get("mesh", {}), data.get("history")
+    if not isinstance(mesh, dict) or "touching_half_arc" in mesh:
+        return data
+    loads = [data, *(history if isinstance(history, list | tuple) else ())]
+    forces = [load.get("f_ext") for load in loads if isinstance(load, Mapping)]
+    largest = max((f for f in forces if isinstance(f, float | int) and f < math.inf), default=0.0)
+    if largest <= _FORCE:
+        return data
+    arc = MeshSize().touching_half_arc * (largest / _FORCE) ** _WIDENS
+    return {**data, "mesh": {**mesh, "touching_half_arc": arc}}
 
 
 def check(scene: Scene) -> None:

@@ -89,7 +89,7 @@ class Simulation:
         ridges = {j: tags.ridge(j) for j in body.ridges()}
         surface = Surface(body.mesh, body.facet_tags, ridges, numerics.quadrature_points)
         interface = Interface(contact.law(), scene.friction, scene.h_0)
-        self.problem = Problem(body.mesh, body.cell_tags, surface, _solids(scene), interface, numerics.degree)
+        self.problem = Problem(body.mesh, body.cell_tags, surface, _solids(scene), interface, numerics.element)
         force = max((load.f_ext for load in scene.loads() if load.f_ext), default=1.0)
         rim = body.facet_tags.find(tags.BONE_RIM)
         self.solver = Solver(self.problem, rim, force, numerics.tolerance)

@@ -30,11 +30,11 @@ STEPS = 0.5 ** np.arange(5)
 NEAR = 1e-9  # m, size of the perturbations: small against the micrometres over which the laws change
 
 
-def make(body, mu_f=0.25, solid=SKIN, degree=2, formulation=Penalty(EPS_N, EPS_T)) -> Problem:  # noqa: B008
+def make(body, mu_f=0.25, solid=SKIN, element="P2", formulation=Penalty(EPS_N, EPS_T)) -> Problem:  # noqa: B008
     """Return a problem on a block, its gaps at D_EQ."""
     surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
     interface = Interface(formulation, mu_f, H_0)
-    problem = Problem(body.mesh, body.cell_tags, surface, {tags.STRATUM_CORNEUM: solid}, interface, degree)
+    problem = Problem(body.mesh, body.cell_tags, surface, {tags.STRATUM_CORNEUM: solid}, interface, element)
     problem.set_air_gaps(np.array([D_EQ]))
     return problem
 
@@ -153,7 +153,7 @@ def test_jacobian_sees_every_law(square):
 
 def test_jacobian_of_linear_elements(square):
     """The same for first-order displacements."""
-    problem = make(square, degree=1)
+    problem = make(square, element="P1")
     problem.voltage.value = VOLTAGE
     wave(problem, lowest=-1.4e-6)
     anchor_apart(problem)

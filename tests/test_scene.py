@@ -177,10 +177,16 @@ def test_formulation(given, law):
             "contact.formulation is 'mortar'; it must be 'penalty', 'nitsche' or 'augmented'",
         ),
         ("contact.length", "area", "contact.length is 'area'; it must be 'pressure' or 'gap'"),
-        ("numerics.degree", 4, "numerics.degree is 4; it must be at most 3"),
-        ("numerics.degree", 1.5, "numerics.degree is 1.5; it must be a whole number"),
+        (
+            "numerics.element", "P3",
+            "numerics.element is 'P3'; it must be 'P1', 'P2', 'P2 reduced' or 'P2-P1'",
+        ),
+        ("numerics.coupling_cap", 1.5, "numerics.coupling_cap is 1.5; it must be a whole number"),
         ("numerics.quadrature_points", 9, "numerics.quadrature_points is 9; it must be at most 8"),
-        ("numerics.quadrature_points", 2, "numerics.degree is 2; it must be below numerics.quadrature_points, 2"),
+        (
+            "numerics.quadrature_points", 2,
+            "numerics.quadrature_points is 2; it must be at least 3 for numerics.element 'P2'",
+        ),
         ("numerics.tolerance", 0, "numerics.tolerance is 0; it must be greater than 0"),
         ("numerics.coupling_cap", 0, "numerics.coupling_cap is 0; it must be at least 1"),
         (
@@ -367,3 +373,19 @@ def test_quiet_ranks(capsys):
 def test_package_imports_nothing():
     code = "import sys; import fingerpad; sys.exit(any(m in sys.modules for m in ('numpy', 'pydantic', 'gmsh')))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("data", "widened"),
+    [
+        ({"f_ext": 75}, False),
+        ({"f_ext": 150}, True),
+        ({"history": [{"name": "a", "f_ext": 10}, {"name": "b", "f_ext": 150.0}]}, True),
+        ({"f_ext": 150, "mesh": {"touching_half_arc": 5e-3}}, False),
+    ],
+)
+def test_larger_force_may_touch_more_ridges(data, widened):
+    """Unless the scene says how many; what was chosen is among the parameters, so that they give the same run again."""
+    scene = scenes.from_data(data)
+    assert (scene.mesh.touching_half_arc > 5e-3) == widened
+    assert scenes.from_data(scene.parameters()) == scene

@@ -89,7 +89,7 @@ def test_default_is_the_products():
 
     scene, case = Scene(), plan.DEFAULT
     assert (case.parameter, case.contact_size) == (scene.contact.eps_n, scene.mesh.contact)
-    assert (case.element, case.voltage, case.mu_f) == (f"P{scene.numerics.degree}", scene.voltage, scene.friction)
+    assert (case.element, case.voltage, case.mu_f) == (scene.numerics.element, scene.voltage, scene.friction)
     assert case.nu == scene.materials.dermis.poisson
 
 

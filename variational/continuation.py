@@ -61,7 +61,6 @@ class Attempt:
 @dataclass
 class _Accepted:
     x: Array
-    u: Array
     history: History
     d_eq: Array
     control: Control
@@ -105,7 +104,6 @@ class Continuation:
     def _snapshot(self) -> _Accepted:
         return _Accepted(
             self.solver.x.array_r.copy(),
-            self.problem.u.x.array.copy(),
             self.problem.history,
             self.coupling.d_eq.copy(),
             replace(self.solver.control),
@@ -116,7 +114,7 @@ class Continuation:
     def _restore(self) -> None:
         a = self._now
         self.solver.x.array_w[:] = a.x
-        self.problem.u.x.array[:] = a.u
+        self.solver.to_fields(self.solver.x)
         self.coupling.set_air_gaps(a.d_eq.copy())
         self.problem.set_history(a.history)
         self.solver.control = replace(a.control)

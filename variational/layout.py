@@ -6,31 +6,41 @@ of the rim up by itself, in parallel too. The translation's rows of the residual
 balance; the matrix stays square, as sparse as before and, where the laws are, symmetric, and the line search
 sees the rigid body as it sees every other unknown. (Bordering would need a second back-substitution an iteration and
 a norm of its own for the line search; a multipoint constraint eliminates the same unknowns with more code.)
+
+The pressures of a mixed element (:mod:`variational.pressure`) come first among the unknowns of each rank. The map then
+goes on from the displacement's local unknowns to the pressure's, and forms are added to the matrix block by block.
 """
 
 import dolfinx
 import numpy as np
 from dolfinx import fem
+from dolfinx.fem import petsc as fem_petsc
 from numpy.typing import NDArray
 from petsc4py import PETSc
+
+from variational.pressure import LayerwisePressure
 
 Array = NDArray[np.float64]
 
 
 class RigidRimLayout:
-    """Global numbering of a vector space in which the nodes of a rim are one.
+    """Global numbering of a vector space in which the nodes of a rim are one, and of a pressure's unknowns.
 
     Attributes:
+        rows: global row of each of the space's local unknowns, ghosts included.
         rigid_rows: global rows (2,) of the rigid body's translation in x and y.
         owns_rigid: whether this rank owns those rows.
     """
 
-    def __init__(self, V: fem.FunctionSpace, rim_facets: NDArray[np.int32]) -> None:
+    def __init__(
+        self, V: fem.FunctionSpace, rim_facets: NDArray[np.int32], pressure: LayerwisePressure | None = None
+    ) -> None:
         """Number the unknowns.
 
         Args:
             V: vector space of block size 2.
             rim_facets: facets on the rim known to this rank.
+            pressure: further unknowns, if any.
         """
         comm, index_map = V.mesh.comm, V.dofmap.index_map
         owned = index_map.size_local
@@ -38,57 +48,98 @@ class RigidRimLayout:
         self.is_rim = np.zeros(owned + index_map.num_ghosts, dtype=bool)
         self.is_rim[rim] = True
         free = ~self.is_rim[:owned]
-        first = comm.scan(int(free.sum())) - int(free.sum())
-        rigid = comm.allreduce(int(free.sum()))
-        numbers = dolfinx.la.vector(index_map, 1, np.int64)
-        numbers.array[:owned] = np.where(free, first + np.cumsum(free) - 1, rigid)
-        numbers.scatter_forward()
-        blocks = numbers.array.astype(PETSc.IntType)
-
         self.comm = comm
         self.owns_rigid = comm.rank == comm.size - 1
-        self.rigid_rows = np.array([2 * rigid, 2 * rigid + 1], dtype=PETSc.IntType)
-        self.local_size = 2 * (int(free.sum()) + int(self.owns_rigid))
-        self.global_size = 2 * (rigid + 1)
-        self._map = PETSc.LGMap().create(blocks, bsize=2, comm=comm)
+        pressures = pressure.owned if pressure else 0
+        self._block_size = 1 if pressure else 2
+        self.local_size = pressures + 2 * (int(free.sum()) + int(self.owns_rigid))
+        self.global_size = comm.allreduce(self.local_size)
+        first = comm.scan(self.local_size) - self.local_size
+        rigid = self.global_size - 2
+        self.rigid_rows = np.array([rigid, rigid + 1], dtype=PETSc.IntType)
+        numbers = dolfinx.la.vector(index_map, 1, np.int64)
+        numbers.array[:owned] = np.where(free, first + pressures + 2 * (np.cumsum(free) - 1), rigid)
+        numbers.scatter_forward()
+        nodes = numbers.array.astype(PETSc.IntType)
+        self.rows = rows = (nodes[:, None] + np.arange(2, dtype=PETSc.IntType)).ravel()
         self._free = np.repeat(free, 2)
-        rows = (2 * blocks[:, None] + np.arange(2, dtype=PETSc.IntType)).ravel()
-        self.rows = rows  # global row of every local unknown, ghosts included
-        self._local = PETSc.Vec().createSeq(len(rows), comm=PETSc.COMM_SELF)
+        self._pressures = pressures
+        self._scatter = self._scatter_from(rows)
+        self._parts: list[PETSc.IS] = []
+        if pressure is None:
+            self._map = PETSc.LGMap().create(nodes // 2, bsize=2, comm=comm)
+            return
+        more = pressure.rows(first).astype(PETSc.IntType)
+        self._map = PETSc.LGMap().create(np.concatenate([rows, more]), bsize=1, comm=comm)
+        self._parts = [
+            PETSc.IS().createBlock(2, np.arange(len(nodes), dtype=PETSc.IntType), comm=PETSc.COMM_SELF),
+            PETSc.IS().createStride(len(more), len(rows), 1, comm=PETSc.COMM_SELF),
+        ]
+        self._numbered = more >= 0
+        self._pressure_scatter = self._scatter_from(more[self._numbered])
+
+    def _scatter_from(self, rows: NDArray[np.int64]) -> tuple[PETSc.Scatter, PETSc.Vec]:
+        """Return what brings rows of a vector of unknowns to this rank, and where to."""
+        local = PETSc.Vec().createSeq(len(rows), comm=PETSc.COMM_SELF)
         source = PETSc.IS().createGeneral(rows, comm=PETSc.COMM_SELF)
-        self._scatter = PETSc.Scatter().create(self.create_vector(), source, self._local, None)
+        return PETSc.Scatter().create(self.create_vector(), source, local, None), local
 
     def create_vector(self) -> PETSc.Vec:
         """Return a vector of unknowns."""
-        return PETSc.Vec().createMPI((self.local_size, self.global_size), bsize=2, comm=self.comm)
+        return PETSc.Vec().createMPI((self.local_size, self.global_size), bsize=self._block_size, comm=self.comm)
 
     def create_matrix(self) -> PETSc.Mat:
         """Return an empty matrix; its pattern is found by the first assembly."""
         size = (self.local_size, self.global_size)
         A = PETSc.Mat().create(comm=self.comm)
-        A.setSizes((size, size), bsize=2)
+        A.setSizes((size, size), bsize=self._block_size)
         A.setType(PETSc.Mat.Type.AIJ)
         A.setLGMap(self._map, self._map)
         A.setUp()
         A.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
         return A
 
+    def add_to_matrix(self, A: PETSc.Mat, form: fem.Form, part: tuple[int, int]) -> None:
+        """Add a form to the rows and columns of the displacement (0) or pressure (1)."""
+        if not self._parts:
+            fem_petsc.assemble_matrix(A, form)
+            return
+        block = A.getLocalSubMatrix(*(self._parts[k] for k in part))
+        fem_petsc.assemble_matrix(block, form)
+        A.restoreLocalSubMatrix(*(self._parts[k] for k in part), block)
+
     def to_nodes(self, x: PETSc.Vec, nodal: Array) -> None:
         """Write unknowns into an array of nodal values, ghosts included."""
-        self._scatter.scatter(x, self._local, addv=False, mode=PETSc.ScatterMode.FORWARD)
-        nodal[:] = self._local.array_r
+        nodal[:] = _forward(x, *self._scatter)
+
+    def to_pressure(self, x: PETSc.Vec, values: Array) -> None:
+        """Write unknowns into an array of the pressure's values, ghosts included."""
+        values[self._numbered] = _forward(x, *self._pressure_scatter)
 
     def add_to_unknowns(self, nodal: Array, f: PETSc.Vec) -> None:
         """Add nodal contributions, ghosts' and rim's included, to a vector of unknowns."""
-        self._local.array_w[:] = nodal
-        self._scatter.scatter(self._local, f, addv=True, mode=PETSc.ScatterMode.REVERSE)
+        _reverse(nodal, *self._scatter, f)
+
+    def add_to_pressure(self, values: Array, f: PETSc.Vec) -> None:
+        """Add the pressure's contributions, ghosts' included, to a vector of unknowns."""
+        _reverse(values[self._numbered], *self._pressure_scatter, f)
 
     def from_nodes(self, nodal: Array, rigid: Array, x: PETSc.Vec) -> None:
         """Write nodal values and the rigid body's translation (2,) into a vector of unknowns."""
         values = nodal[: len(self._free)][self._free]
-        x.array_w[:] = np.concatenate([values, rigid]) if self.owns_rigid else values
+        x.array_w[self._pressures :] = np.concatenate([values, rigid]) if self.owns_rigid else values
 
     def rigid_part(self, x: PETSc.Vec) -> Array:
         """Return the rigid body's two entries of a vector of unknowns, on every rank."""
         mine = x.array_r[-2:].copy() if self.owns_rigid else None
         return np.asarray(self.comm.bcast(mine, root=self.comm.size - 1))
+
+
+def _forward(x: PETSc.Vec, scatter: PETSc.Scatter, local: PETSc.Vec) -> Array:
+    scatter.scatter(x, local, addv=False, mode=PETSc.ScatterMode.FORWARD)
+    return np.asarray(local.array_r)
+
+
+def _reverse(values: Array, scatter: PETSc.Scatter, local: PETSc.Vec, f: PETSc.Vec) -> None:
+    local.array_w[:] = values
+    scatter.scatter(local, f, addv=True, mode=PETSc.ScatterMode.REVERSE)

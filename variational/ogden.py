@@ -49,6 +49,21 @@ def cosh_of_asinh(a, y):
     return ufl.conditional(near, series, (ufl.exp(a * eta) + ufl.exp(-a * eta)) / 2)
 
 
+def isochoric_energy(F, shear_modulus, a):
+    """Return the part of the strain energy density W (J/m^3) that a change of volume alone leaves as it is.
+
+    Args:
+        F: deformation gradient, (2, 2).
+        shear_modulus: initial shear modulus G_0 (Pa).
+        a: power of the stretches, see :func:`exponent`.
+    """
+    J = ufl.det(F)
+    y = ((F[0, 0] - F[1, 1]) ** 2 + (F[0, 1] + F[1, 0]) ** 2) / (4 * J)
+    log_J = ufl.ln(J)
+    powers = 2 * ufl.exp(a * log_J / 6) * cosh_of_asinh(a, y) + ufl.exp(-a * log_J / 3)
+    return 2 * shear_modulus / a**2 * (powers - 3)
+
+
 def energy(F, shear_modulus, a, bulk):
     """Return the strain energy density W (J/m^3 of reference volume).
 
@@ -58,8 +73,4 @@ def energy(F, shear_modulus, a, bulk):
         a: power of the stretches, see :func:`exponent`.
         bulk: bulk modulus 2/D (Pa).
     """
-    J = ufl.det(F)
-    y = ((F[0, 0] - F[1, 1]) ** 2 + (F[0, 1] + F[1, 0]) ** 2) / (4 * J)
-    log_J = ufl.ln(J)
-    powers = 2 * ufl.exp(a * log_J / 6) * cosh_of_asinh(a, y) + ufl.exp(-a * log_J / 3)
-    return 2 * shear_modulus / a**2 * (powers - 3) + bulk / 2 * (J - 1) ** 2
+    return isochoric_energy(F, shear_modulus, a) + bulk / 2 * (ufl.det(F) - 1) ** 2

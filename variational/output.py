@@ -41,7 +41,7 @@ class Fields:
             folder.mkdir(parents=True, exist_ok=True)
         mesh.comm.barrier()
         F = kinematics.deformation_gradient(problem.u)
-        stresses = {tags: stress.cauchy(law, F) for tags, law in problem.laws.items()}
+        stresses = {tags: stress.cauchy(law, F, problem.pressures[tags]) for tags, law in problem.laws.items()}
         self.stress, self._sample_stress = _sampled(problem, "stress", stresses)
         self.sed, self._sample_sed = _sampled(problem, "sed", problem.densities)
         # One writer a field: a file holds functions of one element.

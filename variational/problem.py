@@ -5,9 +5,11 @@ Find u, equal to the bone's translation on its rim, with for all v alike
 .. math:: \int P(F) : \nabla v \,dX - \int p_n v_y \,dS - \int t_t v_x \,dS
           - \int p_{el}\, \mathrm{cof} F N \cdot v \,dS + f_{ext} v_y^{bone} = 0
 
-P = dW/dF: :mod:`~variational.ogden`, :mod:`~variational.saint_venant`; p_n and t_t: :mod:`~variational.contact` in one
-of the formulations :mod:`~variational.penalty`, :mod:`~variational.nitsche` (with terms of its own) and
-:mod:`~variational.augmented`; p_el: :mod:`~variational.electroadhesion`, written as the derivative of its potential.
+P = dW/dF: :mod:`~variational.ogden`, :mod:`~variational.saint_venant`, the volumetric part as the
+:mod:`~variational.element` has it, which may bring a pressure p and a second equation, p = K (J - 1) weakly; p_n and
+t_t: :mod:`~variational.contact` in one of the formulations :mod:`~variational.penalty`, :mod:`~variational.nitsche`
+(with terms of its own) and :mod:`~variational.augmented`; p_el: :mod:`~variational.electroadhesion`, written as the
+derivative of its potential.
 Friction makes the derivative unsymmetric. The derivative may carry a shift :math:`\int \eta\, du \cdot v \,dS`, which
 is no part of the equations but of pseudo-transient continuation (:mod:`~variational.solver`). This module adds up
 forms and never solves.
@@ -24,6 +26,8 @@ from dolfinx import fem
 
 from variational import electroadhesion, jit, kinematics, ogden, saint_venant, stress
 from variational.contact import Contact, Formulation, History, Skin
+from variational.element import ELEMENTS, at_centroid
+from variational.pressure import LayerwisePressure
 from variational.surface import Surface
 
 STICKS, SLIPS = 1e-9, -1e-9  # first guesses for points on the friction cone
@@ -75,6 +79,7 @@ class Problem:
 
     Attributes:
         u: displacement (m).
+        pressure: the mixed element's pressure, None for the others.
         voltage, eta: constants (V; Pa/m, the shift of the Jacobian).
         guess: constant, what points on the friction cone are first taken for: STICKS or SLIPS.
         d_eq: equivalent air gap (m), one value a cell, read on the ridges.
@@ -83,7 +88,11 @@ class Problem:
         history: what the two were last accepted with, and where.
         contact: the projected tractions.
         opening: length (m) that is negative in contact.
-        residual, jacobian: compiled forms.
+        laws, pressures, densities: each group of layers' law, volumetric pressure (Pa), positive in tension, and
+            strain energy density (J/m^3), UFL.
+        residual, jacobian: compiled forms in u and its test function.
+        pressure_residual: the equation of the pressure; with one only.
+        pressure_jacobian: compiled blocks of the Jacobian in (v, dp), (q, du), (q, dp); with a pressure only.
     """
 
     def __init__(
@@ -93,7 +102,7 @@ class Problem:
         surface: Surface,
         solids: Mapping[int, Ogden | SaintVenant],
         interface: Interface,
-        degree: int = 2,
+        element: str = "P2",
     ) -> None:
         """Add up the forms.
 
@@ -103,10 +112,11 @@ class Problem:
             surface: the skin that can touch.
             solids: material of each layer's tag.
             interface: laws of the contact.
-            degree: polynomial degree of the displacement.
+            element: a name of :data:`variational.element.ELEMENTS`.
         """
         self.mesh, self.cell_tags, self.surface, self.interface = mesh, cell_tags, surface, interface
-        self.V = fem.functionspace(mesh, ("Lagrange", degree, (2,)))
+        kind = ELEMENTS[element]
+        self.V = fem.functionspace(mesh, ("Lagrange", kind.degree, (2,)))
         cellwise = fem.functionspace(mesh, ("Discontinuous Lagrange", 0))
         self.u = fem.Function(self.V, name="displacement")
         self.d_eq = fem.Function(cellwise)
@@ -121,12 +131,23 @@ class Problem:
         u, v = self.u, ufl.TestFunction(self.V)
         F = kinematics.deformation_gradient(u)
         energy = 0
-        # Strains are of degree p - 1: 2 (p - 1) integrates linear elasticity exactly and keeps the order.
-        dx = ufl.Measure("dx", mesh, subdomain_data=cell_tags, metadata={"quadrature_degree": max(2 * (degree - 1), 1)})
+        dx = ufl.Measure("dx", mesh, subdomain_data=cell_tags, metadata={"quadrature_degree": kind.quadrature_degree})
         self.laws = dict(self._laws(solids, cellwise))
-        self.densities = {tags: law.energy(F) for tags, law in self.laws.items()}
-        for tags, density in self.densities.items():
-            energy += density * dx(tags)
+        self.pressure = self._pressure(solids) if kind.mixed else None
+        self.pressures = {tags: law.pressure(F) for tags, law in self.laws.items()}
+        for tags, law in self.laws.items():
+            energy += law.distortion(F) * dx(tags)
+            if law.bulk is None:
+                continue
+            if self.pressure:
+                p = self.pressures[tags] = self.pressure.p
+                energy += (p * (ufl.det(F) - 1) - p**2 / (2 * law.bulk)) * dx(tags)
+            else:
+                rule = {"quadrature_degree": kind.volumetric_degree}
+                energy += law.pressure(F) ** 2 / (2 * law.bulk) * dx(tags, metadata=rule)
+            if kind.reduced:
+                self.pressures[tags] = law.pressure(at_centroid(F, self._centroids()))
+        self.densities = {tags: law.energy(F, self.pressures[tags]) for tags, law in self.laws.items()}
 
         self.y = kinematics.current_height(mesh, u)
         self.p_el = electroadhesion.attraction(self.y, self.d_eq, self.voltage, h_0)
@@ -137,7 +158,7 @@ class Problem:
             self.y,
             self.anchor,
             self.multiplier,
-            cache(lambda: stress.first_piola_kirchhoff(self._skin_law(), F) * normal),
+            cache(lambda: self._skin_stress(F) * normal),
             self.p_el * self.area,
             lambda: self._skin_stiffness(solids, cellwise),
             constant,
@@ -153,6 +174,13 @@ class Problem:
         self.energy = fem.form(energy, jit_options=jit.OPTIONS)
         self.residual = fem.form(residual, jit_options=jit.OPTIONS)
         self.jacobian = fem.form(jacobian, jit_options=jit.OPTIONS)
+        if self.pressure:
+            unknown = self.pressure.unknown
+            q, dp = ufl.TestFunction(unknown.function_space), ufl.TrialFunction(unknown.function_space)
+            defect = ufl.derivative(energy, unknown, q)
+            pairs = ((residual, unknown, dp), (defect, u, du), (defect, unknown, dp))
+            self.pressure_residual = fem.form(defect, jit_options=jit.OPTIONS)
+            self.pressure_jacobian = fem.form([ufl.derivative(*pair) for pair in pairs], jit_options=jit.OPTIONS)
         nothing = np.zeros((len(surface.pairs), len(surface.weights)))
         self.history = History(nothing, nothing, surface.evaluate(surface.compile([ufl.SpatialCoordinate(mesh)[0]]))[0])
 
@@ -181,8 +209,18 @@ class Problem:
             lame, shear = (field({tag: pair[k] for tag, pair in stiff.items()}) for k in (0, 1))
             yield tuple(stiff), stress.saint_venant_law(lame, shear)
 
-    def _skin_law(self) -> stress.Law:
-        """Return the one law of the cells behind the touching skin."""
+    def _pressure(self, solids) -> LayerwisePressure | None:
+        """Return the pressure of the layers whose law has a volumetric part, None if there is none."""
+        skins = {tag: solid.shear_modulus for tag, solid in solids.items() if isinstance(solid, Ogden)}
+        return LayerwisePressure(self.mesh, self.cell_tags, tuple(skins), max(skins.values())) if skins else None
+
+    def _centroids(self) -> fem.Function:
+        centroids = fem.Function(fem.functionspace(self.mesh, ("Discontinuous Lagrange", 0, (2,))))
+        centroids.interpolate(lambda x: x[:2])
+        return centroids
+
+    def _skin_stress(self, F):
+        """Return P (Pa) by the one law of the cells behind the touching skin."""
         cells = self.surface.pairs[:, 0]
         behind = [tags for tags in self.laws if any(np.isin(self.cell_tags.find(tag), cells).any() for tag in tags)]
         found = set().union(*self.mesh.comm.allgather(set(behind)))
@@ -191,7 +229,8 @@ class Problem:
                 f"the touching skin has {len(found)} material laws behind it, of the layers {sorted(sum(found, ()))}; "
                 "Nitsche's method takes one"
             )
-        return self.laws[found.pop()]
+        behind_all = found.pop()
+        return stress.first_piola_kirchhoff(self.laws[behind_all], F, self.pressures[behind_all])
 
     def _skin_stiffness(self, solids: Mapping[int, Ogden | SaintVenant], cellwise: fem.FunctionSpace) -> fem.Function:
         """Return the constrained modulus behind the touching skin over the facets' lengths (Pa/m), cell by cell."""

@@ -21,7 +21,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from dolfinx import fem
-from dolfinx.fem import petsc as fem_petsc
 from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
@@ -134,11 +133,12 @@ class Solver:
             problem: forms.
             rim_facets: the facets glued to the bone.
             force_scale: force per length (N/m) in which residuals are measured.
-            tolerance: norm of the nodal forces' imbalance (N/m) at convergence, over ``force_scale``.
+            tolerance: norm of the nodal forces' imbalance (N/m) at convergence, over ``force_scale``; volume defects
+                count as forces, see :mod:`variational.pressure`.
             fixed: further prescribed unknowns: (local indices, displacement in m).
         """
         self.problem, self.control, self.counts = problem, Control(), Counts()
-        self.layout = RigidRimLayout(problem.V, rim_facets)
+        self.layout = RigidRimLayout(problem.V, rim_facets, problem.pressure)
         self.timings = Timings()
         rows = np.concatenate([self.layout.rows[dofs] for dofs, _ in fixed] or [np.empty(0, PETSc.IntType)])
         values = np.concatenate([np.full(len(dofs), value) for dofs, value in fixed] or [np.empty(0)])
@@ -157,6 +157,7 @@ class Solver:
         self._norms: list[float] = []
         self.force_scale, self.stiffness = force_scale, 1e5
         self._nodal = np.zeros_like(problem.u.x.array)
+        self._defects = np.zeros_like(problem.pressure.unknown.x.array) if problem.pressure else np.empty(0)
         nodes = fem.locate_dofs_topological(problem.V, 1, problem.surface.facets)
         self._skin = 2 * nodes + 1  # vertical displacements of the skin that can touch
         self._skin_height = problem.V.tabulate_dof_coordinates()[nodes, 1]
@@ -190,17 +191,27 @@ class Solver:
             values = np.concatenate([values, bone])
         return rows, values
 
+    def to_fields(self, x: PETSc.Vec) -> None:
+        """Write unknowns into the problem's displacement and, if it has one, pressure."""
+        self.layout.to_nodes(x, self.problem.u.x.array)
+        if self.problem.pressure:
+            self.layout.to_pressure(x, self.problem.pressure.unknown.x.array)
+
     def _residual(self, snes: PETSc.SNES | None, x: PETSc.Vec, f: PETSc.Vec) -> None:
         if self._ahead:  # the step's length was found with it
             self._ahead = False
             self._next_f.copy(f)
             return
         with self.timings.phase("assembly"):
-            self.layout.to_nodes(x, self.problem.u.x.array)
+            self.to_fields(x)
             self._nodal[:] = 0.0
             fem.assemble_vector(self._nodal, self.problem.residual)
             f.set(0.0)
             self.layout.add_to_unknowns(self._nodal, f)
+            if self.problem.pressure:
+                self._defects[:] = 0.0
+                fem.assemble_vector(self._defects, self.problem.pressure_residual)
+                self.layout.add_to_pressure(self._defects, f)
             finite = self.layout.comm.allreduce(bool(np.isfinite(f.array_r).all()), op=MPI.LAND)
             if not finite:
                 self._blame(x)
@@ -232,11 +243,19 @@ class Solver:
             return
         with self.timings.phase("assembly"):
             A.zeroEntries()
-            fem_petsc.assemble_matrix(A, self.problem.jacobian)
-            A.assemble()
+            self.assemble_tangent(A)
             A.zeroRows(self._prescribed()[0], diag=self.stiffness)
         self.counts.factorisations += 1
         self._stale = False
+
+    def assemble_tangent(self, A: PETSc.Mat) -> None:
+        """Add the derivative of the residual, without a word of prescribed rows, to an empty matrix."""
+        blocks = [self.problem.jacobian]
+        if self.problem.pressure:
+            blocks += self.problem.pressure_jacobian
+        for form, part in zip(blocks, ((0, 0), (0, 1), (1, 0), (1, 1)), strict=False):
+            self.layout.add_to_matrix(A, form, part)
+        A.assemble()
 
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
         """Judge an iterate by its residual alone, and set the next shift."""

@@ -23,7 +23,6 @@ from dataclasses import dataclass
 import numpy as np
 import ufl
 from dolfinx import fem
-from dolfinx.fem import petsc as fem_petsc
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
@@ -64,22 +63,26 @@ class StabilityCheck:
         u, v = ufl.TrialFunction(problem.V), ufl.TestFunction(problem.V)
         self._mass = fem.form(ufl.dot(u, v) * problem.surface.measure, jit_options=jit.OPTIONS)
 
-    def _assemble(self, form: fem.Form, diagonal: float) -> PETSc.Mat:
-        """Return a form's matrix, prescribed rows and columns replaced by a diagonal."""
-        A = self.solver.layout.create_matrix()
-        fem_petsc.assemble_matrix(A, form)
-        A.assemble()
+    def _free(self, A: PETSc.Mat, diagonal: float) -> PETSc.Mat:
+        """Replace prescribed rows and columns by a diagonal."""
         A.zeroRowsColumns(self.solver.prescribed_rows(), diag=diagonal)
         return A
 
     def _tangent(self, eta: float) -> PETSc.Mat:
-        problem = self.solver.problem
+        problem, A = self.solver.problem, self.solver.layout.create_matrix()
         guess = float(problem.guess.value)
         problem.guess.value, problem.eta.value = SLIPS, eta
         try:
-            return self._assemble(problem.jacobian, self.solver.stiffness)
+            self.solver.assemble_tangent(A)
         finally:
             problem.guess.value, problem.eta.value = guess, 0.0
+        return self._free(A, self.solver.stiffness)
+
+    def _mass_matrix(self) -> PETSc.Mat:
+        A = self.solver.layout.create_matrix()
+        self.solver.layout.add_to_matrix(A, self._mass, (0, 0))
+        A.assemble()
+        return self._free(A, 0.0)
 
     def negative_pivots(self) -> int:
         """Count the negative eigenvalues of a symmetric tangent, by LDL^T of MUMPS; collective.
@@ -126,7 +129,7 @@ class StabilityCheck:
             NotConverged: the factorisation failed.
         """
         with self.solver.timings.phase("stability"):
-            K, M = self._tangent(eta), self._assemble(self._mass, 0.0)
+            K, M = self._tangent(eta), self._mass_matrix()
             ksp = self._factorise(K, PETSc.PC.Type.LU)
             result = self._arnoldi(ksp, M, eta)
             for used in (ksp, K, M):

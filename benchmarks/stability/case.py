@@ -4,7 +4,7 @@ import hashlib
 import json
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, replace
-from typing import Any, Literal
+from typing import Literal
 
 from variational.augmented import AugmentedLagrangian
 from variational.contact import Formulation
@@ -34,7 +34,7 @@ class Treatment:
 _EPS_N = (1.5e10, 1.5e11, 1.5e12, 1.5e13, 1.5e14, 1.5e15)
 _GAMMA_0 = (0.1, 1.0, 10.0, 100.0, 1e3, 1e4)
 _STIFFNESS, _OVER_SKIN = r"$\epsilon_n$ (Pa/m)", r"$\gamma_0$"
-# One line to add a formulation, one to add an element: all maps and tables follow.
+# One line to add a formulation: all maps and tables follow.
 FORMULATIONS = {
     "penalty": Treatment(_STIFFNESS, 1.5e12, _EPS_N, lambda eps_n: Penalty(eps_n, 5e10)),
     "augmented": Treatment(_STIFFNESS, 1.5e13, _EPS_N, lambda eps_n: AugmentedLagrangian(eps_n, eps_n / 30, 5e-9)),
@@ -42,8 +42,8 @@ FORMULATIONS = {
     "Nitsche, θ = 1": Treatment(_OVER_SKIN, 100.0, _GAMMA_0, lambda gamma_0: Nitsche(gamma_0, 1), everywhere=False),
     "Nitsche, θ = -1": Treatment(_OVER_SKIN, 10.0, _GAMMA_0, lambda gamma_0: Nitsche(gamma_0, -1), everywhere=False),
 }
-ELEMENTS: dict[str, dict[str, Any]] = {"P1": {"degree": 1}, "P2": {"degree": 2}}
-"""Arguments of :class:`variational.problem.Problem` for each element."""
+ELEMENTS = ("P1", "P2", "P2 reduced", "P2-P1")
+"""Names in :mod:`variational.element`."""
 
 
 @dataclass(frozen=True)

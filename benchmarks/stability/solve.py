@@ -25,7 +25,7 @@ from dolfinx import fem
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from benchmarks.stability.case import ELEMENTS, FORMULATIONS, Case, Outcome
+from benchmarks.stability.case import FORMULATIONS, Case, Outcome
 from fingerpad.processes import limit_processor_time
 from geometry import strip, tags
 from geometry.mesh import TaggedMesh, load
@@ -94,7 +94,7 @@ def make_problem(case: Case, body: TaggedMesh) -> Problem:
     surface = Surface(body.mesh, body.facet_tags, {j: tags.ridge(j) for j in body.ridges()})
     interface = Interface(FORMULATIONS[case.formulation].law(case.parameter), case.mu_f, _H_0)
     solids = {tag: Ogden(shear, _ALPHA, case.nu) for tag, shear in _SKIN.items()}
-    return Problem(body.mesh, body.cell_tags, surface, solids, interface, **ELEMENTS[case.element])
+    return Problem(body.mesh, body.cell_tags, surface, solids, interface, case.element)
 
 
 def make_solver(case: Case, body: TaggedMesh, problem: Problem) -> Solver:
