@@ -77,9 +77,11 @@ def test_balance_closes_with_the_square_of_the_step(cycles, phase):
     """The imbalances of a phase add up to a quarter when the step is halved.
 
     Over three halvings the rates measured lie between 1.78 and 2.25. One halving's lie between 1.3 and 3.4: points
-    touch, part and start to slip somewhere inside a step.
+    touch, part and start to slip somewhere inside a step. The last step of the lift is left out: it ends where the
+    body just leaves the screen, and roundoff says which points still bear.
     """
-    errors = np.array([total(c[phase], "released") for c in cycles])
+    last = -1 if phase == "lift" else None
+    errors = np.array([total(c[phase][:last], "released") for c in cycles])
     assert np.log2(errors[0] / errors[-1]) / 3 > 1.75
     assert (np.diff(errors) < 0).all()
 
