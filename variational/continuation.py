@@ -56,6 +56,8 @@ class Attempt:
     cutbacks: list[str] = field(default_factory=list)
     pseudo_transient: int = 0
     """Solves that full Newton steps did not manage: as a rule, parts of the skin jumped."""
+    jumped: set[int] = field(default_factory=set)
+    """Numbers of the ridges whose air gap went past a fold."""
 
 
 @dataclass
@@ -180,7 +182,7 @@ class Continuation:
         a, steps = self._now, [np.inf]
         if target.f_ext is not None:
             change = abs(np.sqrt(target.f_ext) - np.sqrt(max(a.control.force, 0.0)))
-            steps.append(_FORCE * np.sqrt(max(target.f_ext, a.control.force)) / max(change, 1e-300))
+            steps.append(_FORCE * np.sqrt(max(target.f_ext, a.control.force, 1e-300)) / max(change, 1e-300))
         if target.voltage is not None:
             change = abs(target.voltage**2 - a.voltage**2)
             steps.append(_VOLTAGE * max(target.voltage, a.voltage, 1e-300) ** 2 / max(change, 1e-300))
@@ -241,3 +243,4 @@ class Continuation:
             attempt.pseudo_transient += counts.pseudo_transient - shifted
             attempt.sweeps = len(self.coupling.history.changes)
             attempt.changes = self.coupling.history.changes
+            attempt.jumped = self.coupling.history.jumped

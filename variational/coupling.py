@@ -1,10 +1,24 @@
-"""The two scales meet: a fixed point over the ridges' mean contact pressures.
+r"""The two scales meet: a fixed point over the ridges' mean contact pressures.
 
-At given air gaps the macroscale gives each ridge's mean contact pressure, the closure turns it into a new
-air gap. With r(d) = closure(p_c(d)) - d the loop takes d + r, and from the second sweep on the secant step of each
-ridge by itself (Aitken; ridges hardly feel each other's air gap): it needs fewer sweeps where the loop
-contracts. A gain of one is the ridge's fold: past it the loop leaves, in the direction of r, for another state
-of the ridge, off the screen or fully on it, and the step is made as long as for a gain just below one.
+At given air gaps d the macroscale gives each ridge's mean contact pressure, the closure turns it into a new air
+gap; with :math:`r(d) = d_{eq}(p_c(d)) - d` the plain loop takes d + r. Over a rigid screen a change of the attraction
+is borne where it acts, so ridges do not feel each other's air gap, the Jacobian of r is diagonal, and Newton's
+method is a secant of each ridge by itself:
+
+.. math:: d \leftarrow d + \frac{r}{1 - g}, \qquad g = \frac{d}{dd} d_{eq}(p_c(d)) = d_{eq}'(p_c) \, \sigma_{el}'(d)
+
+A loop starts with the gain g it last ended with. The secant needs a few sweeps where g is -3 or 0.99 and the plain
+loop diverges or needs hundreds. It is not let converge where g > 1. There the micro layer is unstable: at a given
+elastic stress a gap that opens a little opens on. The gain does not depend on how the body is loaded, so no
+control of the bone's height or force makes such a state stable. g = 1 is the ridge's fold; past it the loop leaves
+in the direction of r, by steps that may be ten, a hundred, a thousand times r (more each sweep, never more than half
+of d), for another state of the ridge: down on the screen, or up to where d_eq is held. Such ridges are listed in
+:attr:`CouplingHistory.jumped`. (Nothing is stored in the closure: what a jump of the micro layer releases there is not
+known, and :mod:`~variational.energy` books what the skin releases.)
+
+On leaving contact a ridge has p_c = 0, and its air gap is the closure's at that end: the bearing area model holds
+d_eq at its value at p_floor, some 12 um. It does not keep the gap it was pressed to, and d_eq does not follow
+p_c to infinity. A ridge without contact is attracted across its height where that is larger.
 
 A formulation of contact whose history is corrected after each solve, the augmented Lagrangian, shares the loop: a
 sweep corrects air gaps and multipliers, and the loop ends when both agree.
@@ -24,8 +38,9 @@ from variational.roughness.closure import Closure
 from variational.solver import NotConverged, Solver
 
 Array = NDArray[np.float64]
-_LARGEST_GAIN = 0.9
-_MOVED = 1e-4  # of d_eq: what a gain is measured over, far above the loop's tolerance
+_AMPLIFIED = 10.0, 100.0, 1e3  # largest 1 / (1 - gain) of the first sweeps and of the later ones
+_MOVED = 1e-4  # of d_eq: what a gain is reported for, far above the loop's tolerance
+_SEEN = 1e-6  # of d_eq: what a secant is drawn over, far above the error that a solve leaves
 
 
 @dataclass
@@ -38,6 +53,8 @@ class CouplingHistory:
     """Number of the ridge it belongs to."""
     errors: list[float] = field(default_factory=list)
     """Largest error of the contact's conditions in each sweep (m), zero where there is nothing to correct."""
+    jumped: set[int] = field(default_factory=set)
+    """Numbers of the ridges that were past a fold: their gain was above one."""
 
 
 class Coupling:
@@ -46,8 +63,8 @@ class Coupling:
     Attributes:
         d_eq: equivalent air gap of each ridge (m).
         history: sweeps of the last solve.
-        gain: d closure(p_c) / d d_eq of each ridge, the secant over the sweeps of the last solve that moved its
-            air gap; NaN where none did yet. Below one the ridge's loop contracts: its state is stable if that of
+        gain: d closure(p_c) / d d_eq of each ridge, the last secant of the last solve that moved its air gap;
+            NaN where none did yet. Below one the ridge's loop contracts: its state is stable if that of
             frozen air gaps is.
     """
 
@@ -66,7 +83,7 @@ class Coupling:
             solver: the macroscale.
             observer: evaluates its surface.
             closure: the microscale.
-            tolerance: relative change of d_eq at which the loop ends.
+            tolerance: relative error of d_eq, estimated by the next step, at which the loop ends.
             cap: most sweeps.
             by_gap: take the length below d_eq, not the length under pressure, as L_R of Eq. 4.
         """
@@ -107,23 +124,28 @@ class Coupling:
         problem = self.solver.problem
         formulation, charged = problem.interface.formulation, float(problem.voltage.value) != 0.0
         contact_history = problem.history
-        first: tuple[Array, Array] | None = None
         previous: tuple[Array, Array] | None = None
+        gain, measured = np.nan_to_num(self.gain), self.gain.copy()
         for sweep in range(self.cap):
             d = self.d_eq
             found, state = self._sweep(creep or sweep > 0)
             r = found - d if charged else np.zeros_like(d)  # without attraction the air gaps do not act
-            first = first or (d, r)
             error = formulation.error(state, contact_history, problem.interface.mu_f)
             self.history.errors.append(problem.mesh.comm.allreduce(error, op=MPI.MAX))
             worst = int(np.argmax(np.abs(r) / d))
             self.history.changes.append(float(np.abs(r[worst]) / d[worst]))
             self.history.ridges.append(self.observer.surface.names[worst])
-            scales = self.history.changes[-1] <= self.tolerance
+            if previous is not None:
+                moved = np.abs(d - previous[0])
+                gain = np.where(moved > _SEEN * d, _secant(d, r, previous), gain)
+                measured = np.where(moved > _MOVED * d, gain, measured)
+                past = (gain >= 1) & (moved > _MOVED * d)
+                self.history.jumped.update(self.observer.surface.names[k] for k in np.flatnonzero(past))
+            scales = bool((np.abs(r) * _amplification(gain, 0) <= self.tolerance * d).all())
             contact = self.history.errors[-1] <= formulation.tolerance
             if scales and contact:
                 if charged:
-                    self._measure_gain(d, r, first)
+                    self.gain = measured
                 else:
                     self.set_air_gaps(found)
                 return
@@ -131,22 +153,20 @@ class Coupling:
                 contact_history = formulation.corrected(state, contact_history)
                 problem.correct_history(contact_history)
             if not scales:
-                self.set_air_gaps(d + self._step(d, r, previous))
+                self.set_air_gaps(d + np.clip(r * _amplification(gain, sweep), -d / 3, d / 2))
                 previous = d, r
         ridge, error = self.history.ridges[-1], self.history.errors[-1]
         where = f"a contact error of {error:.2g} m" if scales else f"ridge {ridge}"
         raise NotConverged(f"COUPLING_CAP at {where}", False)
 
-    def _measure_gain(self, d: Array, r: Array, first: tuple[Array, Array]) -> None:
-        moved = d - first[0]
-        known = np.abs(moved) > _MOVED * d
-        self.gain = self.gain.copy()
-        self.gain[known] = 1 + (r - first[1])[known] / moved[known]
 
-    @staticmethod
-    def _step(d: Array, r: Array, previous: tuple[Array, Array] | None) -> Array:
-        if previous is None:
-            return r
-        moved = d - previous[0]
-        gain = 1 + np.divide(r - previous[1], moved, out=np.full_like(r, -1.0), where=np.abs(moved) > 1e-9 * d)
-        return np.clip(r / (1 - np.minimum(gain, _LARGEST_GAIN)), -d / 3, d / 2)
+def _secant(d: Array, r: Array, previous: tuple[Array, Array]) -> Array:
+    """Return the gain of each ridge from two sweeps' air gaps and what the closure added to them."""
+    moved = d - previous[0]
+    return 1 + np.divide(r - previous[1], moved, out=np.zeros_like(r), where=moved != 0)
+
+
+def _amplification(gain: Array, sweep: int) -> Array:
+    """Return 1 / (1 - gain), bounded in each sweep where the gain is near one or above."""
+    most = _AMPLIFIED[min(sweep, len(_AMPLIFIED) - 1)]
+    return np.asarray(1 / (1 - np.minimum(gain, 1 - 1 / most)))

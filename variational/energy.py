@@ -8,7 +8,8 @@ At an equilibrium the residual (:mod:`~variational.problem`) is work free but fo
 
 with E strain energy and the attraction's potential, R the force on the bone, s the friction's anchor. The potential
 is proportional to U^2; its derivative is the work of the voltage source less what the charged gap keeps. An air gap
-that follows the pressure (:mod:`~variational.coupling`) does work as well. Work is taken by the trapezoidal rule. A
+that follows the pressure (:mod:`~variational.coupling`) does work as well. Work is taken by the trapezoidal rule, that
+of the air gaps as the mean of the energy's changes at both shapes: an air gap may jump tenfold while the skin stays. A
 point slips only while it is on its cone, so its traction is the mean of the cone's radii at both ends, whatever it bore
 before it slipped: that is of second order along smooth paths, as the rest is, and right where a step spans sticking
 and slipping or a reversal. What is left over,
@@ -23,12 +24,11 @@ the jump of each force times its load's step, since it is not known where in the
 from dataclasses import dataclass
 
 import numpy as np
-import ufl
 from dolfinx import fem
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from variational import electroadhesion
+from variational.electroadhesion import VACUUM_PERMITTIVITY
 from variational.problem import Problem
 from variational.quantities import SurfaceState
 
@@ -65,8 +65,6 @@ class _State:
     reaction: Array
     square: float  # U^2
     d_eq: Array
-    potential: float  # of the attraction, for U = 1 V
-    gap_force: Array  # its derivative with respect to each ridge's d_eq
     surface: SurfaceState
 
 
@@ -76,16 +74,11 @@ class EnergyBook:
     def __init__(self, problem: Problem, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array) -> None:
         """Start from an equilibrium; arguments as in :meth:`step`."""
         self._problem = problem
-        d = ufl.variable(problem.d_eq)
-        phi = electroadhesion.potential(problem.y, d, 1.0, problem.interface.h_0)
-        width = -problem.area[1]  # current dx per reference length
-        self._compiled = problem.surface.compile([phi * width, ufl.diff(phi, d) * width])
         self._last = self._state(surface, bone, reaction, d_eq)
 
     def _state(self, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array) -> _State:
         problem, integrate = self._problem, self._problem.surface.per_ridge
         bulk = problem.mesh.comm.allreduce(float(fem.assemble_scalar(problem.energy)), op=MPI.SUM)
-        potential, gap_force = problem.surface.evaluate(self._compiled)
         springs = float(integrate(problem.interface.formulation.stored(surface)).sum())
         square = float(problem.voltage.value) ** 2
         return _State(
@@ -94,10 +87,17 @@ class EnergyBook:
             np.array(reaction),
             square,
             np.array(d_eq),
-            float(integrate(potential).sum()),
-            square * integrate(gap_force),
             surface,
         )
+
+    def _potential(self, surface: SurfaceState, d_eq: Array) -> float:
+        """Return the attraction's potential (J/m) at 1 V, :func:`variational.electroadhesion.potential` in NumPy."""
+        y, d = surface.y, d_eq[self._problem.surface.ridge, None]
+        near, h_0 = np.minimum(y, d), self._problem.interface.h_0
+        g = h_0 + np.maximum(y, d)
+        phi = -VACUUM_PERMITTIVITY / 2 * (1 / g + (d - near) / g**2)
+        width = -surface.area_y  # current dx per reference length
+        return float(self._problem.surface.per_ridge(phi * width).sum())
 
     def step(self, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array) -> Balance:
         """Close the book on a step; collective.
@@ -110,12 +110,14 @@ class EnergyBook:
         """
         a, b = self._last, self._state(surface, bone, reaction, d_eq)
         self._last = b
+        # The potential at the shapes (rows) and air gaps (columns) before and after.
+        phi = np.array([[self._potential(shape.surface, gap.d_eq) for gap in (a, b)] for shape in (a, b)])
         return Balance(
             stored=b.stored,
             change=b.stored - a.stored,
             external=-float((a.reaction + b.reaction) / 2 @ (b.bone - a.bone)),
-            voltage=(a.potential + b.potential) / 2 * (b.square - a.square),
-            air_gap=float((a.gap_force + b.gap_force) / 2 @ (b.d_eq - a.d_eq)),
+            voltage=float(phi[0, 0] + phi[1, 1]) / 2 * (b.square - a.square),
+            air_gap=float(np.array([a.square, b.square]) @ (phi[:, 1] - phi[:, 0])) / 2,
             dissipation=self._dissipation(a.surface, b.surface),
         )
 

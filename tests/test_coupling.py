@@ -1,0 +1,138 @@
+"""The loop over the scales on macroscales that are one formula: where it converges, how fast, and what it leaves."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from scipy.optimize import brentq
+
+from variational.coupling import Coupling
+from variational.roughness.bam import BearingArea
+from variational.roughness.closure import AirGap
+from variational.solver import NotConverged
+from variational.timing import Timings
+
+H_0, EPS_0, FOLD_VOLTAGE = 0.514e-6, 8.854e-12, 200.0
+CENTRE = 2e-6  # m
+
+
+class Stub:
+    """Stands for solver and observer: the ridges' contact pressures are a formula of their air gaps."""
+
+    def __init__(self, closure, pressure, ridges: int = 1, noise: float = 0.0) -> None:
+        self.pressure, self.timings, self.noise = pressure, Timings(), noise
+        self.draw = np.random.default_rng(0)
+        self.problem = SimpleNamespace(
+            interface=SimpleNamespace(formulation=SimpleNamespace(error=lambda *_: 0.0, tolerance=0.0), mu_f=0.0),
+            history=None,
+            voltage=SimpleNamespace(value=FOLD_VOLTAGE),
+            mesh=SimpleNamespace(comm=MPI.COMM_SELF),
+            set_air_gaps=lambda d: setattr(self, "d", d),
+        )
+        self.surface, self.state = SimpleNamespace(names=list(range(ridges))), lambda: None
+        self.coupling = Coupling(self, self, closure)
+
+    def solve(self, creep: bool = False) -> None:
+        """The formula needs no solve."""
+
+    def ridge_loads(self, state, by_gap):
+        p_c = self.pressure(self.d)
+        return SimpleNamespace(p_c=p_c * (1 + self.noise * self.draw.uniform(-1, 1, len(p_c))))
+
+
+def line(gain) -> Stub:
+    """Return ridges in equilibrium at CENTRE with the gains given, each the same everywhere."""
+    gain = np.atleast_1d(np.asarray(gain, dtype=float))
+    stub = Stub(lambda p_c: AirGap(CENTRE + p_c, np.ones_like(p_c)), lambda d: gain * (d - CENTRE), len(gain))
+    stub.coupling.set_air_gaps(np.full(len(gain), 1.1 * CENTRE))
+    return stub
+
+
+def flat(p_ext: float, noise: float = 0.0) -> Stub:
+    """Return a flat ridge that bears an external pressure (Pa) and its attraction at 200 V."""
+    half = EPS_0 * FOLD_VOLTAGE**2 / 2
+    return Stub(BearingArea(H_0, p_floor=1.0), lambda d: p_ext + half / (H_0 + d) ** 2, 1, noise)
+
+
+@pytest.mark.parametrize("gain", [-3.0, -0.9, 0.0, 0.5, 0.9, 0.99])
+def test_linear_ridge_takes_few_sweeps(gain):
+    """The plain loop diverges at a gain of -3 and takes a thousand sweeps at 0.99; the secant is exact."""
+    stub = line(gain)
+    stub.coupling.solve()
+    assert len(stub.coupling.history.changes) <= 5
+    assert stub.coupling.d_eq[0] == pytest.approx(CENTRE, rel=1e-6)
+    assert stub.coupling.gain[0] == pytest.approx(gain, abs=1e-6)
+    assert not stub.coupling.history.jumped
+
+
+def test_ridges_of_different_gains():
+    """Each ridge has a secant of its own: together they take as many sweeps as the slowest alone."""
+    stub = line([-3.0, 0.2, 0.99])
+    stub.coupling.solve()
+    assert len(stub.coupling.history.changes) <= 5
+    np.testing.assert_allclose(stub.coupling.d_eq, CENTRE, rtol=1e-6)
+
+
+@pytest.mark.parametrize("gain", [1.01, 1.5, 4.0])
+@pytest.mark.parametrize("side", [0.9, 1.1])
+def test_state_past_the_fold_is_left(gain, side):
+    """A gain above one is an unstable state: the loop does not settle on it, and says which ridge it was."""
+    stub = line(gain)
+    stub.coupling.set_air_gaps(np.array([side * CENTRE]))
+    with pytest.raises(NotConverged, match="COUPLING_CAP at ridge 0"):
+        stub.coupling.solve()
+    assert stub.coupling.history.jumped == {0}
+    assert np.sign(stub.coupling.d_eq[0] - CENTRE) == np.sign(side - 1)
+
+
+# -- a flat ridge of the bearing area model ----------------------------------------------------------------
+def gain_at(closure: BearingArea, u_bar: float) -> float:
+    p_c, d = closure.contact_pressure(u_bar), closure.air_gap(u_bar)
+    return float(closure(p_c).derivative * -EPS_0 * FOLD_VOLTAGE**2 / (H_0 + d) ** 3)
+
+
+@pytest.mark.parametrize("gain", [0.5, 0.9, 0.99])
+@pytest.mark.parametrize("noise", [0.0, 1e-9])
+def test_towards_the_fold(gain, noise):
+    """A ridge led up to its pull-off fold by halves of the distance settles where its gain is the one asked for.
+
+    Pressures come with the error a solve may leave. That of d_eq is a tenth of the tolerance by secant, or the noise
+    over 1 - gain.
+    """
+    closure = BearingArea(H_0, p_floor=1.0)
+    fold = closure.pull_off_fold(FOLD_VOLTAGE)
+    end = brentq(lambda u: gain_at(closure, u) - gain, 1e-6, fold)
+    stub = flat(float(closure.external_pressure(0.5 * end, FOLD_VOLTAGE)), noise)
+    stub.coupling.set_air_gaps(closure.air_gap(np.array([0.5 * end])))
+    for part in (0.8, 0.9, 0.95, 1.0):
+        p_ext = float(closure.external_pressure(part * end, FOLD_VOLTAGE))
+        stub.pressure = flat(p_ext).pressure
+        stub.coupling.solve()
+        assert len(stub.coupling.history.changes) <= 10
+        assert stub.coupling.d_eq[0] == pytest.approx(float(closure.air_gap(part * end)), rel=1e-6)
+    assert not stub.coupling.history.jumped
+    assert stub.coupling.gain[0] == pytest.approx(gain, abs=0.02)
+
+
+@pytest.mark.parametrize("beyond", [1.0, 10.0, 100.0])  # Pa
+def test_past_the_pull_off_fold(beyond):
+    """A little beyond the fold nothing holds the ridge: it goes to the closure's far end, within the cap of sweeps."""
+    closure = BearingArea(H_0)
+    fold = closure.pull_off_fold(FOLD_VOLTAGE)
+    stub = flat(float(closure.external_pressure(fold, FOLD_VOLTAGE)) - beyond)
+    stub.coupling.closure = closure
+    stub.coupling.set_air_gaps(closure.air_gap(np.array([0.95 * fold])))
+    stub.coupling.solve()
+    assert stub.coupling.history.jumped == {0}
+    assert stub.coupling.d_eq[0] == closure(0.0).d_eq
+
+
+def test_past_the_pull_in_fold():
+    """A little beyond the other fold the ridge comes down to the branch in contact."""
+    closure = BearingArea(H_0, p_floor=1.0)
+    stub = flat(110.0)  # the fold is at 107 Pa
+    stub.coupling.set_air_gaps(closure.air_gap(np.array([12e-6])))
+    stub.coupling.solve()
+    assert stub.coupling.history.jumped == {0}
+    assert stub.coupling.d_eq[0] == pytest.approx(closure.air_gap_at_external(110.0, FOLD_VOLTAGE), rel=1e-6)
