@@ -1,0 +1,118 @@
+"""Newton's method: which steps it takes, shortens and refuses, on any number of ranks."""
+
+from functools import partial
+
+import pytest
+from mpi4py import MPI
+
+from geometry.benchmarks import block, ridge
+from geometry.mesh import load
+from tests.test_contact import HEIGHT, MU_F, WIDTH, make
+from variational import solver as module
+from variational.problem import SLIPS, STICKS
+from variational.solver import Control, NotConverged
+
+pytestmark = pytest.mark.mpi
+
+
+@pytest.fixture(scope="module")
+def body():
+    """A ridge of some hundred cells."""
+    return load(MPI.COMM_WORLD, partial(ridge, 20e-6))
+
+
+@pytest.fixture(scope="module")
+def flat():
+    """A block of 4 x 2 x 2 cells on the screen."""
+    return load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3))
+
+
+class Trace:
+    """Norms of the residual, and whether the step that led to each used a kept factorisation."""
+
+    def __init__(self, solver):
+        self.norms: list[float] = []
+        self.kept: list[bool] = []
+        solver._snes.setMonitor(lambda snes, iteration, norm: self._note(solver, iteration, norm))
+
+    def _note(self, solver, iteration, norm):
+        if iteration == 0:
+            self.norms, self.kept = [], []
+        self.norms.append(norm)
+        self.kept.append(solver._kept)
+
+    def rises(self):
+        """Return by how much the residual rose in iterations from the second on that used a kept factorisation."""
+        pairs = zip(self.norms[1:], self.norms[2:], self.kept[2:], strict=False)
+        return [after / before for before, after, kept in pairs if kept and after > before * (1 + 1e-12)]
+
+
+def walk(solver, loads, slipping=False, after=lambda: None):
+    """Solve for one load after the other, each with the history that the one before it left."""
+    surface = solver.problem.surface
+    anchor = surface.compile([solver.problem.contact.new_anchor])
+    for control in loads:
+        solver.new_load(control, 0.0, slipping)
+        solver.solve()
+        after()
+        surface.set_history(solver.problem.anchor, surface.evaluate(anchor)[0])
+
+
+def test_kept_factorisation_never_raises_the_residual(body):
+    """Once the prescribed displacement is made, what an old tangent proposes is taken only if it helps."""
+    solver = make(body, MU_F, eps_t=5e10)
+    trace, rises, kept = Trace(solver), [], []
+
+    def note():
+        rises.extend(trace.rises())
+        kept.extend(trace.kept[1:])
+
+    walk(solver, [Control(0.0, -20e-6 * k) for k in (1, 2)], after=note)
+    walk(solver, [Control(20e-6 * k, -40e-6) for k in (1, 2, 3)], after=note)
+    assert rises == []
+    assert sum(kept) > 5
+
+
+def test_step_that_inverts_is_halved(flat, monkeypatch):
+    """A block is flattened at once so far that the full step turns elements inside out."""
+    far = Control(0.0, -0.6 * HEIGHT)
+    solver = make(flat, held=False)
+    solver.new_load(far, 0.0)
+    solver.solve()
+    assert solver.bone[1] == pytest.approx(far.y, rel=1e-12)
+    monkeypatch.setattr(module, "_HALVINGS", 0)
+    solver = make(flat, held=False)
+    solver.new_load(far, 0.0)
+    with pytest.raises(NotConverged, match="inverted"):
+        solver.solve()
+
+
+def test_load_starts_from_its_own_tangent(body):
+    """A load solved twice from the same state takes the same iterations, whatever was factorised in between."""
+    solver = make(body)
+    start = solver.x.array_r.copy()
+    counts = []
+    for _ in range(2):
+        solver.x.array_w[:] = start
+        solver.new_load(Control(0.0, -10e-6), 0.0)
+        before = solver.counts.newton
+        solver.solve()
+        counts.append(solver.counts.newton - before)
+    assert counts[0] == counts[1]
+
+
+@pytest.mark.parametrize(("slipping", "guess"), [(True, SLIPS), (False, STICKS)])
+def test_guess_of_a_load(flat, slipping, guess):
+    solver = make(flat, MU_F)
+    solver.new_load(Control(), 0.0, slipping)
+    assert float(solver.problem.guess.value) == guess
+
+
+def test_steady_slip_is_solved_at_once(body):
+    """At full slip a further translation is the first step of Newton's method if points are taken to slip on."""
+    solver = make(body, MU_F, eps_t=5e10, held=False)
+    walk(solver, [Control(0.0, -5e-6 * k) for k in range(1, 5)])
+    walk(solver, [Control(20e-6 * k, -20e-6) for k in range(1, 11)])
+    before = solver.counts.newton
+    walk(solver, [Control(300e-6, -20e-6)], slipping=True)
+    assert solver.counts.newton - before == 1
