@@ -1,18 +1,19 @@
 r"""The two scales meet: a fixed point over the ridges' mean contact pressures.
 
 At given air gaps d the macroscale gives each ridge's mean contact pressure, the closure turns it into a new air
-gap; with :math:`r(d) = d_{eq}(p_c(d)) - d` the plain loop takes d + r. Over a rigid screen a change of the attraction
-is borne where it acts, so ridges do not feel each other's air gap, the Jacobian of r is diagonal, and Newton's
-method is a secant of each ridge by itself:
+gap; with :math:`r(d) = d_{eq}(p_c(d)) - d` the plain loop takes d + r. The screen bears a change of the attraction
+mostly where it acts, so ridges hardly feel each other's air gap, and Newton's method is a secant of each ridge
+by itself:
 
-.. math:: d \leftarrow d + \frac{r}{1 - g}, \qquad g = \frac{d}{dd} d_{eq}(p_c(d)) = d_{eq}'(p_c) \, \sigma_{el}'(d)
+.. math:: d \leftarrow d + \frac{r}{1 - g}, \qquad g = \frac{d}{dd} d_{eq}(p_c(d))
 
-A loop starts with the gain g it last ended with. The secant needs a few sweeps where g is -3 or 0.99 and the plain
-loop diverges or needs hundreds. It is not let converge where g > 1. There the micro layer is unstable: at a given
-elastic stress a gap that opens a little opens on. The gain does not depend on how the body is loaded, so no
-control of the bone's height or force makes such a state stable. g = 1 is the ridge's fold; past it the loop leaves
-in the direction of r, by steps that may be ten, a hundred, a thousand times r (more each sweep, never more than half
-of d), for another state of the ridge: down on the screen, or up to where d_eq is held. Such ridges are listed in
+A loop starts with the gain g it last ended with, unless that would take it far. The secant needs a few sweeps where
+g is -3 or 0.99 and the plain loop diverges or needs hundreds. It is not let converge where g > 1. There the micro
+layer is unstable: a gap that opens a little opens on. On a flat ridge, :math:`g = d_{eq}'(p_c) \, \sigma_{el}'(d)`
+whatever the body and its loads: no control of the bone's height or force makes such a state stable. (On a round one
+the contact's length follows the attraction too.) g = 1 is the ridge's fold; past it the loop leaves in the direction
+of r, by ten times r and, as long as the gain stays there, by a hundred and a thousand times, never more than half of
+d, for another state of the ridge: down on the screen, or up to where d_eq is held. Such ridges are listed in
 :attr:`CouplingHistory.jumped`. (Nothing is stored in the closure: what a jump of the micro layer releases there is not
 known, and :mod:`~variational.energy` books what the skin releases.)
 
@@ -31,16 +32,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from mpi4py import MPI
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from variational.quantities import Observer, SurfaceState
 from variational.roughness.closure import Closure
 from variational.solver import NotConverged, Solver
 
 Array = NDArray[np.float64]
-_AMPLIFIED = 10.0, 100.0, 1e3  # largest 1 / (1 - gain) of the first sweeps and of the later ones
-_MOVED = 1e-4  # of d_eq: what a gain is reported for, far above the loop's tolerance
-_SEEN = 1e-6  # of d_eq: what a secant is drawn over, far above the error that a solve leaves
+_AMPLIFIED = 10.0, 10.0, 100.0, 1e3  # largest 1 / (1 - gain) after so many secants that asked for ten or more
+_SEEN = 1e-6  # of d_eq: what a secant is drawn over, far above the error that a solve leaves, and
+_LEADS = 0.1  # of the largest move: else it is the other ridges' air gaps that moved this one's pressure
+_FIRST = 0.01  # of d_eq: how far the first step may go beyond r, whose gain is that of another load
+_JUMP = 0.1  # of d_eq: how far a ridge past its fold goes at least
 
 
 @dataclass
@@ -54,7 +57,7 @@ class CouplingHistory:
     errors: list[float] = field(default_factory=list)
     """Largest error of the contact's conditions in each sweep (m), zero where there is nothing to correct."""
     jumped: set[int] = field(default_factory=set)
-    """Numbers of the ridges that were past a fold: their gain was above one."""
+    """Numbers of the ridges that went past a fold: their gain was above one and their air gap changed by far."""
 
 
 class Coupling:
@@ -83,7 +86,7 @@ class Coupling:
             solver: the macroscale.
             observer: evaluates its surface.
             closure: the microscale.
-            tolerance: relative error of d_eq, estimated by the next step, at which the loop ends.
+            tolerance: relative error of d_eq, r / (1 - gain), at which the loop ends; gains count up to 0.99.
             cap: most sweeps.
             by_gap: take the length below d_eq, not the length under pressure, as L_R of Eq. 4.
         """
@@ -125,7 +128,9 @@ class Coupling:
         formulation, charged = problem.interface.formulation, float(problem.voltage.value) != 0.0
         contact_history = problem.history
         previous: tuple[Array, Array] | None = None
-        gain, measured = np.nan_to_num(self.gain), self.gain.copy()
+        start, gain = self.d_eq, self.gain.copy()
+        past = np.zeros(len(gain), dtype=bool)  # whether a gain of one was seen
+        steep = np.zeros(len(gain), dtype=int)  # secants in a row near a gain of one or above
         for sweep in range(self.cap):
             d = self.d_eq
             found, state = self._sweep(creep or sweep > 0)
@@ -136,16 +141,18 @@ class Coupling:
             self.history.changes.append(float(np.abs(r[worst]) / d[worst]))
             self.history.ridges.append(self.observer.surface.names[worst])
             if previous is not None:
-                moved = np.abs(d - previous[0])
-                gain = np.where(moved > _SEEN * d, _secant(d, r, previous), gain)
-                measured = np.where(moved > _MOVED * d, gain, measured)
-                past = (gain >= 1) & (moved > _MOVED * d)
-                self.history.jumped.update(self.observer.surface.names[k] for k in np.flatnonzero(past))
-            scales = bool((np.abs(r) * _amplification(gain, 0) <= self.tolerance * d).all())
+                moved = np.abs(d - previous[0]) / d
+                seen = moved > max(_SEEN, _LEADS * moved.max())
+                gain = np.where(seen, _secant(d, r, previous), gain)
+                steep = np.where(seen, np.where(gain > 1 - 1 / _AMPLIFIED[0], steep + 1, 0), steep)
+                past |= seen & (gain >= 1)
+                jumped = past & (np.abs(d - start) > _JUMP * start)
+                self.history.jumped = {self.observer.surface.names[k] for k in np.flatnonzero(jumped)}
+            scales = bool((np.abs(r) * _amplification(gain, 2) <= self.tolerance * d).all())
             contact = self.history.errors[-1] <= formulation.tolerance
             if scales and contact:
                 if charged:
-                    self.gain = measured
+                    self.gain = gain
                 else:
                     self.set_air_gaps(found)
                 return
@@ -153,7 +160,9 @@ class Coupling:
                 contact_history = formulation.corrected(state, contact_history)
                 problem.correct_history(contact_history)
             if not scales:
-                self.set_air_gaps(d + np.clip(r * _amplification(gain, sweep), -d / 3, d / 2))
+                most = np.inf if previous else np.maximum(np.abs(r), _FIRST * d)
+                step = np.clip(r * _amplification(gain, steep), -most, most)
+                self.set_air_gaps(d + np.clip(step, -d / 3, d / 2))
                 previous = d, r
         ridge, error = self.history.ridges[-1], self.history.errors[-1]
         where = f"a contact error of {error:.2g} m" if scales else f"ridge {ridge}"
@@ -166,7 +175,7 @@ def _secant(d: Array, r: Array, previous: tuple[Array, Array]) -> Array:
     return 1 + np.divide(r - previous[1], moved, out=np.zeros_like(r), where=moved != 0)
 
 
-def _amplification(gain: Array, sweep: int) -> Array:
-    """Return 1 / (1 - gain), bounded in each sweep where the gain is near one or above."""
-    most = _AMPLIFIED[min(sweep, len(_AMPLIFIED) - 1)]
-    return np.asarray(1 / (1 - np.minimum(gain, 1 - 1 / most)))
+def _amplification(gain: Array, steep: ArrayLike) -> Array:
+    """Return 1 / (1 - gain), bounded where the gain is near one or above; no gain known counts as none."""
+    most = np.take(_AMPLIFIED, steep, mode="clip")
+    return np.asarray(1 / (1 - np.minimum(np.nan_to_num(gain), 1 - 1 / most)))
