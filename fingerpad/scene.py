@@ -44,8 +44,8 @@ class Load(_Part):
     """A load to reach from the present one; what is left out stays as it is."""
 
     name: str
-    f_ext: Positive | None = None
-    """External normal force on the bone (N/m)."""
+    f_ext: NonNegative | None = None
+    """External normal force on the bone (N/m); zero only under voltage, which then holds the skin on the screen."""
     bone_height: Finite | None = None
     """Change of the bone's height from the unloaded position (m), negative when pressed."""
     voltage: NonNegative | None = None
@@ -289,7 +289,21 @@ class Scene(_Part):
                 f"history[0].name is {show(first.name)}, with neither f_ext nor bone_height; "
                 "the first load must give one of them"
             )
+        self._refuse_floating()
         return self
+
+    def _refuse_floating(self) -> None:
+        """Refuse loads that leave the bone neither held nor pressed nor attracted."""
+        f_ext, voltage = None, 0.0
+        for k, load in enumerate(self.history or ()):
+            if load.f_ext is not None or load.bone_height is not None:
+                f_ext = load.f_ext
+            voltage = voltage if load.voltage is None else load.voltage
+            if f_ext == 0 and voltage == 0:
+                raise ValueError(
+                    f"history[{k}].name is {show(load.name)}, which ends at f_ext 0 and voltage 0, where nothing holds "
+                    "the skin on the screen; one of the two must be greater than 0, or a bone_height be given"
+                )
 
     @property
     def h_0(self) -> float:

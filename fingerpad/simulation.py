@@ -160,7 +160,7 @@ class Simulation:
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
         state = self.continuation.surface_state
         loads = self.observer.ridge_loads(state)
-        if attempt.pseudo_transient > 0:
+        if _jumped(attempt):
             self._check_stability()
         states = [self.closure.state(float(p), self._voltage) for p in loads.p_c]
         step = Step(self._row(target, loads, attempt), loads, self.coupling.d_eq, states, attempt, state)
@@ -186,7 +186,7 @@ class Simulation:
             "bone_x": float(bone[0]),
             "bone_height": float(bone[1]),
             "f_t": f_t,
-            "mu_app": f_t / f_ext if f_ext > 0 else 0.0,
+            "mu_app": f_t / f_ext if f_ext > _BALANCED * self.solver.force_scale else 0.0,
             "f_contact": float(loads.f_contact.sum()),
             "f_electrostatic": float(loads.f_attraction.sum()),
             "ridges_in_contact": int((loads.length > 0).sum()),
@@ -202,7 +202,7 @@ class Simulation:
             "factorisations": attempt.factorisations,
             "sweeps": attempt.sweeps,
             "cutbacks": len(attempt.cutbacks),
-            "jump": attempt.pseudo_transient > 0,
+            "jump": _jumped(attempt),
         }
 
     def _check_balance(self, loads: RidgeLoads) -> None:
@@ -236,6 +236,11 @@ class Simulation:
                 f"{-lowest:.3g} m below the screen; mesh.touching_half_arc is {self.scene.mesh.touching_half_arc:g} m "
                 "and must be larger"
             )
+
+
+def _jumped(attempt: Attempt) -> bool:
+    """Return whether skin or an air gap moved without the loads."""
+    return attempt.pseudo_transient > 0 or bool(attempt.jumped)
 
 
 def _target(load: Load) -> Target:

@@ -94,6 +94,15 @@ def test_history(write):
     )
 
 
+def test_no_force_where_the_skin_is_held(write):
+    """Attraction or a prescribed height keeps the bone in place without a force."""
+    path = write(
+        '[[history]]\nname = "on"\nf_ext = 5\nvoltage = 80\n[[history]]\nname = "unload"\nf_ext = 0\n'
+        '[[history]]\nname = "retract"\nbone_height = 1e-4\n[[history]]\nname = "off"\nvoltage = 0\n'
+    )
+    assert scenes.load(path).loads()[1] == Load(name="unload", f_ext=0.0)
+
+
 @pytest.mark.parametrize("path", sorted(SCENES.glob("*.toml")), ids=lambda path: path.stem)
 def test_scenes_that_come_along(path):
     scene = scenes.load(path)
@@ -285,7 +294,17 @@ def test_files_that_cannot_be_read(write, tmp_path):
         ("history = [3]", "history[0] is 3; it must be a table of keys"),
         ("[[history]]\nf_ext = 3", "history[0].name is missing; it must be given"),
         ("[[history]]\nname = 3", "history[0].name is 3; it must be text"),
-        ('[[history]]\nname = "a"\nf_ext = 0', "history[0].f_ext is 0; it must be greater than 0"),
+        ('[[history]]\nname = "a"\nf_ext = -1', "history[0].f_ext is -1; it must be at least 0"),
+        (
+            '[[history]]\nname = "a"\nf_ext = 0',
+            "history[0].name is 'a', which ends at f_ext 0 and voltage 0, where nothing holds the skin on the screen; "
+            "one of the two must be greater than 0, or a bone_height be given",
+        ),
+        (
+            '[[history]]\nname = "a"\nf_ext = 0\nvoltage = 9\n[[history]]\nname = "b"\nvoltage = 0',
+            "history[1].name is 'b', which ends at f_ext 0 and voltage 0, where nothing holds the skin on the screen; "
+            "one of the two must be greater than 0, or a bone_height be given",
+        ),
         ('[[history]]\nname = "a"\nbone_height = nan', "history[0].bone_height is nan; it must be a finite number"),
         (
             '[[history]]\nname = "a"\nf_ext = 1\nuntil_full_slip = 1',

@@ -1,20 +1,9 @@
-r"""The two scales meet: a fixed point over the ridges' mean contact pressures.
+"""The two scales meet: a fixed point over the ridges' mean contact pressures.
 
 At given air gaps d the macroscale gives each ridge's mean contact pressure, the closure turns it into a new air
-gap; with :math:`r(d) = d_{eq}(p_c(d)) - d` the plain loop takes d + r. Over a rigid screen a change of the attraction
-is borne where it acts, so ridges do not feel each other's air gap, the Jacobian of r is diagonal, and Newton's
-method is a secant of each ridge by itself:
-
-.. math:: d \leftarrow d + \frac{r}{1 - g}, \qquad g = \frac{d}{dd} d_{eq}(p_c(d)) = d_{eq}'(p_c) \, \sigma_{el}'(d)
-
-A loop starts with the gain g it last ended with. The secant needs a few sweeps where g is -3 or 0.99 and the plain
-loop diverges or needs hundreds. It is not let converge where g > 1. There the micro layer is unstable: at a given
-elastic stress a gap that opens a little opens on. The gain does not depend on how the body is loaded, so no
-control of the bone's height or force makes such a state stable. g = 1 is the ridge's fold; past it the loop leaves
-in the direction of r, by steps that may be ten, a hundred, a thousand times r (more each sweep, never more than half
-of d), for another state of the ridge: down on the screen, or up to where d_eq is held. Such ridges are listed in
-:attr:`CouplingHistory.jumped`. (Nothing is stored in the closure: what a jump of the micro layer releases there is not
-known, and :mod:`~variational.energy` books what the skin releases.)
+gap; :mod:`~variational.secant` iterates until the two agree. A loop starts with the gains it last ended with. Ridges
+that go past their fold on the way are listed in :attr:`CouplingHistory.jumped`. (Nothing is stored in the closure: what
+a jump of the micro layer releases there is not known, and :mod:`~variational.energy` books what the skin releases.)
 
 On leaving contact a ridge has p_c = 0, and its air gap is the closure's at that end: the bearing area model holds
 d_eq at its value at p_floor, some 12 um. It does not keep the gap it was pressed to, and d_eq does not follow
@@ -35,12 +24,10 @@ from numpy.typing import NDArray
 
 from variational.quantities import Observer, SurfaceState
 from variational.roughness.closure import Closure
+from variational.secant import Secants
 from variational.solver import NotConverged, Solver
 
 Array = NDArray[np.float64]
-_AMPLIFIED = 10.0, 100.0, 1e3  # largest 1 / (1 - gain) of the first sweeps and of the later ones
-_MOVED = 1e-4  # of d_eq: what a gain is reported for, far above the loop's tolerance
-_SEEN = 1e-6  # of d_eq: what a secant is drawn over, far above the error that a solve leaves
 
 
 @dataclass
@@ -54,7 +41,7 @@ class CouplingHistory:
     errors: list[float] = field(default_factory=list)
     """Largest error of the contact's conditions in each sweep (m), zero where there is nothing to correct."""
     jumped: set[int] = field(default_factory=set)
-    """Numbers of the ridges that were past a fold: their gain was above one."""
+    """Numbers of the ridges that went past a fold: their gain was above one and their air gap changed by far."""
 
 
 class Coupling:
@@ -83,7 +70,7 @@ class Coupling:
             solver: the macroscale.
             observer: evaluates its surface.
             closure: the microscale.
-            tolerance: relative error of d_eq, estimated by the next step, at which the loop ends.
+            tolerance: relative error of d_eq, r / (1 - gain), at which the loop ends; gains count up to 0.99.
             cap: most sweeps.
             by_gap: take the length below d_eq, not the length under pressure, as L_R of Eq. 4.
         """
@@ -124,8 +111,7 @@ class Coupling:
         problem = self.solver.problem
         formulation, charged = problem.interface.formulation, float(problem.voltage.value) != 0.0
         contact_history = problem.history
-        previous: tuple[Array, Array] | None = None
-        gain, measured = np.nan_to_num(self.gain), self.gain.copy()
+        secants, names = Secants(self.d_eq, self.gain), self.observer.surface.names
         for sweep in range(self.cap):
             d = self.d_eq
             found, state = self._sweep(creep or sweep > 0)
@@ -134,18 +120,14 @@ class Coupling:
             self.history.errors.append(problem.mesh.comm.allreduce(error, op=MPI.MAX))
             worst = int(np.argmax(np.abs(r) / d))
             self.history.changes.append(float(np.abs(r[worst]) / d[worst]))
-            self.history.ridges.append(self.observer.surface.names[worst])
-            if previous is not None:
-                moved = np.abs(d - previous[0])
-                gain = np.where(moved > _SEEN * d, _secant(d, r, previous), gain)
-                measured = np.where(moved > _MOVED * d, gain, measured)
-                past = (gain >= 1) & (moved > _MOVED * d)
-                self.history.jumped.update(self.observer.surface.names[k] for k in np.flatnonzero(past))
-            scales = bool((np.abs(r) * _amplification(gain, 0) <= self.tolerance * d).all())
+            self.history.ridges.append(names[worst])
+            secants.see(d, r)
+            self.history.jumped = {names[k] for k in np.flatnonzero(secants.jumped())}
+            scales = secants.settled(self.tolerance)
             contact = self.history.errors[-1] <= formulation.tolerance
             if scales and contact:
                 if charged:
-                    self.gain = measured
+                    self.gain = secants.gain
                 else:
                     self.set_air_gaps(found)
                 return
@@ -153,20 +135,7 @@ class Coupling:
                 contact_history = formulation.corrected(state, contact_history)
                 problem.correct_history(contact_history)
             if not scales:
-                self.set_air_gaps(d + np.clip(r * _amplification(gain, sweep), -d / 3, d / 2))
-                previous = d, r
+                self.set_air_gaps(secants.step())
         ridge, error = self.history.ridges[-1], self.history.errors[-1]
         where = f"a contact error of {error:.2g} m" if scales else f"ridge {ridge}"
         raise NotConverged(f"COUPLING_CAP at {where}", False)
-
-
-def _secant(d: Array, r: Array, previous: tuple[Array, Array]) -> Array:
-    """Return the gain of each ridge from two sweeps' air gaps and what the closure added to them."""
-    moved = d - previous[0]
-    return 1 + np.divide(r - previous[1], moved, out=np.zeros_like(r), where=moved != 0)
-
-
-def _amplification(gain: Array, sweep: int) -> Array:
-    """Return 1 / (1 - gain), bounded in each sweep where the gain is near one or above."""
-    most = _AMPLIFIED[min(sweep, len(_AMPLIFIED) - 1)]
-    return np.asarray(1 / (1 - np.minimum(gain, 1 - 1 / most)))

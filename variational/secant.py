@@ -1,0 +1,78 @@
+r"""Newton's method for the air gaps, a secant of each ridge by itself.
+
+With :math:`r(d) = d_{eq}(p_c(d)) - d` over a ridge's air gap d,
+
+.. math:: d \leftarrow d + \frac{r}{1 - g}, \qquad g = \frac{d}{dd} d_{eq}(p_c(d))
+
+The screen bears a change of the attraction mostly where it acts, so ridges hardly feel each other's air gap. The
+secant needs a few sweeps where the gain g is -3 or 0.99 and the plain loop, d + r, diverges or needs hundreds.
+
+It is not let converge where g > 1. There the micro layer is unstable: a gap that opens a little opens on. On a flat
+ridge, :math:`g = d_{eq}'(p_c) \, \sigma_{el}'(d)` whatever the body and its loads: no control of the bone's height or
+force makes such a state stable. (On a round one the contact's length follows the attraction too.) g = 1 is the ridge's
+fold; past it the iteration leaves in the direction of r, by ten times r and, as long as the gain stays there, by a
+hundred and a thousand times, never more than half of d, for another state of the ridge: down on the screen, or up to
+where d_eq is held.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+_AMPLIFIED = np.array([10.0, 10.0, 100.0, 1e3])  # largest 1 / (1 - gain) after so many secants that asked for ten
+_SEEN = 1e-6  # of d: what a secant is drawn over, far above the error that a solve leaves, and
+_LEADS = 0.1  # of the largest move: else it is the other ridges' air gaps that moved this one's pressure
+_FIRST = 0.01  # of d: how far the first step may go beyond r, whose gain is that of another load
+_JUMP = 0.1  # of d: how far a ridge past its fold goes at least
+
+
+class Secants:
+    """One loop over all ridges; arrays have shape (ridges,).
+
+    Attributes:
+        gain: last secant of each ridge that moved its air gap; NaN where none did yet.
+    """
+
+    def __init__(self, d: Array, gain: Array) -> None:
+        """Start from air gaps (m) and the gains with which an earlier loop ended."""
+        self.gain = gain.copy()
+        self._start, self._d, self._r = d, d, np.zeros_like(d)
+        self._seen_any = False
+        self._past: NDArray[np.bool_] = np.zeros(len(d), dtype=bool)  # whether a gain of one was seen
+        self._steep: NDArray[Any] = np.zeros(len(d), dtype=np.int64)  # secants in a row near a gain of one or above
+
+    def see(self, d: Array, r: Array) -> None:
+        """Take note of what the closure would add, ``r`` (m), to air gaps ``d`` (m)."""
+        if self._seen_any:
+            moved = d - self._d
+            part = np.abs(moved) / d
+            seen = part > max(_SEEN, _LEADS * float(part.max()))
+            secant = 1 + np.divide(r - self._r, moved, out=np.zeros_like(r), where=moved != 0)
+            self.gain = np.where(seen, secant, self.gain)
+            near = self.gain > 1 - 1 / _AMPLIFIED[0]
+            self._steep = np.where(seen, np.where(near, self._steep + 1, 0), self._steep)
+            self._past |= seen & (self.gain >= 1)
+        self._d, self._r = d, r
+
+    def settled(self, tolerance: float) -> bool:
+        """Return whether the relative error, r / (1 - gain), is within a tolerance; gains count up to 0.99."""
+        return bool((np.abs(self._r) * self._amplification(2) <= tolerance * self._d).all())
+
+    def step(self) -> Array:
+        """Return the next air gaps (m)."""
+        first = np.maximum(np.abs(self._r), _FIRST * self._d)
+        most = np.inf if self._seen_any else first
+        step = np.clip(self._r * self._amplification(self._steep), -most, most)
+        self._seen_any = True
+        return self._d + np.clip(step, -self._d / 3, self._d / 2)
+
+    def jumped(self) -> NDArray[np.bool_]:
+        """Return which ridges went past a fold: their gain was above one and their air gap changed by far."""
+        return self._past & (np.abs(self._d - self._start) > _JUMP * self._start)
+
+    def _amplification(self, steep: NDArray[Any] | int) -> Array:
+        """Return 1 / (1 - gain), bounded where the gain is near one or above; no gain known counts as none."""
+        most = _AMPLIFIED[np.minimum(steep, len(_AMPLIFIED) - 1)]
+        return np.asarray(1 / (1 - np.minimum(np.nan_to_num(self.gain), 1 - 1 / most)))
