@@ -9,7 +9,7 @@ import sys
 import petsc4py
 from mpi4py import MPI
 
-from fingerpad.scene import add_arguments, command_line
+from fingerpad.command import add_arguments, command_line
 
 _PHASES = {
     "setup": "meshing, compiling, setting up",

@@ -19,7 +19,7 @@ import sys
 import petsc4py
 from mpi4py import MPI
 
-from fingerpad.scene import add_arguments, command_line
+from fingerpad.command import add_arguments, command_line
 
 
 def main(comm: MPI.Comm, argv: list[str] | None = None) -> int:

@@ -1,7 +1,7 @@
 """What to try when a run stops, in the words of a scene's keys."""
 
 from variational.continuation import StepFailed
-from variational.solver import NotConverged
+from variational.failure import NotConverged
 
 _ADVICE = {
     "NOT_A_NUMBER": "report it with the scene; until then try parameters nearer to the defaults",

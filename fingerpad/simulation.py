@@ -14,9 +14,10 @@ from geometry.profiles import Profiles
 from variational.continuation import Attempt, Continuation, StepFailed, Target
 from variational.coupling import Coupling
 from variational.energy import EnergyBook
+from variational.failure import NotConverged
 from variational.problem import Interface, Ogden, Problem, SaintVenant
 from variational.quantities import Observer, RidgeLoads, SurfaceState
-from variational.solver import NotConverged, Solver
+from variational.solver import Solver
 from variational.stability import Stability, StabilityCheck
 from variational.surface import Surface
 

@@ -8,9 +8,9 @@ from mpi4py import MPI
 from scipy.optimize import brentq
 
 from variational.coupling import Coupling
+from variational.failure import NotConverged
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap
-from variational.solver import NotConverged
 from variational.timing import Timings
 
 H_0, EPS_0, FOLD_VOLTAGE = 0.514e-6, 8.854e-12, 200.0

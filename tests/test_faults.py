@@ -20,10 +20,11 @@ from geometry.mesh import load
 from tests.test_contact import H_0, HEIGHT, MU_F, WIDTH, make
 from variational.continuation import Attempt, Continuation
 from variational.coupling import Coupling
+from variational.failure import NotConverged
 from variational.quantities import Observer
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap
-from variational.solver import Control, NotConverged, Solver
+from variational.solver import Control, Solver
 
 ROOT = Path(__file__).resolve().parents[1]
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}

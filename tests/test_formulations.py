@@ -15,12 +15,13 @@ from variational.augmented import AugmentedLagrangian
 from variational.contact import History
 from variational.continuation import Continuation, StepFailed, Target
 from variational.coupling import Coupling
+from variational.failure import NotConverged
 from variational.nitsche import Nitsche
 from variational.penalty import Penalty
 from variational.problem import Interface, Ogden, Problem
 from variational.quantities import Observer
 from variational.roughness.bam import BearingArea
-from variational.solver import NotConverged, Solver
+from variational.solver import Solver
 from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi

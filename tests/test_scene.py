@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from fingerpad import command
 from fingerpad import scene as scenes
 from fingerpad.scene import Load, Scene, SceneError
 from variational.augmented import AugmentedLagrangian
@@ -341,8 +342,8 @@ def test_history_and_a_default_load_s_value(key, value):
 # -- command line --------------------------------------------------------------------------------------
 def command_line(*argv: str, quiet: bool = False):
     parser = argparse.ArgumentParser()
-    scenes.add_arguments(parser)
-    return scenes.command_line(parser, argv, quiet)
+    command.add_arguments(parser)
+    return command.command_line(parser, argv, quiet)
 
 
 def test_options():

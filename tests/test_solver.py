@@ -9,8 +9,9 @@ from geometry.benchmarks import block, ridge
 from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, WIDTH, make
 from variational import solver as module
+from variational.failure import NotConverged
 from variational.problem import SLIPS, STICKS
-from variational.solver import Control, NotConverged
+from variational.solver import Control
 
 pytestmark = pytest.mark.mpi
 

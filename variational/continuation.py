@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from variational.contact import History
 from variational.coupling import Coupling
-from variational.solver import Control, NotConverged
+from variational.failure import NotConverged
+from variational.solver import Control
 
 Array = NDArray[np.float64]
 

@@ -22,10 +22,11 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
+from variational.failure import NotConverged
 from variational.quantities import Observer, SurfaceState
 from variational.roughness.closure import Closure
 from variational.secant import Secants
-from variational.solver import NotConverged, Solver
+from variational.solver import Solver
 
 Array = NDArray[np.float64]
 

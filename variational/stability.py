@@ -27,8 +27,9 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from variational import jit
+from variational.failure import NotConverged, linear_failure
 from variational.problem import SLIPS
-from variational.solver import NotConverged, Solver, linear_failure
+from variational.solver import Solver
 
 Array = NDArray[np.float64]
 _ETA = 2e8  # Pa/m, of the order of the softest disturbances of a fingerpad

@@ -33,11 +33,12 @@ from geometry.parameters import Fingertip, MeshSize
 from variational import compat, jit
 from variational.continuation import Attempt, Continuation, StepFailed, Target
 from variational.coupling import Coupling
+from variational.failure import NotConverged
 from variational.kinematics import deformation_gradient
 from variational.problem import Interface, Ogden, Problem
 from variational.quantities import Observer, SurfaceState
 from variational.roughness.bam import BearingArea
-from variational.solver import Control, NotConverged, Solver
+from variational.solver import Control, Solver
 from variational.surface import Surface
 
 _H_0 = 0.514e-6  # m
