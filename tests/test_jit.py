@@ -3,7 +3,6 @@
 import os
 import time
 
-import dolfinx.jit
 from mpi4py import MPI
 
 from variational import jit
@@ -11,7 +10,7 @@ from variational import jit
 
 def test_sweep_takes_what_a_killed_compile_left(tmp_path, monkeypatch):
     """Old and unfinished goes; finished, or young enough to be at work on, stays."""
-    monkeypatch.setattr(dolfinx.jit, "get_options", lambda: {"cache_dir": tmp_path})
+    monkeypatch.setitem(jit.OPTIONS, "cache_dir", tmp_path)
     for name in ("dead.c", "done.c", "done.c.cached", "young.c"):
         (tmp_path / name).touch()
     for name in ("dead.c", "done.c"):

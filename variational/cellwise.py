@@ -8,7 +8,7 @@ import numpy as np
 from dolfinx import fem
 from numpy.typing import NDArray
 
-from variational import compat
+from variational import compat, jit
 
 Array = NDArray[np.float64]
 
@@ -42,8 +42,7 @@ class Cellwise:
         """
         self.mesh, self._points = mesh, len(points)
         self.shape = next(iter(expressions.values())).ufl_shape
-        jit = {"timeout": 300}
-        self._compiled = [fem.Expression(e, points, jit_options=jit) for e in expressions.values()]
+        self._compiled = [fem.Expression(e, points, jit_options=jit.OPTIONS) for e in expressions.values()]
         self._group = np.full(len(owned_cells(mesh)), -1)
         for k, tags in enumerate(expressions):
             for tag in tags:

@@ -5,7 +5,7 @@ import numpy as np
 from dolfinx import fem, geometry
 from numpy.typing import NDArray
 
-from variational import compat
+from variational import compat, jit
 from variational.cellwise import Cellwise, owned_cells
 from variational.problem import Problem
 
@@ -50,7 +50,7 @@ class Receptors:
         # One kernel for all ranks: it evaluates every site's reference point, of which each cell needs one.
         points = np.array(mesh.comm.allgather(local))[owner, np.arange(len(owner))]
         self._density = Cellwise(mesh, problem.cell_tags, problem.densities, points)
-        self._displacement = fem.Expression(problem.u, points)
+        self._displacement = fem.Expression(problem.u, points, jit_options=jit.OPTIONS)
 
     def sed(self) -> Array:
         """Return the strain energy density (J/m^3 of reference volume) at the sites, shape (n,), on every rank."""

@@ -10,7 +10,7 @@ from dolfinx import fem
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
-from variational import compat
+from variational import compat, jit
 
 Array = NDArray[np.float64]
 
@@ -114,7 +114,7 @@ class Surface:
 
     def compile(self, expressions: list) -> fem.Expression:
         """Compile scalar UFL expressions for evaluation at the Gauss points."""
-        return fem.Expression(ufl.as_vector(expressions), self.points)
+        return fem.Expression(ufl.as_vector(expressions), self.points, jit_options=jit.OPTIONS)
 
     def evaluate(self, compiled: fem.Expression) -> Array:
         """Return values at this rank's Gauss points, shape (expressions, facets, points)."""
