@@ -32,14 +32,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from mpi4py import MPI
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from variational.quantities import Observer, SurfaceState
 from variational.roughness.closure import Closure
 from variational.solver import NotConverged, Solver
 
 Array = NDArray[np.float64]
-_AMPLIFIED = 10.0, 10.0, 100.0, 1e3  # largest 1 / (1 - gain) after so many secants that asked for ten or more
+_AMPLIFIED = np.array([10.0, 10.0, 100.0, 1e3])  # largest 1 / (1 - gain) after so many secants that ask for ten
 _SEEN = 1e-6  # of d_eq: what a secant is drawn over, far above the error that a solve leaves, and
 _LEADS = 0.1  # of the largest move: else it is the other ridges' air gaps that moved this one's pressure
 _FIRST = 0.01  # of d_eq: how far the first step may go beyond r, whose gain is that of another load
@@ -130,7 +130,7 @@ class Coupling:
         previous: tuple[Array, Array] | None = None
         start, gain = self.d_eq, self.gain.copy()
         past = np.zeros(len(gain), dtype=bool)  # whether a gain of one was seen
-        steep = np.zeros(len(gain), dtype=int)  # secants in a row near a gain of one or above
+        steep: NDArray[np.int64] = np.zeros(len(gain), dtype=np.int64)  # secants in a row near a gain of one or above
         for sweep in range(self.cap):
             d = self.d_eq
             found, state = self._sweep(creep or sweep > 0)
@@ -175,7 +175,7 @@ def _secant(d: Array, r: Array, previous: tuple[Array, Array]) -> Array:
     return 1 + np.divide(r - previous[1], moved, out=np.zeros_like(r), where=moved != 0)
 
 
-def _amplification(gain: Array, steep: ArrayLike) -> Array:
+def _amplification(gain: Array, steep: NDArray[np.int64] | int) -> Array:
     """Return 1 / (1 - gain), bounded where the gain is near one or above; no gain known counts as none."""
-    most = np.take(_AMPLIFIED, steep, mode="clip")
+    most = _AMPLIFIED[np.minimum(steep, len(_AMPLIFIED) - 1)]
     return np.asarray(1 / (1 - np.minimum(np.nan_to_num(gain), 1 - 1 / most)))
