@@ -17,8 +17,10 @@ and slipping or a reversal. What is left over,
 .. math:: \text{released} = \text{external} + \text{voltage} + \text{air gap} - \Delta \text{stored} - \text{dissipated}
 
 vanishes with the square of the step on a smooth path. At a jump, where the body moves without the loads, it is the
-energy that a viscous or inertial body dissipates (Mielke and Roubicek 2015, doi 10.1007/978-1-4939-2706-7), up to half
-the jump of each force times its load's step, since it is not known where in the step the jump took place.
+energy that a viscous or inertial body dissipates (Mielke and Roubicek 2015, doi 10.1007/978-1-4939-2706-7), but for
+the error of the works in a step that jumps, which falls with the step alone: jumps of forces times the loads' step,
+since it is not known where in the step the jump took place, and the slip of what slid on both sides of it. Where that
+error is larger than what is released even the sign is lost; smaller steps tell.
 """
 
 from dataclasses import dataclass

@@ -5,7 +5,8 @@ are in contact, and backtracking on the residual only slows it. But the first st
 they would drive open skin deep through the screen, of which the tangent knows nothing, and any step is halved that
 would turn elements inside out or send the residual up tenfold. A factorisation serves as long as the residual falls
 to half an iteration; a step it proposes is refused when the residual would rise, and made anew with the tangent of
-the present iterate. The first tangent of a load is always that of the state it starts from.
+the present iterate. The first tangent of a load is always that of the state it starts from, so that the first iterate
+is the tangent predictor.
 
 Where the iteration does not get ahead, points on the friction cone are first taken for slipping instead of
 sticking, or the other way round; or, if the caller asks for it, a part of the skin is taken to be about to jump on
