@@ -119,7 +119,7 @@ class Outcome:
     jumps: int = 0
     """Solves that needed pseudo-transient continuation."""
     inverted: dict[str, int] = field(default_factory=dict)
-    """Failed solves that ended with J <= 0, by layer."""
+    """Failed solves in which steps led to J <= 0, by the layer with the least J in the end."""
     dermis_j: float = 1.0
     """Least J in the dermis."""
     penetration: float = 0.0

@@ -187,15 +187,15 @@ def neighbours() -> Named:
 
 
 def cases() -> list[Case]:
-    """Return everything to be run, each once: named runs first, references last.
+    """Return everything to be run, each once: named runs first, then references, without which others say less.
 
     Raises:
         ValueError: more than MOST.
     """
     shown = [case for chart in charts() for panel in chart.panels for case in panel.cases()]
-    runs = [case for name in [neighbours(), *named()] for _, case in name.cases] + shown
+    runs = [case for name in [neighbours(), *named()] for _, case in name.cases]
     compared = [case for name in named() if name.referenced for _, case in name.cases] + shown
-    unique = list(dict.fromkeys([*runs, *(case.reference for case in compared)]))
+    unique = list(dict.fromkeys([*runs, *(case.reference for case in compared), *shown]))
     if len(unique) > MOST:
         raise ValueError(f"the map has {len(unique)} solves; at most {MOST}: make the axes shorter")
     return unique

@@ -62,7 +62,7 @@ class PlainCoupling(Coupling):
 
 
 class Recorder(Continuation):
-    """Counts, by layer, failed solves that end with elements inside out; of cut steps nobody else knows."""
+    """Counts failed solves in which steps would have turned elements inside out, by the layer nearest to it."""
 
     def __init__(self, case: Case, coupling: Coupling, on_accept: Callable[[Target, float, Attempt], None]) -> None:
         super().__init__(coupling, on_accept, step_scale=case.step_scale)
@@ -79,9 +79,10 @@ class Recorder(Continuation):
         try:
             super()._try(load, attempt, creep)
         except NotConverged as failure:
-            for name, tag in tags.LAYERS.items():
-                if failure.inverted and tag in strip.LAYERS and self.least_j(tag) <= 0:
-                    self.inverted[name] = self.inverted.get(name, 0) + 1
+            if failure.inverted:
+                layers = {name: tag for name, tag in tags.LAYERS.items() if tag in strip.LAYERS}
+                nearest = min(layers, key=lambda name: self.least_j(layers[name]))
+                self.inverted[nearest] = self.inverted.get(nearest, 0) + 1
             raise
 
 

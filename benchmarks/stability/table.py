@@ -72,7 +72,7 @@ def _numbers(case: Case, cache: Cache) -> list[str]:
     ]
 
 
-_COLUMNS = ["outcome", "load", "iterations", "factorisations", "cut steps", "solves ended at J ≤ 0"]
+_COLUMNS = ["outcome", "load", "iterations", "factorisations", "cut steps", "failed solves that met J ≤ 0"]
 _COLUMNS += ["penetration (nm)", "f_T (N/m)", "contact length (µm)"]
 
 
