@@ -4,7 +4,7 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -322,7 +322,10 @@ class Scene(_Part):
         return self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
 
 
-_FORCE, _WIDENS = 75.0, 0.27  # N/m; ridges in contact grow as this power of the force (15 at 46 N/m, 17 at 73 N/m)
+# The default mesh is wide enough for this force (N/m) and friction. Ridges in contact grow as the force to the 0.27 (15
+# at 46 N/m, 17 at 73 N/m); friction rolls the finger onto its leading side (ridge 10 touches at 1 before full slip).
+_FORCE, _WIDENS = 75.0, 0.27
+_FRICTION, _ROLLS = 0.25, 0.3
 _DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 
 
@@ -364,17 +367,22 @@ def from_data(data: Mapping[str, Any]) -> Scene:
 
 
 def _wide_enough(data: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Mesh more ridges to touch under a larger force, if the scene does not say how many."""
+    """Mesh more ridges to touch under a larger force or friction, if the scene does not say how many."""
     mesh, history = data.get("mesh", {}), data.get("history")
     if not isinstance(mesh, dict) or "touching_half_arc" in mesh:
         return data
     loads = [data, *(history if isinstance(history, list | tuple) else ())]
-    forces = [load.get("f_ext") for load in loads if isinstance(load, Mapping)]
-    largest = max((f for f in forces if isinstance(f, float | int) and f < math.inf), default=0.0)
-    if largest <= _FORCE:
+    force = _largest(load.get("f_ext") for load in loads if isinstance(load, Mapping)) / _FORCE
+    rolling = _largest([data.get("friction")]) / _FRICTION
+    wider = max(force, 1.0) ** _WIDENS * max(rolling, 1.0) ** _ROLLS
+    if wider == 1.0:
         return data
-    arc = MeshSize().touching_half_arc * (largest / _FORCE) ** _WIDENS
-    return {**data, "mesh": {**mesh, "touching_half_arc": arc}}
+    return {**data, "mesh": {**mesh, "touching_half_arc": MeshSize().touching_half_arc * wider}}
+
+
+def _largest(values: Iterable[Any]) -> float:
+    """Return the largest finite number among values that may be anything; zero if there is none."""
+    return max((float(v) for v in values if isinstance(v, float | int) and 0 < v < math.inf), default=0.0)
 
 
 def check(scene: Scene) -> None:

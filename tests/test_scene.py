@@ -400,6 +400,8 @@ def test_package_imports_nothing():
     [
         ({"f_ext": 75}, False),
         ({"f_ext": 150}, True),
+        ({"friction": 1.0}, True),
+        ({"friction": 0.1, "f_ext": 20}, False),
         ({"history": [{"name": "a", "f_ext": 10}, {"name": "b", "f_ext": 150.0}]}, True),
         ({"f_ext": 150, "mesh": {"touching_half_arc": 5e-3}}, False),
     ],
