@@ -85,12 +85,10 @@ def _checks(scenes: Mapping[str, Scene], out: Path) -> str:
     if not ran:
         return "None was run."
     arrived = sum(s["full_slip"] for s in ran)
-    hours = sum(s["wall_seconds"] for s in ran) / 3600
     return (
         f"{arrived} of {len(scenes)} traces reach full slip ({len(ran)} run). Largest nodal imbalance "
         f"{max(s['imbalance'] for s in ran):.1g} of f_ext, deepest penetration "
-        f"{1e9 * max(s['penetration'] for s in ran):.0f} nm; {hours:.1f} hours of one core in all, at most "
-        f"{max(s['wall_seconds'] for s in ran) / 60:.1f} minutes for one."
+        f"{1e9 * max(s['penetration'] for s in ran):.0f} nm."
     )
 
 

@@ -18,7 +18,6 @@ def keep(folder, scene, **values):
         "factorisations": 300,
         "imbalance": 1e-9,
         "penetration": 8e-8,
-        "wall_seconds": 60.0,
         "parameters": {},
     } | values
     (folder / key(scene)).mkdir()
