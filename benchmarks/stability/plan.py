@@ -166,7 +166,7 @@ _WHY = """The penalty of 1.5e12 Pa/m with P2 elements and facets of 5 µm: Newto
 through the screen by less than a tenth of the air gap (150 nm), and the contact length is right to a per cent. A softer
 penalty lets it through by more than that and errs by six. One ten times stiffer costs no more here, but errs more in
 the contact length as long as the facets are not finer; one a thousand times stiffer needs continuation. P1 elements
-are too stiff. One ridge would bear steps twice as long. The last row says what the reference owes to its own penalty."""
+are too stiff. One ridge would bear steps twice as long. The last row says what the reference owes to its penalty."""
 
 
 def neighbours() -> Named:
