@@ -15,4 +15,4 @@ demo:
 
 test:
 	$(run) python3 -m pytest -q --color=no tests
-	$(run) mpirun -n 2 python3 -m pytest -q --color=no -p no:cacheprovider tests -m mpi
+	$(run) mpirun -n 2 python3 -m pytest -q --color=no -p no:cacheprovider tests

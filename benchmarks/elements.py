@@ -11,6 +11,7 @@ import csv
 import time
 from dataclasses import asdict, dataclass, fields
 from functools import partial
+from itertools import chain
 from pathlib import Path
 
 import gmsh
@@ -150,8 +151,10 @@ def main() -> None:
     print("            um                           N/m        %       um        %                     s")
     for poisson in RATIOS:
         reference[poisson] = exact = run(REFERENCE, poisson, REFINEMENTS)
-        runs += (new := [run(element, poisson, times) for times in range(REFINEMENTS) for element in ELEMENTS])
-        for r in [*new, exact]:
+        cases = [(element, times) for times in range(REFINEMENTS) for element in ELEMENTS]
+        for r in chain([exact], (run(element, poisson, times) for element, times in cases)):
+            if r is not exact:
+                runs.append(r)
             force, length = r.f_contact / exact.f_contact - 1, r.contact_length / exact.contact_length - 1
             print(
                 f"{r.poisson:7g} {r.size * 1e6:6g} {r.element:10s} {r.unknowns:8d}",

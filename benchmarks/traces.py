@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from fingerpad.command import positive
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene import load as load_scene
 from fingerpad.sweep import Summary, result, sweep
@@ -116,7 +117,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, default=_ROOT / "results" / "traces", help="folder of results")
     parser.add_argument("--docs", type=Path, default=_ROOT / "docs", help="folder of the page")
-    parser.add_argument("--jobs", type=int, default=2, help="runs at a time")
+    parser.add_argument("--jobs", type=positive(int), default=2, help="runs at a time")
     parser.add_argument("--only", nargs="*", choices=GROUPS, default=list(GROUPS), help="groups to run")
     args = parser.parse_args(arguments)
     scenes = {name: scene for group in args.only for name, scene in GROUPS[group]().items()}

@@ -3,9 +3,10 @@
 import argparse
 import contextlib
 import io
+import math
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from fingerpad.scene import Scene, SceneError, check, load
@@ -75,6 +76,22 @@ def command_line(
         except SceneError as error:
             print(f"fingerpad: {error}", file=sys.stderr)
             sys.exit(2)
+
+
+def positive(kind: type[int] | type[float]) -> Callable[[str], float]:
+    """Return a type of arguments: positive numbers of a kind."""
+
+    def read(text: str) -> float:
+        try:
+            value = kind(text)
+        except ValueError:
+            value = kind(0)
+        if not 0 < value < math.inf:
+            words = "whole number" if kind is int else "number"
+            raise argparse.ArgumentTypeError(f"{text} is not allowed; it must be a {words} greater than 0")
+        return value
+
+    return read
 
 
 def _number(text: str) -> float | str:

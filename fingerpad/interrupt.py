@@ -10,6 +10,10 @@ from mpi4py import MPI
 from variational.continuation import StepFailed
 
 
+class Interrupted(StepFailed):
+    """A run that was asked to stop; nothing is wrong with its scene."""
+
+
 class Interrupt:
     """Holds SIGTERM and SIGINT back until the run asks; a second signal acts at once."""
 
@@ -39,11 +43,11 @@ class Interrupt:
         """Stop after an accepted step; collective.
 
         Raises:
-            StepFailed: a signal came.
+            Interrupted: a signal came.
         """
         number = int(self._comm.allreduce(self._signal, op=MPI.MAX))
         if number:
-            raise StepFailed(
+            raise Interrupted(
                 f"stopped by {signal.Signals(number).name} after step {step}; every accepted step is in the folder of "
                 "results, and the same command starts again from the first"
             )

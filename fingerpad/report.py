@@ -179,8 +179,8 @@ class Report:
         self._checks = len(self._simulation.checks)
 
     # -- the end ---------------------------------------------------------------------------------------
-    def summary(self, failure: str = "") -> dict[str, Any]:
-        """Write ``summary.json`` and return it."""
+    def summary(self, ended: dict[str, Any]) -> dict[str, Any]:
+        """Write ``summary.json`` and return it; ``ended`` is what else is to be said of the run's end."""
         assert self._simulation is not None
         solver, rows = self._simulation.solver, self.rows
         last: dict[str, Any] = rows[-1] if rows else {}
@@ -212,9 +212,7 @@ class Report:
             result[f"{prefix}_stable"] = None if check is None else check.stable
             result[f"{prefix}_lambda_min"] = None if check is None else check.frozen.lambda_min
             result[f"{prefix}_gain"] = None if check is None else check.gain
-        if failure:
-            result["failure"] = failure
-        result["parameters"] = self.scene.parameters()
+        result |= ended | {"parameters": self.scene.parameters()}
         if self.comm.rank == 0:
             partial = self.folder / "summary.json.part"
             partial.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")

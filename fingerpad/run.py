@@ -6,7 +6,7 @@ from typing import Any
 from mpi4py import MPI
 
 from fingerpad.advice import advice
-from fingerpad.interrupt import Interrupt
+from fingerpad.interrupt import Interrupt, Interrupted
 from fingerpad.report import Report
 from fingerpad.scene import Scene
 from fingerpad.simulation import Simulation, Step
@@ -19,10 +19,10 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
 
     Returns:
         The summary, the same on every rank; with a key ``failure`` if a load could not be reached, in which
-        case every step before is in the folder all the same.
+        case every step before is in the folder all the same, and a key ``interrupted`` if it was asked to stop.
     """
     report = Report(scene, folder, comm)
-    failure = ""
+    ended: dict[str, Any] = {}
     jit.sweep(comm)
     try:
         with Interrupt(comm) as interrupt:
@@ -36,13 +36,14 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
             try:
                 simulation.run()
             except StepFailed as error:
-                failure = "; ".join(filter(None, (str(error), advice(error))))
-        if failure:
-            report.say(f"fingerpad: {failure}")
-            report.log.error(failure)
+                ended = {"failure": "; ".join(filter(None, (str(error), advice(error))))}
+                if isinstance(error, Interrupted):
+                    ended["interrupted"] = True
+                report.say(f"fingerpad: {ended['failure']}")
+                report.log.error(ended["failure"])
         report.load_reached()
         report.draw()
-        summary = report.summary(failure)
+        summary = report.summary(ended)
         report.say(_sentence(summary, folder))
         return summary
     finally:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from dolfinx import fem
 from mpi4py import MPI
 from numpy.typing import NDArray
 
@@ -111,7 +112,8 @@ class Simulation:
         self.checks: dict[int, Checked] = {}
         self._stability = StabilityCheck(self.solver)
         self._load, self._loads_done = "", 0.0
-        self._other_skin = _skin_nodes(self.problem, body.facet_tags.find(tags.OUTER_SKIN))
+        outside = body.facet_tags.find(tags.OUTER_SKIN)
+        self._other_skin = fem.locate_dofs_topological(self.problem.V, 1, outside)
 
     def run(self) -> None:
         """Reach every load of the scene.
@@ -260,9 +262,3 @@ def _solids(scene: Scene) -> dict[int, Ogden | SaintVenant]:
     solids: dict[int, Ogden | SaintVenant] = {tag: SaintVenant(s.young, s.poisson) for tag, s in stiff.items()}
     solids |= {tag: Ogden(s.shear_modulus, s.alpha, s.poisson, m.exponent) for tag, s in skins.items()}
     return solids
-
-
-def _skin_nodes(problem: Problem, facets: NDArray[np.int32]) -> NDArray[np.int32]:
-    from dolfinx import fem
-
-    return np.asarray(fem.locate_dofs_topological(problem.V, 1, facets))

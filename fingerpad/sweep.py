@@ -29,11 +29,12 @@ def key(scene: Scene) -> str:
 
 
 def result(scene: Scene, folder: Path) -> Summary | None:
-    """Return the summary of a scene that has been run in a sweep's folder, whatever came of it."""
+    """Return the summary of a scene that has been run in a sweep's folder to its end, whatever that was."""
     try:
-        return dict(json.loads((folder / key(scene) / "summary.json").read_text(encoding="utf-8")))
+        summary = dict(json.loads((folder / key(scene) / "summary.json").read_text(encoding="utf-8")))
     except (OSError, json.JSONDecodeError):
         return None
+    return None if summary.get("interrupted") else summary
 
 
 def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int = 2, limit: float = _LIMIT) -> dict[str, Summary]:
@@ -46,8 +47,8 @@ def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int = 2, limit: float
         limit: seconds of processor time for one scene.
 
     Returns:
-        The summaries by name. That of a run that crashed or took too long holds ``failure`` alone, and it is run
-        again the next time; what it left is in its folder.
+        The summaries by name. That of a run that crashed, took too long or was asked to stop holds ``failure`` alone,
+        and it is run again the next time; what it left is in its folder.
     """
     found = {name: result(scene, folder) for name, scene in scenes.items()}
     broken: dict[str, Summary] = {}
@@ -61,7 +62,7 @@ def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int = 2, limit: float
     def done(name: str, end: End, left: int) -> None:
         summary = result(scenes[name], folder)
         if summary is None:
-            broken[name] = {"failure": f"{end.reason or 'CRASH'}: {end.message}"}
+            broken[name] = {"failure": f"{end.reason}: {end.message}" if end.reason else "INTERRUPTED"}
         words = (summary or broken[name]).get("failure") or "done"
         bar.console.print(f"{name}: {words}", highlight=False, markup=False, soft_wrap=True)
         bar.advance(task)

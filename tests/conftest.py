@@ -9,14 +9,15 @@ from geometry import fingertip
 from geometry.benchmarks import block
 from geometry.mesh import TaggedMesh, load
 from geometry.parameters import Fingertip, MeshSize
+from geometry.profiles import Profiles
 
 
-def pytest_collection_modifyitems(items):
+def pytest_collection_modifyitems(config, items):
     """Leave out, under mpirun, what is written for one rank."""
     if MPI.COMM_WORLD.size > 1:
-        for item in items:
-            if item.get_closest_marker("mpi") is None:
-                item.add_marker(pytest.mark.skip(reason="written for one rank"))
+        for_one = [item for item in items if item.get_closest_marker("mpi") is None]
+        config.hook.pytest_deselected(items=for_one)
+        items[:] = [item for item in items if item not in for_one]
 
 
 @pytest.fixture(scope="session")
@@ -35,3 +36,9 @@ def coarse() -> MeshSize:
 def finger_mesh(coarse) -> TaggedMesh:
     """The default fingertip on a coarse mesh."""
     return load(MPI.COMM_WORLD, partial(fingertip.build, Fingertip(), coarse))
+
+
+@pytest.fixture(scope="session")
+def profiles() -> Profiles:
+    """The default fingertip's curves."""
+    return Profiles(Fingertip())

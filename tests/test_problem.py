@@ -1,6 +1,4 @@
-"""Residual, Jacobian and energy are derivatives of one another, and the attraction has the resultants of Eq. 3."""
-
-from functools import partial
+"""Residual, Jacobian and energy are derivatives of one another."""
 
 import dolfinx
 import numpy as np
@@ -8,12 +6,8 @@ import pytest
 import ufl
 from dolfinx import fem
 from dolfinx.fem.petsc import assemble_matrix
-from mpi4py import MPI
 
 from geometry import tags
-from geometry.benchmarks import block, ridge
-from geometry.mesh import load
-from variational import electroadhesion, kinematics
 from variational.augmented import AugmentedLagrangian
 from variational.nitsche import Nitsche
 from variational.penalty import Penalty
@@ -306,127 +300,3 @@ def test_shift_is_a_mass_on_the_touching_skin(square):
     assert added[::2, ::2].sum() == pytest.approx(3e9 * 1e-3, rel=1e-9)  # roundoff of entries 100 times as large
     assert added[1::2, 1::2].sum() == pytest.approx(3e9 * 1e-3, rel=1e-9)
     assert np.abs(added[::2, 1::2]).max() < 1e-15 * np.abs(plain).max()
-
-
-# -- the attraction ------------------------------------------------------------------------------------
-def attraction(problem):
-    """Return the attraction's part of the residual, what the voltage adds, shape (nodes, 2)."""
-    problem.voltage.value = 0.0
-    without = residual(problem)
-    problem.voltage.value = VOLTAGE
-    return (residual(problem) - without).reshape(-1, 2)
-
-
-def traction(problem):
-    """Return - int p_el cof F N . v dS, Eq. 3 on the deformed skin, shape (nodes, 2)."""
-    problem.voltage.value = VOLTAGE
-    v = ufl.TestFunction(problem.V)
-    form = fem.form(-problem.p_el * ufl.dot(problem.area, v) * problem.surface.measure)
-    return fem.assemble_vector(form).array.reshape(-1, 2).copy()
-
-
-def tilted(cells: int, low: float, high: float) -> Problem:
-    """Return a block with its bottom on a slope between two heights."""
-    body = load(MPI.COMM_SELF, partial(block, 1e-3, 0.25e-3, 1e-3 / cells))
-    problem = make(body)
-    problem.u.interpolate(lambda x: np.stack([0.1 * x[0], low + (high - low) * (x[0] / 1e-3 + 0.5)]))
-    return problem
-
-
-def end_potentials(problem):
-    """Return rows of the bottom's two end nodes and the potential there."""
-    x = problem.V.tabulate_dof_coordinates()
-    ends = [int(np.argmin(np.hypot(x[:, 0] - side * 0.5e-3, x[:, 1]))) for side in (-1, 1)]
-    y = x[ends, 1] + problem.u.x.array.reshape(-1, 2)[ends, 1]
-    outside = -EPS_0 * VOLTAGE**2 / 2 / (H_0 + y)
-    return ends, outside
-
-
-def test_attraction_on_a_slope():
-    """Over a slope above d_eq the downward resultant is eps_0 U^2 / 2 (1/(h_0 + y_0) - 1/(h_0 + y_1)) L / (y_1 - y_0).
-
-    L is the current projected length. Tolerance: eight-point quadrature order on 16 facets, over each of which
-    p_el changes by an eighth.
-    """
-    low, high = 3e-6, 20e-6
-    problem = tilted(16, low, high)
-    closed = EPS_0 * VOLTAGE**2 / 2 * (1 / (H_0 + low) - 1 / (H_0 + high)) * 1.1e-3 / (high - low)
-    assert attraction(problem)[:, 1].sum() == pytest.approx(closed, rel=1e-7)
-
-
-def test_attraction_inside_the_air_gap():
-    """Below d_eq the pressure is eps_0 U^2 / 2 / (h_0 + d_eq)^2 at any height. Tolerance: roundoff of a difference."""
-    problem = tilted(4, 0.1e-6, 1.5e-6)
-    closed = EPS_0 * VOLTAGE**2 / 2 / (H_0 + D_EQ) ** 2 * 1.1e-3
-    assert attraction(problem)[:, 1].sum() == pytest.approx(closed, rel=1e-9)
-
-
-def test_attraction_has_no_horizontal_resultant(square):
-    """The screen looks the same everywhere. Tolerance: roundoff of elastic forces that cancel in the difference."""
-    problem = make(square)
-    wave(problem)
-    forces = attraction(problem)
-    assert abs(forces[:, 0].sum()) < 1e-11 * np.abs(forces[:, 1]).sum()
-
-
-def test_attraction_has_the_resultant_of_the_traction(square):
-    """The vertical resultant is that of Eq. 3 point by point. Tolerance as above."""
-    problem = make(square)
-    wave(problem)
-    assert attraction(problem)[:, 1].sum() == pytest.approx(traction(problem)[:, 1].sum(), rel=1e-11)
-
-
-def test_attraction_is_the_traction():
-    """The potential's derivative is -int p_el cof F N . v dS node by node, and the potential at the skin's ends.
-
-    The two differ by the quadrature of a total derivative, with 4 Gauss points of order 8 in the facets' size.
-    """
-    errors = []
-    for cells in (8, 16, 32):
-        problem = tilted(cells, 5e-6, 5e-6)
-        problem.u.interpolate(
-            lambda x: np.stack([0.02e-3 * np.sin(4e3 * x[0]), 8e-6 + 4e-6 * np.sin(5e3 * x[0] + 0.3) - 0.05 * x[1]])
-        )
-        ends, potentials = end_potentials(problem)
-        expected = traction(problem)
-        expected[ends, 0] += np.array([-1, 1]) * potentials
-        errors.append(np.abs(attraction(problem) - expected).max() / np.abs(expected).max())
-    assert errors[-1] < 1e-6
-    assert (rates(np.array(errors)) > 4).all()
-
-
-def test_attraction_of_a_ridge():
-    """The same on a curved, sheared ridge whose facets lean either way, with a kink of the law at d_eq inside facets.
-
-    Tolerance: over a facet of 10 um that holds the kink the quadrature misses about a thousandth of its force.
-    """
-    problem = make(load(MPI.COMM_SELF, partial(ridge, 10e-6)))
-    problem.u.interpolate(lambda x: np.stack([0.3 * x[1] + 0.1 * x[0], -1e-6 - 0.2 * x[1] + 0.01 * x[0]]))
-    found, expected = attraction(problem), traction(problem)
-    x = problem.V.tabulate_dof_coordinates()
-    inner = np.abs(x[:, 0]) < 0.2e-3
-    assert np.abs(found - expected)[inner].max() < 1e-3 * np.abs(expected).max()
-    assert np.abs(expected[:, 0]).max() > 0.01 * np.abs(expected).max()
-
-
-def test_cofactor():
-    """cof F = J F^-T, entry by entry. Tolerance: roundoff."""
-    F = np.array([[1.1, 0.3], [-0.2, 0.8]])
-    cofactor = kinematics.cofactor(ufl.as_matrix(F.tolist()))
-    entries = [[float(cofactor[i, j]) for j in (0, 1)] for i in (0, 1)]
-    np.testing.assert_allclose(entries, np.linalg.det(F) * np.linalg.inv(F).T, rtol=1e-14)
-
-
-def test_law_of_the_attraction():
-    """The potential's slope is p_el, and both are continuous at d_eq. Tolerance: central differences of step 1e-4."""
-    y = np.array([-0.5e-6, 0.3e-6, 1.9e-6, 2.1e-6, 5e-6])
-    step = 1e-10
-
-    def at(law, heights):
-        return np.array([float(law(ufl.as_ufl(h), D_EQ, VOLTAGE, H_0)) for h in heights])
-
-    slope = (at(electroadhesion.potential, y + step) - at(electroadhesion.potential, y - step)) / (2 * step)
-    pressure = at(electroadhesion.attraction, y)
-    np.testing.assert_allclose(slope, pressure, rtol=1e-6)
-    closed = EPS_0 * VOLTAGE**2 / 2 / (H_0 + np.maximum(y, D_EQ)) ** 2
-    np.testing.assert_allclose(pressure, closed, rtol=1e-14)

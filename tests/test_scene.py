@@ -1,6 +1,5 @@
 """Scenes: defaults are the paper's, what is given wins, and what is impossible is refused in one sentence."""
 
-import argparse
 import json
 import subprocess
 import sys
@@ -8,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from fingerpad import command
 from fingerpad import scene as scenes
 from fingerpad.scene import Load, Scene, SceneError
 from variational.augmented import AugmentedLagrangian
@@ -157,7 +155,6 @@ def test_formulation(given, law):
         ("friction", -0.1, "friction is -0.1; it must be at least 0"),
         ("friction", 2.1, "friction is 2.1; it must be at most 2"),
         ("slide_length", 0, "slide_length is 0; it must be greater than 0"),
-        ("width", float("nan"), "width is nan; it must be a finite number"),
         ("mesh", 3, "mesh is 3; it must be a table of keys"),
         ("materials", 3, "materials is 3; it must be a table of keys"),
         ("materials.dermis", 3, "materials.dermis is 3; it must be a table of keys"),
@@ -337,57 +334,6 @@ def test_history_and_a_default_load_s_value(key, value):
         assert refusal(SCENES / "voltage_while_sliding.toml", **{key: given}) == (
             f"{key} is {given:g} and history is given too; with a history each load states its own values"
         )
-
-
-# -- command line --------------------------------------------------------------------------------------
-def command_line(*argv: str, quiet: bool = False):
-    parser = argparse.ArgumentParser()
-    command.add_arguments(parser)
-    return command.command_line(parser, argv, quiet)
-
-
-def test_options():
-    words = "--f-ext 30 --voltage 1e2 -snes_monitor --contact-size 1e-5 --friction 0.3 -snes_rtol -1 --out there"
-    scene, args, petsc = command_line(*words.split())
-    assert (scene.f_ext, scene.voltage, scene.mesh.contact, scene.friction) == (30.0, 100.0, 1e-5, 0.3)
-    assert args.out == Path("there")
-    assert petsc == ["-snes_monitor", "-snes_rtol", "-1"]
-
-
-def test_options_win_over_the_file():
-    scene, _, _ = command_line("--scene", str(SCENES / "coarse.toml"), "--voltage", "0")
-    assert (scene.f_ext, scene.voltage, scene.mesh.interface) == (10.0, 0.0, 120e-6)
-
-
-@pytest.mark.parametrize(
-    ("argv", "message"),
-    [
-        (["--voltage", "high"], "voltage is 'high'; it must be a number"),
-        (["--f-ext", "nan"], "f_ext is nan; it must be a finite number"),
-        (["--f-ext", "-3"], "f_ext is -3; it must be greater than 0"),
-        (["--contact-size", "1"], "mesh.contact is 1 m, too large for a ridge of 0.000483 m"),
-        (["--volts", "3"], "--volts is not an option; options are --scene, --f-ext,"),
-        (["results"], "results is not an option;"),
-        (["-snes_rtol", "1e-6", "1e-7"], "1e-7 is not an option;"),
-        (["--scene", str(SCENES / "voltage_while_sliding.toml"), "--f-ext", "50"], "f_ext is 50 and history is given"),
-        (["--scene", "none.toml"], "scene file none.toml cannot be read:"),
-    ],
-)
-def test_bad_command_line(argv, message, capsys):
-    with pytest.raises(SystemExit) as stop:
-        command_line(*argv)
-    assert stop.value.code == 2
-    printed = capsys.readouterr().err
-    assert printed.startswith(f"fingerpad: {message}")
-    assert printed.count("\n") == 1
-
-
-def test_quiet_ranks(capsys):
-    for argv in (["--voltage", "high"], ["--f-ext"]):
-        with pytest.raises(SystemExit) as stop:
-            command_line(*argv, quiet=True)
-        assert stop.value.code == 2
-    assert capsys.readouterr() == ("", "")
 
 
 def test_package_imports_nothing():

@@ -59,6 +59,16 @@ def test_summary_cut_short_is_no_result(started, tmp_path):
     assert result(scene, tmp_path) is None
 
 
+def test_run_that_was_stopped_is_no_result(started, tmp_path):
+    """Its summary is for whoever stopped it; the sweep runs the scene again."""
+    scene = from_data({"f_ext": 10})
+    (tmp_path / key(scene)).mkdir()
+    stopped = {"f_ext": 10, "failure": "stopped by SIGTERM", "interrupted": True}
+    (tmp_path / key(scene) / "summary.json").write_text(json.dumps(stopped))
+    assert sweep(scenes(10), tmp_path)["10 N/m"] == {"f_ext": 10}
+    assert len(started) == 1
+
+
 def test_run_out_of_time_is_named(tmp_path):
     """A second of processor time is not enough to mesh the default finger and compile its forms."""
     summary = sweep({"slow": from_data({})}, tmp_path, limit=1.0)["slow"]

@@ -14,10 +14,7 @@ _DEAD = 180.0  # s after which an unfinished compile is taken for killed; the lo
 
 
 def _options() -> dict[str, Any]:
-    """Return options that make use of all this processor can do, in a cache of its own.
-
-    The tangent's assembly takes 0.6 of the time it takes with instructions that every processor has.
-    """
+    """Return options that make use of all this processor can do, in a cache of its own."""
     options: dict[str, Any] = {"timeout": 300}  # s; the default of 10 s is too short for large Jacobians
     if platform.machine() != "x86_64" or not _CPU.exists():
         return options

@@ -45,9 +45,9 @@ class RigidRimLayout:
         comm, index_map = V.mesh.comm, V.dofmap.index_map
         owned = index_map.size_local
         rim = fem.locate_dofs_topological(V, V.mesh.topology.dim - 1, rim_facets)
-        self.is_rim = np.zeros(owned + index_map.num_ghosts, dtype=bool)
-        self.is_rim[rim] = True
-        free = ~self.is_rim[:owned]
+        is_rim = np.zeros(owned + index_map.num_ghosts, dtype=bool)
+        is_rim[rim] = True
+        free = ~is_rim[:owned]
         self.comm = comm
         self.owns_rigid = comm.rank == comm.size - 1
         pressures = pressure.owned if pressure else 0
