@@ -194,6 +194,7 @@ def test_asked_to_stop(tmp_path, number):
     assert "Traceback" not in err
     summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
     assert number.name in summary["failure"]
+    assert summary["interrupted"] is True  # a sweep runs it again
     assert len(accepted(tmp_path)) == summary["steps"] >= GOOD
 
 

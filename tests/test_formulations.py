@@ -136,7 +136,7 @@ def test_contact_length(pressed, exact):
 
 
 # -- friction ------------------------------------------------------------------------------------------
-SLIDING = [Penalty(1e11, 1e10), AugmentedLagrangian(1e12, 1e11, 5e-9), *(Nitsche(10.0, theta) for theta in (0, 1, -1))]
+SLIDING = [Penalty(1e11, 1e10), AugmentedLagrangian(1e12, 1e10, 5e-9), *(Nitsche(10.0, theta) for theta in (0, 1, -1))]
 
 
 def slide(comm, formulation) -> list:
@@ -175,8 +175,12 @@ def test_stick_before_slip(slid):
 
 
 def test_elastic_slip():
-    """Points of the augmented Lagrangian that stick stay where they were accepted, to its tolerance."""
+    """Points of the augmented Lagrangian that stick stay where they were accepted, to its tolerance.
+
+    In few steps: cut often enough, one would slip too little to need a multiplier.
+    """
     states = [state for _, state, *_ in slide(MPI.COMM_WORLD, SLIDING[1])]
+    assert len(states) < 30
     for before, after in zip(states, states[1:], strict=False):
         sticks = (after.p_n > 0) & (np.abs(after.t_t) < MU_F * after.p_n * (1 - 1e-8))
         assert np.abs(after.x - before.x)[sticks].max(initial=0.0) <= SLIDING[1].tolerance
@@ -189,6 +193,20 @@ def test_ranks(formulation):
         np.array([[f, *r] for *_, f, r in slide(comm, formulation)]) for comm in (MPI.COMM_WORLD, MPI.COMM_SELF)
     )
     np.testing.assert_allclose(found, alone, rtol=0, atol=1e-6)
+
+
+def test_points_that_slip_are_expected_to_slip_on():
+    """Once more than half of the points slip and the bone moves on, a step starts from the tangent of slip."""
+    run = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.125e-3)), SLIDING[0], MU_F, held=False)
+    expected, new_load = [], run.solver.new_load
+    run.solver.new_load = lambda *load, slipping: (expected.append(slipping), new_load(*load, slipping))
+    run.run(Target("press", f_ext=2.0))
+    for x in (16e-6, 64e-6, 128e-6, 129e-6):
+        run.run(Target("slide", bone_x=x))
+    assert run.slip[0] == 1
+    assert (expected[0], expected[-1]) == (False, True)
+    run.run(Target("press", f_ext=2.1))
+    assert expected[-1] is False
 
 
 # -- history -------------------------------------------------------------------------------------------

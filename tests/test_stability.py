@@ -115,3 +115,10 @@ def test_agrees_with_all_eigenvalues(sliding):
     growth = growth[np.abs(growth) > 1e-6]
     least = np.real(2e9 * (1 / growth - 1)).min()
     assert check.check().lambda_min == pytest.approx(least, rel=1e-4)
+
+
+def test_growth_next_to_zero_says_nothing():
+    """A growth of -1e-9 would be a rate of -1e9 eta, were its residual, next to it, not a thousand times larger."""
+    eta = 2e8
+    H = np.array([[0.5, 1e-6], [1e-6, -1e-9], [0.0, 1e-6]])
+    assert StabilityCheck._judge(H, eta).lambda_min == pytest.approx(eta, rel=1e-5)
