@@ -1,11 +1,12 @@
 # make demo   press, charge and slide the default finger; results in results/demo
 # make test   all tests, then those marked mpi on two ranks
+# make verify every number with a known answer, some minutes; docs/verification.md
 #
-# Both need nothing but Debian 12, root, apt and PyPI: environment/run finds or makes what they run in.
+# All need nothing but Debian 12, root, apt and PyPI: environment/run finds or makes what they run in.
 
 run := environment/run
 
-.PHONY: help demo test
+.PHONY: help demo test verify
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -16,3 +17,6 @@ demo:
 test:
 	$(run) python3 -m pytest -q --color=no tests
 	$(run) mpirun -n 2 python3 -m pytest -q --color=no -p no:cacheprovider tests
+
+verify:
+	$(run) python3 benchmarks/verify.py

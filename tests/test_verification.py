@@ -1,0 +1,55 @@
+"""The verification cases on small meshes, and the page made of them."""
+
+import json
+
+import numpy as np
+import pytest
+
+from benchmarks.verification import page
+from benchmarks.verification.areas import AREAS
+from benchmarks.verification.case import Case, Outcome, Row
+
+CASES = [case for cases in AREAS.values() for case in cases]
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.slug)
+def test_case(case):
+    """Every number is within the tolerance that its row explains."""
+    outcome = case.run(True)
+    assert outcome.rows
+    assert [f"{row.quantity}: {row.ours} instead of {row.reference}" for row in outcome.rows if not row.holds] == []
+
+
+def test_names_are_files_names():
+    assert len({case.slug for case in CASES}) == len(CASES)
+
+
+@pytest.mark.parametrize(
+    ("row", "error", "holds"),
+    [
+        (Row("a", 1.1, 1.0, 0.2, ""), 0.1, True),
+        (Row("a", -1.3, -1.0, 0.2, ""), 0.3, False),
+        (Row("a", 4.1, 4.0, 0.2, "", absolute=True), 0.1, True),
+        (Row("a", np.nan, 4.0, 0.2, ""), np.nan, False),
+    ],
+)
+def test_error(row, error, holds):
+    assert row.error == pytest.approx(error, nan_ok=True)
+    assert row.holds is holds
+
+
+def test_page(tmp_path):
+    """A number that is off is marked, a picture linked, and the data unrounded."""
+    good = Row("width (m)", 1.0000001, 1.0, 1e-3, "mesh", order=1.96)
+    bad = Row("force (N)", 2.0, 1.0, 1e-3, "mesh")
+    case = Case("Some case", "somebody", lambda small: Outcome(()))
+    drawn = Outcome((good, bad), lambda figure: figure.subplots().plot([0, 1]) and None)
+    page.write({"Area": [(case, drawn)]}, tmp_path)
+    text = (tmp_path / "verification.md").read_text(encoding="utf-8")
+    assert "1 of 2 numbers" in text
+    assert "**!** 1 (rel.)" in text
+    assert "1.96" in text
+    assert "](verification/some_case.png)" in text
+    assert (tmp_path / "verification" / "some_case.png").stat().st_size > 1000
+    data = json.loads((tmp_path / "verification" / "results.json").read_text(encoding="utf-8"))
+    assert data["Area"]["Some case"][0]["ours"] == 1.0000001
