@@ -6,56 +6,14 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from benchmarks.verification.energy import D_EQ, PHASES, VOLTAGE, Walk, cycle
 from geometry.benchmarks import block, ridge
 from geometry.mesh import load
 from tests import spring
 from tests.test_contact import HEIGHT, MU_F, WIDTH, make
-from variational.energy import Balance, EnergyBook
+from variational.energy import Balance
 from variational.quantities import Observer
-from variational.solver import Control, Solver
-
-D_EQ, VOLTAGE = 2e-6, 100.0
-PHASES = ("press", "charge", "slide", "back", "discharge", "lift")
-
-
-class Walk:
-    """Leads a solver from state to state and keeps its book."""
-
-    def __init__(self, solver: Solver) -> None:
-        self.solver, self.observer = solver, Observer(solver.problem)
-        self.state = self.observer.state()
-        self.book = EnergyBook(solver.problem, self.state, solver.bone, solver.reaction, np.array([D_EQ]))
-
-    def to(self, control: Control, voltage: float = 0.0, d_eq: float = D_EQ) -> Balance:
-        solver, problem = self.solver, self.solver.problem
-        problem.set_air_gaps(np.array([d_eq]))
-        problem.voltage.value, solver.control = voltage, control
-        solver.solve(creep=True)
-        self.state = self.observer.state()
-        balance = self.book.step(self.state, solver.bone, solver.reaction, np.array([d_eq]))
-        problem.surface.set_history(problem.anchor, self.state.anchor)
-        return balance
-
-
-def cycle(body, depth: float, far: float, steps: int) -> dict[str, list[Balance]]:
-    """Press, charge while the air gap shrinks, slide, and all the way back."""
-    walk = Walk(make(body, MU_F, eps_n=1e11, eps_t=1e10, held=False))
-    up = np.arange(1, steps + 1) / steps
-    way = far * np.arange(1, 2 * steps + 1) / (2 * steps)
-    down, back = 1 - up, far - way
-    small = 0.7 * D_EQ
-
-    def charge(part: float) -> Balance:
-        return walk.to(Control(0.0, -depth), VOLTAGE * np.sqrt(part), D_EQ + part * (small - D_EQ))
-
-    return {
-        "press": [walk.to(Control(0.0, -depth * part)) for part in up],
-        "charge": [charge(part) for part in up],
-        "slide": [walk.to(Control(x, -depth), VOLTAGE, small) for x in way],
-        "back": [walk.to(Control(x, -depth), VOLTAGE, small) for x in back],
-        "discharge": [charge(part) for part in down],
-        "lift": [walk.to(Control(0.0, -depth * part)) for part in down],
-    }
+from variational.solver import Control
 
 
 @pytest.fixture(scope="module", params=["block", "ridge"])
@@ -65,7 +23,8 @@ def cycles(request):
     model = partial(block, WIDTH, HEIGHT, 0.25e-3) if flat else partial(ridge, 20e-6)
     depth, far = (2e-6, 30e-6) if flat else (20e-6, 150e-6)
     body = load(MPI.COMM_WORLD, model)
-    return [cycle(body, depth, far, steps) for steps in (8, 16, 32, 64)]
+    law = {"mu_f": MU_F, "eps_n": 1e11, "eps_t": 1e10, "held": False}
+    return [cycle(make(body, **law), depth, far, steps) for steps in (8, 16, 32, 64)]
 
 
 def total(phase: list[Balance], name: str) -> float:
