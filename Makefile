@@ -2,6 +2,7 @@
 # make test   all tests, then those marked mpi on two ranks
 # make verify every number with a known answer, some minutes; docs/verification.md
 #
+# With SUITE=sid in Debian unstable, that is with a newer dolfinx: make test SUITE=sid
 # All need nothing but Debian 12, root, apt and PyPI: environment/run finds or makes what they run in.
 
 run := environment/run

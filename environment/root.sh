@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Make the private Debian 13 root that environment/run enters, and print its path.
+# Make the private Debian root that environment/run enters, and print its path: Debian 13, or with SUITE=sid the
+# unstable one, whose newer dolfinx the code has to suit as well.
 #
 # The root lives in the user's cache folder under a name that holds a hash of the package list, is built
 # beside its final place and renamed when whole: an interrupted build leaves nothing that looks finished,
@@ -7,7 +8,7 @@
 # tools are installed with apt when root runs this.
 set -euo pipefail
 
-suite=trixie
+suite=${SUITE:-trixie}
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/fingerpad
 need_gb=6  # the root and, for a moment, mmdebstrap's own copy of it
@@ -15,11 +16,19 @@ need_gb=6  # the root and, for a moment, mmdebstrap's own copy of it
 stop() { echo "fingerpad: $*" >&2; exit 1; }
 say() { echo "fingerpad: $*" >&2; }
 
+case $suite in
+    trixie) name="Debian 13" ;;
+    sid) name="Debian unstable" ;;
+    *) stop "SUITE is $suite; it must be trixie or sid." ;;
+esac
+
 packages=$(awk '!/^#/ && NF && $2 != "-" { print $2 }' "$here/packages.txt" | sort | paste -sd,)
 # Documentation and translations are left out: a sixth of the size, and nobody reads them in there.
 options=(--variant=apt --components=main
     --dpkgopt='path-exclude=/usr/share/doc/*' --dpkgopt='path-exclude=/usr/share/man/*'
     --dpkgopt='path-exclude=/usr/share/locale/*' --aptopt='Apt::Install-Recommends "false"')
+# A snapshot of unstable says of itself that it expired after a week.
+[ "$suite" = sid ] && options+=(--aptopt='Acquire::Check-Valid-Until "false"')
 key=$(printf '%s\n' "$suite" "$packages" "${options[@]}" | sha256sum | cut -c1-12)
 root=$cache/$suite-$key
 
@@ -62,7 +71,7 @@ trap 'rm -rf "$build" 2>/dev/null || true' EXIT
 chmod 755 "$build"
 mkdir -m 1777 "$build/tmp"
 
-say "making a private Debian 13 with dolfinx in $cache (once; about 3 minutes and 3 GB)"
+say "making a private $name with dolfinx in $cache (once; about 3 minutes and 3 GB)"
 start=$SECONDS
 # mmdebstrap's user namespace owns files by other ids; through tar they become the caller's.
 if ! TMPDIR=$build/tmp mmdebstrap --quiet --mode=$mode --format=tar "${options[@]}" --include="$packages" "$suite" - \

@@ -1,0 +1,49 @@
+r"""What a sequence of meshes says about its limit.
+
+With values :math:`f_k` on meshes of size :math:`h_k`, each half of the one before, the last three give
+
+.. math:: p = \log_2 \frac{f_1 - f_0}{f_2 - f_1}, \qquad f = f_2 + \frac{f_2 - f_1}{2^p - 1}
+
+and Roache's grid convergence index the error bar, :math:`1.25\,|f - f_2|` (Roache 1994, doi 10.1115/1.2910291). Where
+the changes do not shrink, or not with the same sign, there is no order to extrapolate with; the last value is then the
+estimate, and the bar three times the largest of the last two changes, the index's factor for what is not known.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+_SAFETY, _UNSAFE = 1.25, 3.0
+_HIGHEST = 4.0  # order with which is extrapolated: an accidentally small change would claim any
+
+
+@dataclass(frozen=True)
+class Limit:
+    """What a quantity tends to."""
+
+    value: float
+    bar: float
+    """Half the width of the error bar about ``value``."""
+    order: float | None
+    """Observed order, None where there is none."""
+
+
+def limit(values: Sequence[float]) -> Limit:
+    """Estimate the limit of values on meshes that are halved.
+
+    Args:
+        values: from the coarsest to the finest, at least three.
+
+    Raises:
+        ValueError: fewer than three.
+    """
+    if len(values) < 3:
+        raise ValueError(f"{len(values)} values were given; an order needs three")
+    before, last = np.diff(np.asarray(values, dtype=float)[-3:])
+    finest = float(values[-1])
+    if last == 0 or before / last <= 1:
+        return Limit(finest, _UNSAFE * float(max(abs(before), abs(last))), None)
+    order = float(np.log2(before / last))
+    correction = float(last / (2 ** min(order, _HIGHEST) - 1))
+    return Limit(finest + correction, _SAFETY * abs(correction), order)

@@ -1,0 +1,190 @@
+"""The discretisation error of the default scene: what meshes and penalty change, and what the results tend to.
+
+environment/run python3 benchmarks/errors.py [--jobs 2] [--only contact growth receptor penalty]
+
+The default scene to full slip, with one setting changed at a time. Runs are kept with those of benchmarks/traces.py;
+what has been run is written to docs/errors.md, docs/errors.png and, as the reference later work is compared with,
+docs/errors.json.
+"""
+
+import argparse
+import csv
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from benchmarks.convergence import Limit, limit
+from fingerpad.command import positive
+from fingerpad.scene import Scene, from_data
+from fingerpad.sweep import key, result, sweep
+
+_ROOT = Path(__file__).resolve().parents[1]
+_LIMIT = 10800.0  # s of processor time for one run; the finest mesh takes far longer than a trace
+CONTACT = (20e-6, 10e-6, 5e-6, 2.5e-6)
+AT = 10e-6  # m, contact size of the other studies
+GROWTH = (0.5, 0.25, 0.125)
+RECEPTOR = (40e-6, 20e-6, 10e-6)
+PENALTY = (0.5e12, 1.5e12, 5e12)
+SITES = (-5, 0, 5)  # ridges whose Merkel sites are looked at: trailing, central and leading ones in contact
+QUANTITIES: Mapping[str, tuple[str, float]] = {  # name: what it is, and what its unit is worth
+    "normal_contact_length": ("contact length, normal (mm)", 1e-3),
+    "normal_ridges_in_contact": ("ridges, normal", 1),
+    "slip_f_t": ("f_T, full slip (N/m)", 1),
+    "slip_mu_app": ("µ_app, full slip", 1),
+    "slip_contact_length": ("contact length, full slip (mm)", 1e-3),
+    "slip_ridges_in_contact": ("ridges, full slip", 1),
+} | {f"{state}_sed_{j}": (f"SED at ridge {j}, {words} (J/m³)", 1.0) for state, words in
+     (("normal", "normal"), ("slip", "full slip")) for j in SITES}  # fmt: skip
+_HEADER = """# Discretisation error of the default scene
+
+Made by `environment/run python3 benchmarks/errors.py`; do not edit. The default scene (75 N/m, 200 V, slid to full
+slip) with one setting changed at a time; SED is the strain energy density at a Merkel site. The numbers unrounded, with
+the scene of each run: [errors.json](errors.json).
+"""
+
+
+_LIMITS = """Limits are Richardson's extrapolation from the three finest meshes with Roache's error bar; where their
+changes do not shrink with one sign there is no order, the finest value stands, and the bar is three times the larger
+of the last two changes (`benchmarks/convergence.py`)."""
+
+
+def study(name: str) -> dict[float, Scene]:
+    """Return the scenes of a study by the value of its setting, from coarse to fine."""
+    scenes: dict[str, Any] = {
+        "contact": {size: {"mesh": {"contact": size}} for size in CONTACT},
+        "growth": {growth: {"mesh": {"contact": AT, "growth": growth}} for growth in GROWTH},
+        "receptor": {size: {"mesh": {"contact": AT, "receptor": size}} for size in RECEPTOR},
+        "penalty": {eps_n: {"mesh": {"contact": AT}, "contact": {"eps_n": eps_n}} for eps_n in PENALTY},
+    }
+    return {value: from_data(data) for value, data in scenes[name].items()}
+
+
+STUDIES = {  # name: heading, the setting's unit
+    "contact": ("Contact size", 1e-6, "µm"),
+    "growth": (f"Growth of the elements, at a contact size of {AT * 1e6:g} µm", 1.0, ""),
+    "receptor": (f"Size at the Merkel sites, at a contact size of {AT * 1e6:g} µm", 1e-6, "µm"),
+    "penalty": (f"Penalty stiffness, at a contact size of {AT * 1e6:g} µm", 1e9, "MPa/mm"),
+}
+
+
+def values(scene: Scene, out: Path) -> dict[str, float] | None:
+    """Return the quantities of a scene that was run to full slip, None of another."""
+    summary = result(scene, out)
+    if summary is None or not summary["full_slip"]:
+        return None
+    found = {name: float(summary[name]) for name in QUANTITIES if name in summary}
+    folder = out / key(scene)
+    with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
+        last = {row["load"]: row["step"] for row in csv.DictReader(file)}
+    ends = {last["charge"]: "normal", last["slide"]: "slip"}
+    with (folder / "receptors.csv").open(encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            if row["step"] in ends and int(row["ridge"]) in SITES:
+                found[f"{ends[row['step']]}_sed_{row['ridge']}"] = float(row["merkel_sed"])
+    return found | {"unknowns": float(summary["unknowns"]), "factorisations": float(summary["factorisations"])}
+
+
+def _cells(name: str, runs: Mapping[float, dict[str, float] | None], unit: float) -> list[str]:
+    return ["–" if run is None else f"{run[name] / unit:.5g}" for run in runs.values()]
+
+
+def estimate(name: str, runs: Mapping[float, dict[str, float] | None]) -> Limit | None:
+    """Return a quantity's limit; None before all meshes were run."""
+    found = [run[name] for run in runs.values() if run is not None]
+    return limit(found) if len(found) == len(runs) else None
+
+
+def _table(name: str, out: Path) -> str:
+    heading, size, size_unit = STUDIES[name]
+    runs = {value: values(scene, out) for value, scene in study(name).items()}
+    extrapolates = name == "contact"
+    head = ["", *(f"{value / size:g} {size_unit}".strip() for value in runs)]
+    head += ["limit", "order"] if extrapolates else ["largest difference"]
+    lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
+    for quantity, (words, unit) in QUANTITIES.items():
+        cells = _cells(quantity, runs, unit)
+        found = estimate(quantity, runs)
+        present = [run[quantity] for run in runs.values() if run is not None]
+        if not extrapolates:
+            cells.append(f"{100 * (max(present) / min(present) - 1):.2g} %" if len(present) > 1 else "–")
+        elif found is None:
+            cells += ["–", "–"]
+        else:
+            cells += [f"{found.value / unit:.5g} ± {found.bar / unit:.1g}"]
+            cells += ["–" if found.order is None else f"{found.order:.1f}"]
+        lines.append(f"| {words} | " + " | ".join(cells) + " |")
+    for count in ("unknowns", "factorisations"):
+        lines.append(f"| {count} | " + " | ".join([*_cells(count, runs, 1), *[""] * (1 + extrapolates)]) + " |")
+    return f"## {heading}\n\n" + "\n".join(lines)
+
+
+def draw(out: Path, path: Path) -> None:
+    """Draw the distance from the limit over the contact size, where the limit is known."""
+    runs = {size: values(scene, out) for size, scene in study("contact").items()}
+    figure = Figure(figsize=(7.5, 3.8), layout="constrained")
+    axes = figure.subplots(1, 2, sharey=True)
+    groups = {
+        "force and contact": ("slip_f_t", "normal_contact_length", "slip_contact_length"),
+        "strain energy density at full slip": tuple(f"slip_sed_{j}" for j in SITES),
+    }
+    for ax, (title, names) in zip(axes, groups.items(), strict=True):
+        for k, name in enumerate(names):
+            found = estimate(name, runs)
+            if found is None:
+                continue
+            errors = [abs(run[name] / found.value - 1) for run in runs.values() if run is not None]
+            ax.loglog([1e6 * h for h in runs], errors, "osD"[k] + "-", color=f"C{k}", label=QUANTITIES[name][0])
+            ax.axhline(found.bar / found.value, color=f"C{k}", ls=":", lw=1)
+        ax.set(title=title, xlabel="contact size (µm)")
+        ax.set_xticks([1e6 * h for h in runs], [f"{1e6 * h:g}" for h in runs])
+        ax.minorticks_off()
+        if ax.has_data():
+            ax.legend(fontsize=7)
+    axes[0].set_ylabel("distance from the limit, relative\n(dotted: the limit's error bar)")
+    figure.savefig(path, dpi=110)
+
+
+def write(out: Path, docs: Path) -> None:
+    """Write page, picture and data from what has been run."""
+    data: dict[str, Any] = {"made by": "benchmarks/errors.py", "unit": "SI", "studies": {}}
+    for name in STUDIES:
+        scenes = study(name)
+        runs = {value: values(scene, out) for value, scene in scenes.items()}
+        data["studies"][name] = [
+            {"value": value, "quantities": run, "scene": scenes[value].parameters()}
+            for value, run in runs.items()
+            if run
+        ]
+        if name == "contact":
+            limits = {quantity: estimate(quantity, runs) for quantity in QUANTITIES}
+            data["limits"] = {q: vars(found) for q, found in limits.items() if found}
+    (docs / "errors.json").write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    draw(out, docs / "errors.png")
+    picture = "![Distance from the limit over the contact size](errors.png)"
+    parts = [_HEADER, _table("contact", out), _LIMITS, picture, *(_table(name, out) for name in list(STUDIES)[1:])]
+    (docs / "errors.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run what is missing of the studies asked for and write the page."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, default=_ROOT / "results" / "traces", help="folder of results")
+    parser.add_argument("--docs", type=Path, default=_ROOT / "docs", help="folder of the page")
+    parser.add_argument("--jobs", type=positive(int), default=2, help="runs at a time")
+    parser.add_argument("--only", nargs="*", choices=STUDIES, default=list(STUDIES), help="studies to run")
+    args = parser.parse_args(arguments)
+    scenes = {f"{name} {value:g}": scene for name in args.only for value, scene in study(name).items()}
+    # The finest first: it takes longest.
+    summaries = sweep(dict(reversed(scenes.items())), args.out, args.jobs, _LIMIT)
+    write(args.out, args.docs)
+    failed = [name for name, summary in summaries.items() if "failure" in summary]
+    print(f"{len(scenes) - len(failed)} of {len(scenes)} reached their end; {args.docs / 'errors.md'}")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
