@@ -198,6 +198,19 @@ def test_asked_to_stop(tmp_path, number):
     assert len(accepted(tmp_path)) == summary["steps"] >= GOOD
 
 
+def test_last_ridge_that_may_touch_does(tmp_path):
+    """Contact would spread to skin without contact forces: the run stops where it does, and says what to change."""
+    scene = from_data({"mesh": MESH | {"touching_half_arc": 0.6e-3}, "history": [{"name": "press", "f_ext": 8.0}]})
+    summary = run(scene, tmp_path, MPI.COMM_WORLD)
+    assert "the last one that is meshed to touch" in summary["failure"]
+    assert "mesh.touching_half_arc is 0.0006 m" in summary["failure"]
+    rows = accepted(tmp_path)
+    assert (
+        [int(row["ridges_in_contact"]) for row in rows][-1] == max(int(row["ridges_in_contact"]) for row in rows) == 3
+    )
+    assert float(rows[-1]["f_ext"]) < 8.0
+
+
 # -- rejected iterates -------------------------------------------------------------------------------------
 def trajectory(chance: float, seed: int) -> tuple[list[dict[str, np.ndarray]], int]:
     """Press, charge and slide a block; after a solve, reject by chance and try the same step again."""
