@@ -4,11 +4,13 @@ import csv
 import json
 import logging
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, TextIO
 
 import numpy as np
 from mpi4py import MPI
+from numpy.typing import NDArray
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from fingerpad import pictures
@@ -19,6 +21,7 @@ from variational.receptors import Receptors
 from variational.solver import memory_mb
 
 _NAMED = ("f_t", "mu_app", "f_electrostatic", "f_contact", "bone_height", "ridges_in_contact", "contact_length")
+_STATES = ("normal", "partial", "slip")  # as surface.npz calls them
 _STILL = 1e-12  # m, below which the bone has not moved sideways
 _PROFILE = ("x", "y", "p_n", "t_t", "p_el", "area_x", "area_y")
 _HEADER = "step load     f_ext    U  bone x   bone y      f_T  mu_app    f_el ridges  contact newton fact."
@@ -83,7 +86,9 @@ class Report:
         self._simulation = simulation
         self._setup = time.perf_counter() - self._start
         self._fields = Fields(simulation.problem, self.folder)
-        self._sites = Receptors(simulation.problem, simulation.profiles.merkel_sites())
+        profiles = simulation.profiles
+        sites = np.concatenate([profiles.merkel_sites(), profiles.meissner_sites()])
+        self._sites = Receptors(simulation.problem, sites)
         self.say(f"{simulation.unknowns} unknowns, {len(simulation.problem.surface.names)} ridges that can touch")
         self.say(_HEADER)
         self.say(_UNITS)
@@ -107,8 +112,8 @@ class Report:
             for k, j in enumerate(surface.names):
                 if step.ridges.length[k] > 0:
                     self._table("ridges", self._ridge_row(step, k, j))
-            for site, value in zip(self._simulation.profiles.ridges, sed, strict=True):
-                self._table("receptors", {"step": step.row["step"], "ridge": site, "merkel_sed": value})
+            for ridge_row in self._receptor_rows(step.row["step"], sed):
+                self._table("receptors", ridge_row)
             for sweep, change in enumerate(step.attempt.changes):
                 self._table("coupling", {"step": step.row["step"], "sweep": sweep + 1, "change": change})
             self._print(step, done)
@@ -151,6 +156,13 @@ class Report:
             "state": step.states[k],
         }
 
+    def _receptor_rows(self, step: int, sed: NDArray[np.float64]) -> Iterator[dict[str, Any]]:
+        assert self._simulation is not None
+        names = self._simulation.profiles.ridges
+        merkel, meissner = sed[: len(names)], sed[len(names) :].reshape(-1, 2)
+        for j, at_tip, (left, right) in zip(names, merkel, meissner, strict=True):
+            yield {"step": step, "ridge": j, "merkel_sed": at_tip, "meissner_left": left, "meissner_right": right}
+
     def _table(self, name: str, row: dict[str, Any]) -> None:
         if name not in self._tables:
             file = (self.folder / f"{name}.csv").open("w", newline="", encoding="utf-8")
@@ -168,7 +180,8 @@ class Report:
             self._written = self.rows[-1]["step"]
             self._fields.write(float(self._written))
             self._log_checks()
-            kept = gather_mesh(self._simulation.problem), self._sites.positions()
+            merkel = self._sites.positions()[: len(self._simulation.profiles.ridges)]
+            kept = gather_mesh(self._simulation.problem), merkel
             self._kept[self.rows[-1]["load"]] = kept
         self.seconds += time.perf_counter() - start
 
@@ -240,7 +253,9 @@ class Report:
                 continue
             row = [row for row in self.rows if row["load"] == load][-1]
             title = f"After {load}: {pictures.conditions(row['f_ext'], row['voltage'], mu_0)}"
-            pictures.finger(self.folder / f"finger_{load.replace(' ', '_')}.png", snapshot, sites, title)
+            name = load.replace(" ", "_")
+            np.savez_compressed(self.folder / f"finger_{name}.npz", merkel=sites, **vars(snapshot))
+            pictures.finger(self.folder / f"finger_{name}.png", snapshot, sites, title)
         sliding = [row for row in self.rows if abs(row["bone_x"]) >= _STILL]
         if normal is None or not sliding:
             return
@@ -249,6 +264,9 @@ class Report:
         named = {"Normal contact": normal, "Partial slip": partial, "Full slip" if slip else "Last state": end}
         states = [self._profile(name, row) for name, row in named.items()]
         conditions = pictures.conditions(end["f_ext"], end["voltage"], mu_0)
+        arrays: dict[str, Any] = {f"{name}_{field}": value for name, state in zip(_STATES, states, strict=True)
+                  for field, value in vars(state).items() if isinstance(value, np.ndarray)}  # fmt: skip
+        np.savez_compressed(self.folder / "surface.npz", **arrays)
         pictures.surface(self.folder / "surface.png", states, conditions)
         pictures.history(self.folder / "history.png", self.rows, conditions, mu_0)
 

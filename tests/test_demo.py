@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -84,9 +85,28 @@ def test_leaves_what_it_promises(coarse, summary):
     names = {path.name for path in coarse.iterdir()}
     assert {"steps.csv", "ridges.csv", "receptors.csv", "coupling.csv", "summary.json", "run.log"} <= names
     assert {"finger_press.png", "finger_charge.png", "finger_slide.png", "surface.png", "history.png"} <= names
-    assert {"displacement.bp", "stress.bp", "sed.bp"} <= names
+    assert {"displacement.bp", "stress.bp", "sed.bp", "surface.npz"} <= names
+    assert {"finger_press.npz", "finger_charge.npz", "finger_slide.npz"} <= names
     assert len(steps(coarse)) == summary["steps"]
     assert summary["parameters"]["mesh"]["contact"] == 30e-6
+
+
+@pytest.mark.parametrize("state", ["normal", "slip"])
+def test_surface_array_bears_the_contact_force(coarse, summary, state):
+    """Pressure over the current abscissa, by the trapezoidal rule, coarse on a few facets of 30 um a ridge."""
+    with np.load(coarse / "surface.npz") as arrays:
+        x, p = arrays[f"{state}_x"], arrays[f"{state}_p"]
+    known = np.isfinite(x[1:] + x[:-1])
+    force = float((np.diff(x) * (p[1:] + p[:-1]) / 2)[known].sum())
+    assert force == pytest.approx(summary[f"{state}_f_contact"], rel=0.1)
+
+
+def test_receptor_sites(coarse):
+    """Under a central ridge the stiff epidermis holds more energy than the soft papillae beside it."""
+    with (coarse / "receptors.csv").open(encoding="utf-8", newline="") as file:
+        last = {row["ridge"]: row for row in csv.DictReader(file)}
+    merkel, left, right = (float(last["0"][name]) for name in ("merkel_sed", "meissner_left", "meissner_right"))
+    assert merkel > max(left, right) > min(left, right) > 0
 
 
 def test_two_ranks_agree_with_one(summary, tmp_path):
