@@ -84,6 +84,17 @@ class Surface:
         # of a degree below the number of points.
         self._to_powers = np.linalg.inv(np.vander(self.points[:, 0], increasing=True))
         self._history_maps()
+        self._reversed = np.zeros(len(self.pairs), dtype=bool)
+        self._reversed = self._point_order(xy)
+
+    def _point_order(self, ends: Array) -> NDArray[np.bool_]:
+        """Find the facets whose points dolfinx takes from their second end, of ends (facets, 2, 3), to the first.
+
+        By their cell's numbering in 0.9 no facet's, by their vertices' in 0.11 some.
+        """
+        position = self.compile(list(ufl.SpatialCoordinate(self.mesh)))
+        first = self.evaluate(position)[:, :, 0].T
+        return np.asarray(np.linalg.norm(first - ends[:, 1, :2], axis=1) < self.length / 2)
 
     # -- history ---------------------------------------------------------------------------------------
     def _history_maps(self) -> None:
@@ -122,7 +133,9 @@ class Surface:
         shape = (len(self.pairs), len(self.weights), -1)
         if not len(self.pairs):
             return np.zeros((int(np.prod(compiled.ufl_expression.ufl_shape)), 0, len(self.weights)))
-        return np.moveaxis(values.reshape(shape), 2, 0)
+        values = values.reshape(shape)
+        values[self._reversed] = values[self._reversed, ::-1]
+        return np.moveaxis(values, 2, 0)
 
     # -- integrals -------------------------------------------------------------------------------------
     def per_ridge(self, density: Array) -> Array:
