@@ -243,7 +243,7 @@ class Simulation:
 
 def _jumped(attempt: Attempt) -> bool:
     """Return whether skin or an air gap moved without the loads."""
-    return attempt.pseudo_transient > 0 or bool(attempt.jumped)
+    return attempt.pseudo_transient > 0 or bool(attempt.jumped) or attempt.leapt
 
 
 def _target(load: Load) -> Target:

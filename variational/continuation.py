@@ -1,5 +1,8 @@
 """From load to load: adaptive steps with cutback, first touch, snap-off, and accepted states.
 
+A step that fails is halved. Where the loop over the scales cycles there may be no equilibrium in a range of loads (see
+:mod:`~variational.coupling`), which halved steps only creep up to; so a longer step over that range is tried first.
+
 History (friction anchors, contact multipliers, air gaps, displacement) is accepted in :meth:`Continuation._accept`
 and nowhere else; a rejected attempt restores the last accepted state.
 """
@@ -39,6 +42,7 @@ class Target:
 _FORCE, _VOLTAGE, _SINK, _SLIDE = 0.067, 0.25, 40e-6, 60e-6
 _SMALLEST = 1e-3  # step below which a load is given up, over the largest
 _MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on when the bone moves
+_LEAP = 1.5  # step tried where the loop over the scales cycles, over the one that led there
 _FEW = 6  # factorisations; a step that took no more lets the next one grow
 
 
@@ -59,6 +63,8 @@ class Attempt:
     """Solves that full Newton steps did not manage: as a rule, parts of the skin jumped."""
     jumped: set[int] = field(default_factory=set)
     """Numbers of the ridges whose air gap went past a fold."""
+    leapt: bool = False
+    """Whether the step went over loads at which the loop over the scales cycles: a ridge jumped."""
 
 
 @dataclass
@@ -200,7 +206,7 @@ class Continuation:
             step = min(step, 1 - part)
             if 1 - part - step < 0.05 * step:
                 step = 1 - part
-            attempt = Attempt()
+            attempt, within = Attempt(), step
             while True:
                 # One or two failures may be a step too large. More in a row are a jump, which no step is small
                 # enough for.
@@ -211,14 +217,18 @@ class Continuation:
                 except NotConverged as failure:
                     self._restore()
                     attempt.cutbacks.append(f"{failure} at part {part + step:.4g}")
-                    step /= 2
-                    if failure.hopeless or step < _SMALLEST * largest:
+                    over = min(_LEAP * within, 1 - part)
+                    attempt.leapt = failure.cycling and not attempt.leapt and over > within
+                    within = within if attempt.leapt else within / 2
+                    step = over if attempt.leapt else within
+                    if failure.hopeless or within < _SMALLEST * largest:
                         raise StepFailed(self._describe(target, part, failure)) from failure
             self._accept()
             part += step
             self.on_accept(target, part, attempt)
             if target.until_full_slip and self.slip[1]:
                 return
+            step = within
             if attempt.factorisations <= _FEW:
                 step = min(2 * step, largest)
 

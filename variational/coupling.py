@@ -9,6 +9,11 @@ On leaving contact a ridge has p_c = 0, and its air gap is the closure's at that
 d_eq at its value at p_floor, some 12 um. It does not keep the gap it was pressed to, and d_eq does not follow
 p_c to infinity. A ridge without contact is attracted across its height where that is larger.
 
+There may be no such state. A ridge about to leave touches with a facet or two, and lets go of them one at a time:
+with one facet less its pressure is higher, its air gap smaller and its attraction stronger, so that the facet comes
+back. Between the loads at which either state is one of equilibrium the loop cycles, however small the step;
+:mod:`~variational.continuation` leaps over them.
+
 A formulation of contact whose history is corrected after each solve, the augmented Lagrangian, shares the loop: a
 sweep corrects air gaps and multipliers, and the loop ends when both agree.
 
@@ -139,4 +144,4 @@ class Coupling:
                 self.set_air_gaps(secants.step())
         ridge, error = self.history.ridges[-1], self.history.errors[-1]
         where = f"a contact error of {error:.2g} m" if scales else f"ridge {ridge}"
-        raise NotConverged(f"COUPLING_CAP at {where}", False)
+        raise NotConverged(f"COUPLING_CAP at {where}", False, cycling=not scales)

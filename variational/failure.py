@@ -19,12 +19,14 @@ class NotConverged(RuntimeError):
             MUMPS_FAILED, NOT_A_NUMBER and COUPLING_CAP.
         inverted: elements were turned inside out by some iterate.
         hopeless: a smaller step would fail as well.
+        cycling: the loop over the scales went round and round at this load, which says nothing of a larger one.
     """
 
-    def __init__(self, reason: str, inverted: bool, hopeless: bool = False) -> None:
+    def __init__(self, reason: str, inverted: bool, hopeless: bool = False, cycling: bool = False) -> None:
         self.reason = reason
         self.inverted = inverted
         self.hopeless = hopeless
+        self.cycling = cycling
         super().__init__(reason + (", elements inverted (J <= 0) on the way" if inverted else ""))
 
 

@@ -84,7 +84,7 @@ class Surface:
         # of a degree below the number of points.
         self._to_powers = np.linalg.inv(np.vander(self.points[:, 0], increasing=True))
         self._history_maps()
-        self._reversed = np.zeros(len(self.pairs), dtype=bool)
+        self._reversed: NDArray[np.bool_] = np.zeros(len(self.pairs), dtype=bool)
         self._reversed = self._point_order(xy)
 
     def _point_order(self, ends: Array) -> NDArray[np.bool_]:

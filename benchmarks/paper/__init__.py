@@ -1,0 +1,1 @@
+"""What Forsbach, Heß and Papangelo (2023) report, by our model; ``benchmarks/reproduce.py`` runs it."""

@@ -1,0 +1,90 @@
+"""A finished run as arrays."""
+
+import csv
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fingerpad.scene import Scene
+from fingerpad.sweep import key, result
+
+Array = NDArray[np.float64]
+
+
+class Run:
+    """A run in a sweep's folder that reached its end; numbers in SI.
+
+    Attributes:
+        scene: what was run.
+        folder: its results.
+    """
+
+    def __init__(self, scene: Scene, out: Path) -> None:
+        """Open a run.
+
+        Raises:
+            FileNotFoundError: it has not been run, or did not reach its end.
+        """
+        summary = result(scene, out)
+        if summary is None or "failure" in summary:
+            raise FileNotFoundError(f"no finished run of {key(scene)} in {out}")
+        self.scene, self.folder, self.summary = scene, out / key(scene), summary
+
+    def _columns(self, name: str) -> dict[str, list[str]]:
+        with (self.folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        return {column: [row[column] for row in rows] for column in rows[0]}
+
+    @cached_property
+    def steps(self) -> dict[str, Array]:
+        """Columns of the accepted steps, shape (steps,); loads by name are in :attr:`loads`."""
+        columns = self._columns("steps")
+        words = {"True": 1.0, "False": 0.0}
+        return {
+            name: np.array([words.get(v, v) for v in values], dtype=float)
+            for name, values in columns.items()
+            if name != "load"
+        }
+
+    @cached_property
+    def loads(self) -> list[str]:
+        """The load that each step belongs to."""
+        return self._columns("steps")["load"]
+
+    @cached_property
+    def ridges(self) -> dict[str, Array]:
+        """Columns of the ridges in contact, one row a step and ridge."""
+        return {k: np.array(v, dtype=float) for k, v in self._columns("ridges").items() if k != "state"}
+
+    @cached_property
+    def receptors(self) -> dict[str, Array]:
+        """Strain energy density at the receptors (J/m^3), columns of shape (steps, ridges); ``ridge`` has (ridges,)."""
+        columns = {k: np.array(v, dtype=float) for k, v in self._columns("receptors").items()}
+        count = len(np.unique(columns["ridge"]))
+        return {k: v.reshape(-1, count) if k != "ridge" else v[:count] for k, v in columns.items()}
+
+    @property
+    def normal(self) -> int:
+        """Row of normal contact: the last step before the bone moves sideways."""
+        return int(np.flatnonzero(np.abs(self.steps["bone_x"]) < 1e-12)[-1])
+
+    @property
+    def slip(self) -> int:
+        """Row of full slip: the first step in which every point slips one way."""
+        return int(np.flatnonzero(self.steps["all_slip"])[0])
+
+    def on_ridges(self, row: int, name: str) -> tuple[Array, Array]:
+        """Return numbers and a value of the ridges in contact in a row of :attr:`steps`."""
+        mine = self.ridges["step"] == self.steps["step"][row]
+        return self.ridges["ridge"][mine], self.ridges[name][mine]
+
+    def arrays(self, name: str) -> dict[str, Array]:
+        """Return the arrays of ``surface`` or ``finger_…`` .
+
+        Raises:
+            FileNotFoundError: the run was made by a version that did not keep them.
+        """
+        with np.load(self.folder / f"{name}.npz") as file:
+            return dict(file)

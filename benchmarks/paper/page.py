@@ -1,0 +1,51 @@
+"""The page: our figures beside the paper's statements, with a verdict each."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from benchmarks.paper.statement import HOLDS, Statement
+
+_HEADER = """# The paper, reproduced
+
+Made by `make paper`; do not edit. [Forsbach, Heß and Papangelo 2023](https://doi.org/10.3389/fmech.2022.1074393) by
+our model with default options, contact size {size:g} µm. What the paper says is text; its figures' data are not
+published, so nothing here was fitted to them. The numbers unrounded: [paper.json](paper/paper.json).
+"""
+
+
+def _table(statements: Sequence[Statement]) -> str:
+    lines = ["| figure | the paper | ours | verdict |", "|---|---|---|---|"]
+    for s in statements:
+        because = f": {s.why}" if s.verdict != HOLDS and s.why else ""
+        lines.append(f"| {s.figure} | {s.paper} | {s.ours} | **{s.verdict}**{because} |")
+    return "\n".join(lines)
+
+
+def write(
+    docs: Path,
+    size: float,
+    statements: Sequence[Statement],
+    figures: Sequence[tuple[str, str]],
+    tables: str,
+    missing: str,
+) -> None:
+    """Write the page and its numbers.
+
+    Args:
+        docs: folder of the page; pictures are in ``paper`` below it.
+        size: contact size of the runs (m).
+        statements: in the order of the page.
+        figures: file names and captions, likewise.
+        tables: Tables 1 to 3 in Markdown.
+        missing: what has not been run, empty if nothing.
+    """
+    held = sum(s.verdict == HOLDS for s in statements)
+    parts = [_HEADER.format(size=size * 1e6), missing, f"{held} of {len(statements)} statements hold as they stand."]
+    parts += ["## Statements", _table(statements), "## Figures"]
+    parts += [f"![{caption}](paper/{name})\n\n*{caption}*" for name, caption in figures]
+    parts += ["## Parameters", tables]
+    (docs / "paper.md").write_text("\n\n".join(filter(None, parts)) + "\n", encoding="utf-8")
+    data = [asdict(s) for s in statements]
+    (docs / "paper" / "paper.json").write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")

@@ -1,0 +1,118 @@
+"""Fig. 2: what acts along the skin in normal contact, partial and full slip, and the air gaps of the ridges."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from benchmarks.paper.data import Array, Run
+from benchmarks.paper.statement import Statement, verdict
+from benchmarks.paper.style import BLUE, GREEN, PURPLE, VERMILION
+
+_STATES = {"normal": "frictional normal contact", "partial": "partial slip", "slip": "full slip"}
+_KPA, _MM, _UM = 1e3, 1e-3, 1e-6
+
+
+def _scale(run: Run, state: str) -> float:
+    """Return f_ext / L_R (Pa), by which the paper normalises."""
+    row = {"normal": run.normal, "slip": run.slip}.get(state)
+    if row is None:  # the step that is nearest to half of the points slipping, as the run chose it
+        moved = np.flatnonzero(np.abs(run.steps["bone_x"]) >= 1e-12)
+        row = int(moved[np.argmin(np.abs(run.steps["slipping"][moved] - 0.5))])
+    return float(run.steps["f_ext"][row] / run.steps["contact_length"][row])
+
+
+def figure_2(figure: Figure, run: Run) -> None:
+    """Draw pressure, attraction, elastic stress and shear over f_ext / L_R, and the gaps below."""
+    arrays = run.arrays("surface")
+    axes = figure.subplots(len(_STATES), 1, sharex=True)
+    for ax, (state, title) in zip(axes, _STATES.items(), strict=True):
+        _draw(
+            ax,
+            {k.removeprefix(f"{state}_"): v for k, v in arrays.items() if k.startswith(f"{state}_")},
+            _scale(run, state),
+        )
+        ax.set_title(f"{title}: f_ext/L_R = {_scale(run, state) / _KPA:.3g} kPa", loc="left")
+    x, p = arrays["normal_x"], arrays["normal_p"]
+    touching = x[np.nan_to_num(p) > 0] / _MM
+    axes[-1].set(xlabel="x on the screen (mm)", xlim=(touching.min() - 1, touching.max() + 1.5))
+    axes[0].legend(ncols=4, loc="upper center", bbox_to_anchor=(0.5, 1.6))
+
+
+def _draw(ax: Axes, a: Mapping[str, Array], scale: float) -> None:
+    x = a["x"] / _MM
+    ax.axhline(0, color="0.7", lw=0.8)
+    ax.plot(x, a["p"] / scale, color=BLUE, label="contact pressure p")
+    ax.plot(x, a["p_el"] / scale, color=VERMILION, ls="--", label="attraction σ_el")
+    ax.plot(x, (a["p"] - a["p_el"]) / scale, color="black", lw=0.8, label="elastic stress p − σ_el")
+    ax.plot(x, a["t"] / scale, color=PURPLE, ls="-.", label="shear t")
+    ax.set_ylabel("over f_ext/L_R (–)")
+    gap = ax.twinx()
+    touching = np.nan_to_num(a["p"]) > 0
+    gap.plot(x[touching], a["d_eq"][touching] / _UM, ".", ms=3, color=GREEN)
+    gap.set_ylabel("d_eq (µm)", color=GREEN)
+    gap.set_ylim(0, 4)
+
+
+def statements(run: Run) -> list[Statement]:
+    """Return the statements on one state of normal contact and its way to full slip."""
+    a = run.arrays("surface")
+    x, p, p_el, t = (a[f"normal_{name}"] for name in ("x", "p", "p_el", "t"))
+    known = np.isfinite(p)
+    x, p, p_el, t = x[known], p[known], p_el[known], t[known]
+    tension = float((p - p_el).min() / _scale(run, "normal"))
+    # Shear at -x against -shear at x, on the points in contact.
+    order = np.argsort(x)
+    mirrored = -np.interp(-x[order], x[order], t[order])
+    uneven = float(np.linalg.norm(t[order] - mirrored) / np.linalg.norm(t))
+    ridges, d_eq = run.on_ridges(run.normal, "d_eq")
+    central, outer = d_eq[np.abs(ridges) <= 2].mean(), d_eq[np.argsort(np.abs(ridges))[-4:]].mean()
+    _, sliding = run.on_ridges(run.slip, "d_eq")
+    both = np.concatenate([d_eq, sliding])
+    within = float(((both > 1.7 * _UM) & (both < 3 * _UM)).mean())
+    mu_0 = run.scene.friction
+    xs, ps, ts = (a[f"partial_{name}"] for name in ("x", "p", "t"))
+    on = np.nan_to_num(ps) > 0
+    slips = np.abs(ts[on]) >= mu_0 * ps[on] * (1 - 1e-6)
+    middle = (xs[on].min() + xs[on].max()) / 2
+    leading, trailing = (float(slips[side].mean()) for side in (xs[on] > middle, xs[on] < middle))
+    return [
+        Statement(
+            "2",
+            "d_eq mostly 1.7 to 3 µm",
+            f"{both.min() / _UM:.2f} to {both.max() / _UM:.2f} µm; {100 * within:.0f} % of the ridges are within",
+            {"share": within, "least": float(both.min()), "largest": float(both.max())},
+            verdict(within > 0.9, within > 0.5),
+            "ridges that bear more than 30 kPa have less than 1.7 µm",
+        ),
+        Statement(
+            "2",
+            "d_eq smallest at the central ridges, larger at the outer ones",
+            f"{central / _UM:.2f} µm on the five central ridges, {outer / _UM:.2f} µm on the four outermost",
+            {"central": float(central), "outer": float(outer)},
+            verdict(bool(central < outer)),
+        ),
+        Statement(
+            "2",
+            "elastic stress p − σ_el is tensile at ridge edges",
+            f"least value {tension:.2f} of f_ext/L_R",
+            {"tension": tension},
+            verdict(tension < 0),
+        ),
+        Statement(
+            "2",
+            "in normal contact the shear is point-symmetric",
+            f"its even part is {100 * uneven / 2:.2g} % of it",
+            {"even": uneven / 2},
+            verdict(uneven / 2 < 0.05, uneven / 2 < 0.2),
+        ),
+        Statement(
+            "2",
+            "tangentially loaded, slip spreads mostly from the leading edge",
+            f"in partial slip {100 * leading:.0f} % of the leading half slip, {100 * trailing:.0f} % of the trailing one",
+            {"leading": leading, "trailing": trailing},
+            verdict(leading > 1.2 * trailing, leading > trailing),
+            "the bone moves to x > 0, the leading half is that of larger x",
+        ),
+    ]

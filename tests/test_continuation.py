@@ -1,0 +1,60 @@
+"""Steps that are cut, leapt over, and given up, on a block that slides."""
+
+from functools import partial
+
+import pytest
+from mpi4py import MPI
+
+from geometry.benchmarks import block
+from geometry.mesh import load
+from tests.test_contact import H_0, HEIGHT, MU_F, WIDTH, make
+from variational.continuation import Continuation, StepFailed, Target
+from variational.coupling import Coupling
+from variational.failure import NotConverged
+from variational.quantities import Observer
+from variational.roughness.bam import BearingArea
+
+
+@pytest.fixture
+def sliding():
+    """Return a function that slides a pressed block by 0.6 mm, where solves in a range of loads fail."""
+
+    def slide(first, last, cycling):
+        solver = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), MU_F, 1e11, 1e10, held=False)
+        run = Continuation(Coupling(solver, Observer(solver.problem), BearingArea(H_0)))
+        run.run(Target("press", bone_height=-2e-6))
+        solve, reached = run.coupling.solve, []
+
+        def failing(creep=False):
+            if first <= solver.control.x <= last:
+                raise NotConverged("TEST", False, cycling=cycling)
+            solve(creep)
+
+        run.coupling.solve = failing
+        run.on_accept = lambda target, part, attempt: reached.append((solver.control.x, attempt))
+        run.run(Target("slide", bone_x=0.6e-3))
+        return reached
+
+    return slide
+
+
+def test_range_without_equilibrium_is_leapt_over(sliding):
+    """Steps of 60 um lead into it; one of 90 um leads over it, is said to have, and costs one failed attempt."""
+    reached = sliding(0.235e-3, 0.260e-3, cycling=True)
+    assert reached[-1][0] == pytest.approx(0.6e-3)
+    leaps = [(x, attempt) for x, attempt in reached if attempt.leapt]
+    assert [x for x, _ in leaps] == [pytest.approx(0.27e-3)]
+    assert [len(attempt.cutbacks) for _, attempt in reached if attempt.cutbacks] == [1]
+
+
+def test_range_too_wide_for_one_leap(sliding):
+    """Halved steps go up to it, until a leap from nearby leads over."""
+    reached = sliding(0.215e-3, 0.275e-3, cycling=True)
+    assert reached[-1][0] == pytest.approx(0.6e-3)
+    assert sum(attempt.leapt for _, attempt in reached) == 1
+
+
+def test_other_failures_are_not_leapt_over(sliding):
+    """Newton's method failing is no sign of an equilibrium further on: the step is halved, and at last given up."""
+    with pytest.raises(StepFailed, match="bone x 0.00023.* m: TEST"):
+        sliding(0.235e-3, 0.350e-3, cycling=False)
