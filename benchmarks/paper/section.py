@@ -110,7 +110,7 @@ def statements(run: Run) -> list[Statement]:
         Statement(
             "2",
             "tangentially loaded, slip spreads mostly from the leading edge",
-            f"in partial slip {100 * leading:.0f} % of the leading half slip, {100 * trailing:.0f} % of the trailing one",
+            f"in partial slip {100 * leading:.0f} % of the leading half, {100 * trailing:.0f} % of the trailing one",
             {"leading": leading, "trailing": trailing},
             verdict(leading > 1.2 * trailing, leading > trailing),
             "the bone moves to x > 0, the leading half is that of larger x",
