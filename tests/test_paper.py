@@ -1,0 +1,198 @@
+"""The paper's figures and statements from runs that are made up, so that their numbers are known."""
+
+import csv
+import json
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from benchmarks import reproduce
+from benchmarks.paper import friction, micro, page, scenes, sed, tables
+from benchmarks.paper.data import Run
+from benchmarks.paper.statement import HOLDS, IN_PART, NOT, Statement, verdict
+from benchmarks.traces import FORCES, VOLTAGES
+from fingerpad.scene import Scene, from_data
+from fingerpad.sweep import key
+
+MU_0 = 0.25
+
+
+def state(f_ext, voltage, lost=0.0, ridges=10.0):
+    """Return steps of a run in which attraction is U^2 / 1000 and contact 1 mm a ridge, less what sliding loses."""
+    f_t = MU_0 * (f_ext + voltage**2 / 1000)
+    length = 1e-3 * ridges * (1 + voltage / 1000)
+    rows = {
+        "f_t": [0.0, f_t / 2, f_t],
+        "contact_length": [length, length * (1 - lost / 3), length * (1 - lost)],
+        "ridges_in_contact": [ridges, ridges, ridges - 1],
+    }
+    steps = {name: np.array(values) for name, values in rows.items()} | {"mu_app": np.array(rows["f_t"]) / f_ext}
+    return SimpleNamespace(steps=steps, normal=0, slip=2)
+
+
+@pytest.fixture
+def grid():
+    """Runs that lose contact in proportion to their mean shear stress."""
+    found = {}
+    for f in FORCES:
+        for u in VOLTAGES:
+            plain = state(f, u)
+            x = plain.steps["f_t"][-1] / plain.steps["contact_length"][-1]
+            found[f, u] = state(f, u, lost=2e-5 * x)
+    return found
+
+
+def by(statements, words):
+    return next(s for s in statements if words in s.paper)
+
+
+def test_friction_statements(grid):
+    """The largest rise of F_T is that at the smallest force, where the attraction is eight times the force."""
+    found = by(friction.statements(grid), "more than 100 %")
+    assert found.numbers["largest"] == pytest.approx(1 + 40 / 5)
+    assert found.numbers["least"] == pytest.approx(1 + 40 / 150)
+    assert found.verdict == IN_PART
+    assert by(friction.statements(grid), "0.55").numbers["mu_app"] == pytest.approx(MU_0 * 115 / 75)
+    assert by(friction.statements(grid), "below 50 V").verdict == IN_PART
+    assert by(friction.statements(grid), "ridges fewer").numbers == {"least": 1, "largest": 1}
+
+
+def test_reduction_is_fitted(grid):
+    """Nearly linear, since the stress counts with the length that is left."""
+    found = friction.reduction(grid)
+    assert len(found.stress) == 40
+    assert found.slope == pytest.approx(2e-5, rel=0.1)
+    assert found.r_squared > 0.99
+
+
+def test_figures_are_drawn(grid):
+    for paint in (friction.figure_6, friction.figure_7, friction.figure_8):
+        figure = Figure()
+        paint(figure, grid)
+        assert all(ax.has_data() and ax.get_xlabel() for ax in figure.axes)
+    for paint in (micro.figure_4, micro.figure_5):
+        figure = Figure()
+        paint(figure)
+        assert all(ax.has_data() and ax.get_xlabel() for ax in figure.axes)
+
+
+def test_verdicts():
+    assert [verdict(True), verdict(False, True), verdict(False)] == [HOLDS, IN_PART, NOT]
+
+
+def test_threshold_statements():
+    """155.2 V by Eq. 15, 163.6 V by Eq. 9."""
+    numbers = by(micro.statements(), "155 V").numbers
+    assert numbers["eq_15"] == pytest.approx(155.2, abs=0.06)
+    assert numbers["eq_9"] == pytest.approx(163.6, abs=0.05)
+
+
+# -- measurements --------------------------------------------------------------------------------------
+def test_measured_friction_is_read_and_drawn(tmp_path, grid):
+    file = tmp_path / "somebody.csv"
+    file.write_text("force_N,voltage_V,friction_N\n0.5,0,0.14\n0.5,200,0.31\n")
+    measured = friction.Measured.read(file)
+    assert measured.label == "somebody"
+    assert list(measured.friction) == [0.14, 0.31]
+    figure = Figure()
+    friction.figure_6(figure, grid, measured)
+    labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert "somebody, 200 V" in labels
+
+
+@pytest.mark.parametrize("text", ["force_N,voltage_V\n1,0\n", "force_N,voltage_V,friction_N\n1,0,much\n", ""])
+@pytest.mark.filterwarnings("ignore:genfromtxt")
+def test_measured_friction_that_is_none(tmp_path, text):
+    file = tmp_path / "bad.csv"
+    file.write_text(text)
+    with pytest.raises(ValueError, match="bad.csv .*force_N"):
+        friction.Measured.read(file)
+
+
+# -- runs ----------------------------------------------------------------------------------------------
+def leave(out, scene, columns, **summary):
+    """Leave a run's tables in a sweep's folder."""
+    folder = out / key(scene)
+    folder.mkdir(parents=True)
+    (folder / "summary.json").write_text(json.dumps({"full_slip": True} | summary), encoding="utf-8")
+    for name, table in columns.items():
+        with (folder / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(table)
+            writer.writerows(zip(*table.values(), strict=True))
+
+
+def test_run_is_read(tmp_path):
+    scene = Scene()
+    steps = {
+        "step": [1, 2, 3, 4],
+        "load": ["press", "charge", "slide", "slide"],
+        "bone_x": [0, 0, 1e-4, 2e-4],
+        "all_slip": [False, False, False, True],
+    }
+    ridges = {
+        "step": [1, 2, 2, 4],
+        "ridge": [0, 0, 1, 1],
+        "d_eq": [3e-6, 2e-6, 2.5e-6, 2.6e-6],
+        "state": ["", "", "", ""],
+    }
+    receptors = {"step": [1, 1, 2, 2], "ridge": [0, 1, 0, 1], "merkel_sed": [1.0, 2.0, 3.0, 4.0]}
+    leave(tmp_path, scene, {"steps": steps, "ridges": ridges, "receptors": receptors})
+    run = Run(scene, tmp_path)
+    assert (run.normal, run.slip) == (1, 3)
+    assert [list(found) for found in run.on_ridges(1, "d_eq")] == [[0, 1], [2e-6, 2.5e-6]]
+    assert run.receptors["merkel_sed"].tolist() == [[1.0, 2.0], [3.0, 4.0]]
+    assert run.receptors["ridge"].tolist() == [0, 1]
+    assert sed.number(run, 0) == "M28"
+
+
+@pytest.mark.parametrize("summary", [{"failure": "stuck"}, {"interrupted": True}])
+def test_unfinished_run_is_refused(tmp_path, summary):
+    leave(tmp_path, Scene(), {}, **summary)
+    with pytest.raises(FileNotFoundError, match=key(Scene())):
+        Run(Scene(), tmp_path)
+
+
+def test_missing_runs_are_named(tmp_path):
+    """Without a run the microscale is drawn all the same, and the page says what is missing."""
+    book = reproduce.make(tmp_path / "runs", tmp_path, 10e-6, None)
+    text = (tmp_path / "paper.md").read_text(encoding="utf-8")
+    assert [name for name, _ in book.figures] == ["fig4.png", "fig5.png"]
+    assert "**Not run yet:** fig2" in text
+    assert all((tmp_path / "paper" / name).exists() for name, _ in book.figures)
+
+
+# -- scenes, tables, page ------------------------------------------------------------------------------
+def test_sine_is_a_valid_scene():
+    """From 0 V over the peak and back to 0 V, sliding on to full slip each time."""
+    loads = scenes.sine(10e-6).loads()
+    voltages = [load.voltage or 0.0 for load in loads[1:]]
+    assert voltages[0] == voltages[-1] == 0
+    assert max(voltages) == pytest.approx(scenes.PEAK)
+    assert all(load.until_full_slip for load in loads[1:])
+
+
+def test_every_parameter_has_a_source():
+    """What is called an assumption in its docstring is called one in the table."""
+    scene = from_data({})
+    for name in ("geometry", "materials", "electric", "roughness"):
+        for key_, _, source, told in tables.rows(getattr(scene, name), name):
+            assert told
+            if "*assumption*" in told.lower() and key_ not in ("roughness.beta", "materials.exponent"):
+                assert source == "*assumption*", key_
+    keys = {key_ for name in ("geometry", "roughness") for key_, *_ in tables.rows(getattr(scene, name), name)}
+    assert keys >= tables.ASSUMED
+
+
+def test_page(tmp_path):
+    (tmp_path / "paper").mkdir()
+    good = Statement("6", "it rises", "by 3 %", {"rise": 0.03}, HOLDS, "never shown")
+    bad = Statement("7", "it falls", "by 1 %", {"fall": 0.01}, NOT, "it is flat")
+    page.write(tmp_path, 10e-6, [good, bad], [("a.png", "A")], "tables", "")
+    text = (tmp_path / "paper.md").read_text(encoding="utf-8")
+    assert "1 of 2 statements" in text
+    assert "**does not hold**: it is flat" in text
+    assert "never shown" not in text
+    assert json.loads((tmp_path / "paper" / "paper.json").read_text(encoding="utf-8"))[1]["numbers"] == {"fall": 0.01}
