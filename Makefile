@@ -1,13 +1,14 @@
 # make demo   press, charge and slide the default finger; results in results/demo
 # make test   all tests, then those marked mpi on two ranks
 # make verify every number with a known answer, some minutes; docs/verification.md
+# make paper  every figure and table of the paper, beside what it says; docs/paper.md, up to two hours
 #
 # With SUITE=sid in Debian unstable, that is with a newer dolfinx: make test SUITE=sid
 # All need nothing but Debian 12, root, apt and PyPI: environment/run finds or makes what they run in.
 
 run := environment/run
 
-.PHONY: help demo test verify
+.PHONY: help demo test verify paper
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -21,3 +22,6 @@ test:
 
 verify:
 	$(run) python3 benchmarks/verify.py
+
+paper:
+	$(run) python3 benchmarks/reproduce.py

@@ -27,7 +27,7 @@ def figure_5(figure: Figure) -> None:
     """External pressure over equivalent air gap; the branch between the folds is unstable."""
     scene = Scene()
     bam = scene.roughness.bearing_area(scene.h_0)
-    u = np.linspace(bam.h_0 / 2, 14 * _UM, 4000)
+    u = np.linspace(bam.h_0 / 2, 16 * _UM, 4000)
     d = bam.air_gap(u)
     left, right = figure.subplots(1, 2)
     for voltage, (colour, _, dashes) in VOLTAGE.items():
@@ -39,14 +39,16 @@ def figure_5(figure: Figure) -> None:
         right.plot(d / _UM, unstable / _KPA, color=colour, lw=4, alpha=0.3)
         fold = bam.pull_off_fold(voltage)
         if fold is not None:
-            at = bam.air_gap(fold) / _UM, bam.external_pressure(fold, voltage) / _KPA
-            right.plot(*at, "o", color=colour, mfc="white", zorder=4)
-            right.annotate("pull-off", at, xytext=(6, -10), textcoords="offset points", fontsize=8)
+            on = int(np.flatnonzero(rising)[-1]) + 1
+            for name, at in (("pull-off", fold), ("pull-in", u[on])):
+                xy = bam.air_gap(at) / _UM, bam.external_pressure(at, voltage) / _KPA
+                right.plot(*xy, "o", color=colour, mfc="white", zorder=4)
+                right.annotate(f"{name}, {voltage:g} V", xy, xytext=(6, -10), textcoords="offset points", fontsize=8)
     for ax in (left, right):
         ax.axhline(0, color="0.7", lw=0.8, zorder=0)
         ax.set_xlabel("equivalent air gap $d_{eq}$ (µm)")
     left.set(ylabel="external pressure $p_{ext}$ (kPa)", xlim=(1.4, 5), ylim=(-5, 100))
-    right.set(xlim=(1.4, 16), ylim=(-4, 6), title="near zero; thick: unstable branch")
+    right.set(xlim=(1.4, 40), ylim=(-4.5, 6), title="near zero; thick: unstable branch")
     left.legend()
 
 
