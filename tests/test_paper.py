@@ -195,4 +195,5 @@ def test_page(tmp_path):
     assert "1 of 2 statements" in text
     assert "**does not hold**: it is flat" in text
     assert "never shown" not in text
+    assert "| equivalent air gap | 1.5e-6 | 2.5e-6 | m | Guo" in text
     assert json.loads((tmp_path / "paper" / "paper.json").read_text(encoding="utf-8"))[1]["numbers"] == {"fall": 0.01}

@@ -48,7 +48,7 @@ def figure_5(figure: Figure) -> None:
         ax.axhline(0, color="0.7", lw=0.8, zorder=0)
         ax.set_xlabel("equivalent air gap $d_{eq}$ (µm)")
     left.set(ylabel="external pressure $p_{ext}$ (kPa)", xlim=(1.4, 5), ylim=(-5, 100))
-    right.set(xlim=(1.4, 40), ylim=(-4.5, 6), title="near zero; thick: unstable branch")
+    right.set(xlim=(1.4, 46), ylim=(-4.5, 6), title="near zero; thick: unstable branch")
     left.legend()
 
 

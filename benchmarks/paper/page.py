@@ -1,5 +1,6 @@
 """The page: our figures beside the paper's statements, with a verdict each."""
 
+import csv
 import json
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -7,6 +8,7 @@ from pathlib import Path
 
 from benchmarks.paper.statement import HOLDS, Statement
 
+_PUBLISHED = Path(__file__).parent / "experiment" / "published.csv"
 _HEADER = """# The paper, reproduced
 
 Made by `make paper`; do not edit. [Forsbach, Heß and Papangelo 2023](https://doi.org/10.3389/fmech.2022.1074393) by
@@ -20,6 +22,14 @@ def _table(statements: Sequence[Statement]) -> str:
     for s in statements:
         because = f": {s.why}" if s.verdict != HOLDS and s.why else ""
         lines.append(f"| {s.figure} | {s.paper} | {s.ours} | **{s.verdict}**{because} |")
+    return "\n".join(lines)
+
+
+def published() -> str:
+    """Return the values measured by others as Markdown."""
+    lines = ["| quantity | from | to | unit (SI) | source |", "|---|---|---|---|---|"]
+    with _PUBLISHED.open(encoding="utf-8", newline="") as file:
+        lines += [f"| {' | '.join(row.values())} |" for row in csv.DictReader(file)]
     return "\n".join(lines)
 
 
@@ -45,6 +55,7 @@ def write(
     parts = [_HEADER.format(size=size * 1e6), missing, f"{held} of {len(statements)} statements hold as they stand."]
     parts += ["## Statements", _table(statements), "## Figures"]
     parts += [f"![{caption}](paper/{name})\n\n*{caption}*" for name, caption in figures]
+    parts += ["## Published measurements", published()]
     parts += ["## Parameters", tables]
     (docs / "paper.md").write_text("\n\n".join(filter(None, parts)) + "\n", encoding="utf-8")
     data = [asdict(s) for s in statements]
