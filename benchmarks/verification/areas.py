@@ -1,9 +1,9 @@
 """All cases, by area."""
 
-from benchmarks.verification import constitutive, invariance, microscale
+from benchmarks.verification import constitutive, invariance, microscale, tube
 from benchmarks.verification.case import Case
 
 AREAS: dict[str, tuple[Case, ...]] = {
-    "Constitutive": constitutive.CASES + invariance.CASES,
+    "Constitutive": constitutive.CASES + invariance.CASES + tube.CASES,
     "Microscale": microscale.CASES,
 }

@@ -11,6 +11,7 @@ from petsc4py import PETSc
 
 from geometry import tags
 from geometry.mesh import TaggedMesh, load
+from variational import jit
 from variational.penalty import Penalty
 from variational.problem import Interface, Ogden, Problem, SaintVenant
 from variational.solver import Solver
@@ -53,8 +54,8 @@ def nodal_forces(problem: Problem) -> Array:
     return np.asarray(fem.assemble_vector(problem.residual).array.reshape(-1, 2))
 
 
-class Loaded(Solver):
-    """A solver with dead loads on the nodes, of which the finger has none.
+class FreeSolver(Solver):
+    """A solver of a body that need not have a bone, with dead loads on its nodes, of which the finger has none.
 
     Attributes:
         load: nodal forces (N/m) as a vector of unknowns; zero where displacements are prescribed.
@@ -66,7 +67,7 @@ class Loaded(Solver):
         """Take the nodal forces of a linear form, UFL, in the displacement's test function."""
         self.load = self.layout.create_vector()
         self.load.set(0.0)
-        self.layout.add_to_unknowns(fem.assemble_vector(fem.form(form)).array, self.load)
+        self.layout.add_to_unknowns(fem.assemble_vector(fem.form(form, jit_options=jit.OPTIONS)).array, self.load)
         self.load.array_w[self.prescribed_rows() - self._first_row] = 0.0
 
     def _residual(self, snes: PETSc.SNES | None, x: PETSc.Vec, f: PETSc.Vec) -> None:
@@ -74,3 +75,9 @@ class Loaded(Solver):
         super()._residual(snes, x, f)
         if self.load is not None and not known:
             f.axpy(-1.0, self.load)
+
+    def assemble_tangent(self, A: PETSc.Mat) -> None:
+        """Make sure that the bone has a diagonal, which nothing else does where no facet is glued to it."""
+        for row in self.layout.rigid_rows:
+            A.setValue(row, row, 0.0, PETSc.InsertMode.ADD_VALUES)
+        super().assemble_tangent(A)

@@ -172,6 +172,6 @@ def three_terms(small: bool) -> Outcome:
 
 
 CASES = (
-    Case("Homogeneous states", f"{_OGDEN}, sections 4.3 and 7.2, in NumPy", modes),
+    Case("Homogeneous states", f"{_OGDEN}, chapters 4 and 7, in NumPy", modes),
     Case("Three Ogden terms", "Ogden 1972, doi 10.1098/rspa.1972.0026 (Treloar's rubber), in NumPy", three_terms),
 )

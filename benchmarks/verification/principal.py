@@ -5,7 +5,7 @@ r"""Ogden solids in principal stretches, differentiated by hand, in NumPy: what 
                 + K (J - 1) \frac{J}{\lambda_i}
 
 with i = 1, 2, 3 and :math:`\bar\lambda_i = J^{-1/3} \lambda_i`, all three stretches free (Ogden, Non-linear Elastic
-Deformations, 1984, section 7.2). Nothing here knows of plane strain, of the series about F = I or of the package.
+Deformations, 1984, chapters 4 and 7). Nothing here knows of plane strain, of the series about F = I or of the package.
 """
 
 from collections.abc import Sequence
