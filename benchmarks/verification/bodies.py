@@ -70,6 +70,13 @@ class FreeSolver(Solver):
         self.layout.add_to_unknowns(fem.assemble_vector(fem.form(form, jit_options=jit.OPTIONS)).array, self.load)
         self.load.array_w[self.prescribed_rows() - self._first_row] = 0.0
 
+    def start(self) -> None:
+        """Start from the problem's displacement and, if it has one, pressure; on one rank."""
+        self.layout.from_nodes(self.problem.u.x.array, np.zeros(2), self.x)
+        if self.problem.pressure:
+            rows = self.problem.pressure.rows(0)
+            self.x.array_w[rows[rows >= 0]] = self.problem.pressure.unknown.x.array[rows >= 0]
+
     def _residual(self, snes: PETSc.SNES | None, x: PETSc.Vec, f: PETSc.Vec) -> None:
         known = self._ahead  # then the load is in it
         super()._residual(snes, x, f)

@@ -72,7 +72,8 @@ def widen(element: str, divisions: int, poisson: float, widened: float, exact: E
         free = np.setdiff1d(driven, plane)
         fixed += held(2 * free + component, u[free, component])
     solver = FreeSolver(problem, NOTHING, 1.0, 1e-9, fixed)
-    solver.layout.from_nodes(u.ravel(), np.zeros(2), solver.x)
+    problem.u.x.array[:] = u.ravel()
+    solver.start()
     solver.solve()
     return Tube(problem, inner, X)
 
