@@ -1,6 +1,7 @@
 """Bodies without a screen: what the cases of solids and elements have in common."""
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import dolfinx
 import numpy as np
@@ -19,6 +20,7 @@ from variational.surface import Surface
 
 Array = NDArray[np.float64]
 Solid = Ogden | SaintVenant
+Held = tuple[NDArray[np.int32], float]
 NOTHING = np.empty(0, dtype=np.int32)  # facets of the bone's rim
 
 
@@ -44,9 +46,9 @@ def nodes_of(problem: Problem, facets: NDArray[np.int32]) -> NDArray[np.int32]:
     return np.asarray(fem.locate_dofs_topological(problem.V, 1, facets))
 
 
-def held(dofs: NDArray[np.int32], values: Array) -> list[tuple[NDArray[np.int32], float]]:
+def held(dofs: NDArray[np.int32], values: Array) -> list[Held]:
     """Return unknowns, each with a value of its own (m), as a solver takes them."""
-    return [(np.array([dof]), float(value)) for dof, value in zip(dofs, values, strict=True)]
+    return [(np.array([dof], dtype=np.int32), float(value)) for dof, value in zip(dofs, values, strict=True)]
 
 
 def nodal_forces(problem: Problem) -> Array:
@@ -61,7 +63,7 @@ class FreeSolver(Solver):
         load: nodal forces (N/m) as a vector of unknowns; zero where displacements are prescribed.
     """
 
-    load: PETSc.Vec | None = None
+    load: Any = None
 
     def set_load(self, form) -> None:
         """Take the nodal forces of a linear form, UFL, in the displacement's test function."""

@@ -15,6 +15,7 @@ In each, all three principal stresses are compared, the one normal to the plane 
 
 from collections.abc import Callable, Sequence
 from functools import cache
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -51,14 +52,14 @@ def in_package(solid: Solid, F: Array) -> tuple[Array, Array, Array, Array]:
     return one_term()(F, shear, a, solid.bulk)
 
 
-def shear(amounts: Array) -> Array:
+def shear(amounts: NDArray[Any]) -> Array:
     """Return simple shears, shape (n, 2, 2)."""
     F = np.tile(np.eye(2), (len(amounts), 1, 1))
     F[:, 0, 1] = amounts
     return F
 
 
-def stretched(one: Array, other: Array | float) -> Array:
+def stretched(one: NDArray[Any], other: NDArray[Any] | float) -> Array:
     """Return stretches along the axes, shape (n, 2, 2)."""
     F = np.zeros((len(one), 2, 2))
     F[:, 0, 0], F[:, 1, 1] = one, other
@@ -87,10 +88,9 @@ def compared(mode: str, solid: Solid, F: Array, ours: Array, tangent: Array) -> 
         tolerance = _ROUNDOFF * float(np.abs(A).max())
         error = np.abs(mine - theirs)
         shown = np.where((np.abs(theirs) > tolerance) | (error > tolerance), error, -1.0)
-        i, j = np.unravel_index(shown.argmax(), (3, 3))
-        quantity = f"{mode}, {solid.name}: sigma_{i + 1}{j + 1} (kPa)"
-        values = (float(value) / 1e3 for value in (mine[i, j], theirs[i, j], tolerance))
-        rows.append(Row(quantity, *values, _WHY, absolute=True))
+        k = int(shown.argmax())
+        quantity, pair = f"{mode}, {solid.name}: sigma_{k // 3 + 1}{k % 3 + 1} (kPa)", (mine.flat[k], theirs.flat[k])
+        rows.append(Row(quantity, pair[0] / 1e3, pair[1] / 1e3, tolerance / 1e3, _WHY, absolute=True))
     return rows
 
 
@@ -151,7 +151,7 @@ def three_terms(small: bool) -> Outcome:
     _, _, sigma, tangent = points(F_shear, solid.bulk)
     rows.append(worst(compared("simple shear 0 to 3", solid, F_shear, sigma, tangent)))
 
-    def incompressible(x: Array) -> Array:
+    def incompressible(x: NDArray[Any]) -> NDArray[Any]:
         return sum((mu * (x ** (a - 1) - x ** (-a - 1)) for mu, a in RUBBER), np.zeros_like(x))
 
     for x, ours in zip(stretches, P[:, 0, 0], strict=True):

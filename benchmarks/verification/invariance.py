@@ -31,7 +31,7 @@ from variational.solver import Solver
 
 Array = NDArray[np.float64]
 NAIL = (170e6, 0.3)
-SOLIDS = {
+SOLIDS: dict[int, Ogden | SaintVenant] = {
     tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53, 0.48),
     tags.DERMIS: Ogden(2.55e3, -14.53, 0.48),
     tags.NAIL: SaintVenant(*NAIL),
@@ -206,9 +206,11 @@ def tangent(small: bool) -> Outcome:
         problem = layered(element)
         solver = Solver(problem, NOTHING, 1.0)
         deform(problem)
-        K = dense(solver)
-        largest, quantity = np.array([np.abs(K).max()]), f"assembled tangent less its transpose, {element}"
-        matrices.append(apart(quantity, K[None], K.T[None], largest, 1e-14, "roundings of sums over triangles", _MESH))
+        matrix = dense(solver)
+        largest, quantity = np.array([np.abs(matrix).max()]), f"assembled tangent less its transpose, {element}"
+        matrices.append(
+            apart(quantity, matrix[None], matrix.T[None], largest, 1e-14, "roundings of sums over triangles", _MESH)
+        )
         if element in ("P1", "P2"):
             problem.u.x.array[:] = 0.0
             rows_ = solver.layout.rows

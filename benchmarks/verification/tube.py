@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from benchmarks.verification import orders
-from benchmarks.verification.bodies import NOTHING, FreeSolver, body, free_problem, held, nodal_forces, nodes_of
+from benchmarks.verification.bodies import NOTHING, FreeSolver, Held, body, free_problem, held, nodal_forces, nodes_of
 from benchmarks.verification.case import Case, Outcome, Row, worst
 from benchmarks.verification.shooting import ALPHA, AXIS, SHEAR, A, B, Exact, exact_tube, pressure_of_incompressible
 from geometry import tags
@@ -31,7 +31,7 @@ class Tube:
     """A computed quarter."""
 
     problem: Problem
-    inner: Array
+    inner: NDArray[np.int32]
     """Nodes."""
     X: Array
     """All nodes from the axis (m), shape (nodes, 2)."""
@@ -59,7 +59,7 @@ def widen(element: str, divisions: int, poisson: float, widened: float, exact: E
     X = problem.V.tabulate_dof_coordinates()[:, :2] - [0.0, AXIS]
     R = np.linalg.norm(X, axis=1)
     inner, outer = (nodes_of(problem, made.facet_tags.find(tag)) for tag in (tags.BONE_RIM, tags.ridge(0)))
-    left, low = np.flatnonzero(np.abs(X[:, 0]) < 1e-9), np.flatnonzero(np.abs(X[:, 1]) < 1e-9)
+    left, low = (np.flatnonzero(np.abs(X[:, k]) < 1e-9).astype(np.int32) for k in (0, 1))
     if exact is None:
         # Nodes amid a straight facet are within the circle: they move as those of an incompressible tube do.
         u = X * (np.sqrt(1 + (widened**2 - 1) * (A / R) ** 2) - 1)[:, None]
@@ -67,7 +67,7 @@ def widen(element: str, divisions: int, poisson: float, widened: float, exact: E
     else:
         u = exact(problem.V.tabulate_dof_coordinates().T).T
         driven = np.concatenate([inner, outer])
-    fixed = [(2 * left, 0.0), (2 * low + 1, 0.0)]
+    fixed: list[Held] = [(2 * left, 0.0), (2 * low + 1, 0.0)]
     for component, plane in ((0, left), (1, low)):
         free = np.setdiff1d(driven, plane)
         fixed += held(2 * free + component, u[free, component])
