@@ -9,9 +9,8 @@ interface loads under which it is in equilibrium are
 differentiated by UFL from the package's laws (Roache 2002, doi 10.1115/1.1436090). The computed displacement
 converges to it with the order p + 1 in L2 and p in H1; the pressure of the mixed pair with the order 2 in L2. The
 interface is resolved by the mesh. The kink is that of continuous tractions in linear elasticity, so that t is small:
-loads on the interface of the order of the moduli make it wrinkle, at every wavelength. Stretches reach from 0.78 to
-1.28. P3 is none of the package's elements, but its problem and solver take it as they
-take the others.
+dead loads on the interface of the order of the moduli make it wrinkle, the more modes the finer the mesh. Stretches
+reach from 0.78 to 1.28. P3 is none of the package's elements, but its problem and solver take it as the others.
 """
 
 from functools import partial

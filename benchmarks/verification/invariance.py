@@ -193,7 +193,7 @@ def tangent(small: bool) -> Outcome:
 
     pulled = []
     for solid in LAYERS:
-        for stretches in ((0.7, 1.2), (1.3, 0.9), (1.001, 1.0), (1.5, 1.5)):
+        for stretches in ((0.7, 1.2), (1.3, 0.9), (1.095, 0.905), (1.001, 1.0), (1.5, 1.5)):
             A = in_package(solid, np.diag(stretches)[None])[3][0]
             expected = moduli(solid, (*stretches, 1.0))[:2, :2]
             ours = np.einsum("iijj->ij", A)
