@@ -18,6 +18,7 @@ from variational import kinematics, stress
 from variational.cellwise import Cellwise
 from variational.element import ELEMENTS
 from variational.penalty import Penalty
+from variational.pressure import LayerwisePressure
 from variational.problem import Interface, Ogden, Problem, SaintVenant
 from variational.quantities import Observer
 from variational.solver import Control, Solver
@@ -213,6 +214,16 @@ def test_pressures_are_numbered_by_layer():
     solver, plain = layered("P2-P1"), layered("P2")
     assert MPI.COMM_WORLD.allreduce(solver.problem.pressure.owned) == 9 * 2 + 9 * 3
     assert solver.layout.global_size == plain.layout.global_size + 9 * 2 + 9 * 3
+
+
+def test_pressure_is_compiled_once():
+    """Its scale, which goes with the mesh and the moduli, is no part of the compiled forms."""
+    signatures = set()
+    for size in (0.25e-3, 0.125e-3):
+        body = load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, size))
+        pressure = LayerwisePressure(body.mesh, body.cell_tags, (tags.STRATUM_CORNEUM,), 1e9 * size)
+        signatures.add((pressure.p * ufl.dx).signature())
+    assert len(signatures) == 1
 
 
 # -- a layered ridge -----------------------------------------------------------------------------------

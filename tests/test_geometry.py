@@ -14,7 +14,7 @@ from pydantic import ValidationError
 from scipy.spatial import cKDTree
 
 from geometry import fingertip, tags
-from geometry.benchmarks import block, ridge
+from geometry.benchmarks import block, cooks_membrane, quarter_tube, ridge
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError, Profiles
@@ -333,6 +333,34 @@ def test_one_ridge():
     assert body.ridges() == [0]
 
 
+@pytest.mark.mpi
+def test_quarter_tube():
+    """Its arcs are 24 chords each, on its radii about an axis 4 mm up, its wall the area between; up to roundoff."""
+    body, n = load(MPI.COMM_WORLD, partial(quarter_tube, MM, 2 * MM, 24)), 24
+    assert body.mesh.topology.index_map(2).size_global == 2 * n**2
+    chord = 2 * n * np.sin(np.pi / 4 / n) * MM
+    assert lengths(body) == pytest.approx(
+        {tags.ridge(0): 2 * chord, tags.BONE_RIM: chord, tags.SIDES: 2 * MM}, rel=1e-9
+    )
+    area = n / 2 * np.sin(np.pi / 2 / n) * (4 - 1) * MM**2
+    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(area, rel=1e-9)
+    for tag, radius in ((tags.ridge(0), 2 * MM), (tags.BONE_RIM, MM)):
+        x = vertices(body, body.facet_tags.find(tag))
+        np.testing.assert_allclose(np.hypot(x[:, 0], x[:, 1] - 4 * MM), radius, rtol=1e-9)
+
+
+@pytest.mark.mpi
+def test_cooks_membrane():
+    """Its edges' lengths and its area, 48 mm times the mean of 44 and 16 mm; tolerance: roundoff."""
+    body = load(MPI.COMM_WORLD, partial(cooks_membrane, 3))
+    assert body.mesh.topology.index_map(2).size_global == 18
+    expected = {tags.ridge(0): np.hypot(48, 44), tags.BONE_RIM: 44.0, tags.SIDES: 16 + np.hypot(48, 16)}
+    assert lengths(body) == pytest.approx({tag: value * MM for tag, value in expected.items()}, rel=1e-9)
+    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(48 * 30 * MM**2, rel=1e-9)
+    lowest = MPI.COMM_WORLD.allreduce(float(body.mesh.geometry.x[:, 1].min()), op=MPI.MIN)
+    assert lowest == pytest.approx(10 * MM, rel=1e-9)
+
+
 @pytest.mark.parametrize("value", [0.0, -1e-3, float("nan"), float("inf")])
 @pytest.mark.parametrize(
     ("build", "name"), [(block, "width"), (block, "height"), (block, "size"), (ridge, "size"), (ridge, "amplitude")]
@@ -346,3 +374,8 @@ def test_verification_body_is_refused(build, name, value):
 def test_ridge_without_a_top_is_refused():
     with pytest.raises(GeometryError, match="amplitude is 0.001 m; it must be below the height, 0.0006 m"):
         ridge(10 * UM, amplitude=MM)
+
+
+def test_tube_without_a_wall_is_refused():
+    with pytest.raises(GeometryError, match="inner is 0.001 m; it must be below the outer radius, 0.001 m"):
+        quarter_tube(MM, MM, 4)

@@ -48,7 +48,8 @@ class LayerwisePressure:
         cells = mesh.topology.index_map(2).size_local
         smallest = np.min(mesh.h(2, np.arange(cells, dtype=np.int32)), initial=np.inf)
         self.unknown = fem.Function(fem.functionspace(mesh, ("Discontinuous Lagrange", 1)))
-        self.p = shear_modulus / min(mesh.comm.allgather(float(smallest))) * self.unknown
+        scale = shear_modulus / min(mesh.comm.allgather(float(smallest)))
+        self.p = fem.Constant(mesh, np.float64(scale)) * self.unknown  # as a number it would be compiled in
         self._vertices = fem.functionspace(mesh, ("Lagrange", 1)).dofmap
         self._cells = [cell_tags.find(tag) for tag in layers]
         self._touched = [self._owned_vertices(layer[layer < cells]) for layer in self._cells]

@@ -1,0 +1,69 @@
+"""The package's laws at any number of given deformation gradients: one to a cell of a mesh that is only a list."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import ufl
+from dolfinx import fem, mesh
+from mpi4py import MPI
+from numpy.typing import NDArray
+
+from variational import compat, jit, stress
+
+Array = NDArray[np.float64]
+
+
+class Points:
+    """Energy, stresses and tangent of a law; compiled once.
+
+    Each rank evaluates all points by itself.
+    """
+
+    def __init__(self, law: Callable[..., stress.Law], parameters: int) -> None:
+        """Compile.
+
+        Args:
+            law: gives the law for its parameters.
+            parameters: how many those are.
+        """
+        self._mesh = mesh.create_unit_square(MPI.COMM_SELF, 8, 8)
+        self._cells = np.arange(128, dtype=np.int32)
+
+        def field(*shape: int) -> fem.Function:
+            return fem.Function(fem.functionspace(self._mesh, ("Discontinuous Lagrange", 0, shape)))
+
+        self._F, self._parameters = field(2, 2), [field() for _ in range(parameters)]
+        made = law(*self._parameters)
+        F = ufl.variable(self._F)
+        P = stress.first_piola_kirchhoff(made, F)
+        tangent = ufl.diff(stress.first_piola_kirchhoff(made, F), F)
+        parts: list[Any] = [made.energy(F), P, stress.cauchy(made, F), tangent]
+        entries = [part[index] if index else part for part in parts for index in np.ndindex(part.ufl_shape)]
+        centre = np.array([[1 / 3, 1 / 3]])
+        self._compiled = fem.Expression(ufl.as_vector(entries), centre, jit_options=jit.OPTIONS)
+
+    def __call__(self, F: Array, *parameters: Any) -> tuple[Array, Array, Array, Array]:
+        """Return W (n,), P (n, 2, 2), sigma (n, 3, 3) and dP/dF (n, 2, 2, 2, 2), in Pa.
+
+        Args:
+            F: deformation gradients, (n, 2, 2).
+            parameters: of the law, each a number or of shape (n,).
+        """
+        results = []
+        for start in range(0, len(F), len(self._cells)):
+            part = slice(start, start + len(self._cells))
+            count = len(F[part])
+            self._F.x.array[:] = np.tile(np.eye(2).ravel(), len(self._cells))
+            self._F.x.array[: 4 * count] = F[part].ravel()
+            for function, value in zip(self._parameters, parameters, strict=True):
+                function.x.array[:] = 1.0
+                function.x.array[:count] = np.broadcast_to(value, (len(F),))[part]
+            results.append(compat.evaluate_on_cells(self._compiled, self._mesh, self._cells)[:count])
+        found = np.concatenate(results)
+        return (
+            found[:, 0],
+            found[:, 1:5].reshape(-1, 2, 2),
+            found[:, 5:14].reshape(-1, 3, 3),
+            found[:, 14:].reshape(-1, 2, 2, 2, 2),
+        )
