@@ -1,8 +1,10 @@
 """All cases, by area."""
 
-from benchmarks.verification import microscale
+from benchmarks.verification import friction, microscale, normal_contact
 from benchmarks.verification.case import Case
 
 AREAS: dict[str, tuple[Case, ...]] = {
+    "Normal contact": normal_contact.CASES,
+    "Friction": friction.CASES,
     "Microscale": microscale.CASES,
 }
