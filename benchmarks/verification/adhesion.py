@@ -69,11 +69,12 @@ def potential(small: bool) -> Outcome:
     for name, law in (("Eq. 3", ELECTROSTATIC), ("constant", dugdale.constant_attraction(0.2))):
         h_0 = _H_0 if law is ELECTROSTATIC else 3e-6
         interface = Interface(_CONTACT, 0.0, h_0, law)
-        problem = over_screen(partial(block, 1e-3, 0.5e-3, 0.125e-3), SaintVenant(1e6, 0.3), interface, 1.0).problem
+        run = over_screen(partial(block, 1e-3, 0.5e-3, 0.125e-3), SaintVenant(1e6, 0.3), interface, 1.0)
+        problem = run.problem
         problem.set_air_gaps(np.array([2e-6]))
         problem.u.interpolate(lambda x: np.stack([1e-2 * x[0], 3.3e-6 + 3e-6 * np.sin(7e3 * x[0] + 0.4) - 1e-3 * x[1]]))
         start = problem.u.x.array.copy()
-        way = np.random.default_rng(1).uniform(-1, 1, len(start))
+        way, up = np.random.default_rng(1).uniform(-1, 1, len(start)), np.tile([0.0, 1.0], len(start) // 2)
 
         def charged(form, problem=problem):
             """Return what the voltage adds to a form, a vector or a number."""
@@ -84,9 +85,14 @@ def potential(small: bool) -> Outcome:
                 values.append(assemble(form))
             return values[0] - values[1]
 
-        def energy(step: float, problem=problem, start=start, way=way, charged=charged) -> float:
+        def energy(step: float, way=way, problem=problem, start=start, charged=charged) -> float:
             problem.u.x.array[:] = start + step * way
             return float(charged(problem.energy))
+
+        problem.voltage.value = 200.0
+        pull = float(run.observer.ridge_loads().f_attraction[0])
+        lift = (energy(1e-9, up) - energy(-1e-9, up)) / 2e-9
+        problem.u.x.array[:] = start
 
         slope = float(charged(problem.residual) @ way)
         remainders = np.array([abs(energy(step) - energy(0.0) - step * slope) for step in steps])
@@ -97,6 +103,7 @@ def potential(small: bool) -> Outcome:
         rows.append(Row(f"order of Taylor's remainder, {name}", order, 2.0, 0.05, why, mesh, order, absolute=True))
         why = "central difference over 2 nm of laws that change over 1 um, and the energy's roundoff"
         rows.append(Row(f"slope along a random displacement, {name} (N/m)", slope, central, 1e-5, why, mesh))
+        rows.append(Row(f"resultant of the traction against lifting, {name} (N/m)", pull, lift, 1e-5, why, mesh))
     return Outcome(tuple(rows))
 
 
