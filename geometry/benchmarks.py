@@ -1,4 +1,6 @@
-"""Small verification bodies as gmsh models: a block, a single ridge, a quarter of a tube, Cook's membrane."""
+"""Small verification bodies as gmsh models: block, ridge, round pad, stepped foot, quarter tube, Cook's membrane."""
+
+from collections.abc import Sequence
 
 import gmsh
 import numpy as np
@@ -7,8 +9,8 @@ from geometry import tags
 from geometry.profiles import GeometryError
 
 _MM = 1e3  # gmsh's tolerances suit models in mm
-_SAMPLES = 128  # spline points of the ridge
-_GROWTH = 0.25  # increase of the element size per distance from the ridge's tip
+_SAMPLES = 128  # spline points of a curved bottom
+_GROWTH = 0.25  # increase of the element size per distance from what can touch
 _TOUCHING = 0.6  # part of the ridge's width, about its tip, that is meshed finely
 
 
@@ -37,7 +39,7 @@ def block(width: float, height: float, size: float, gap: float = 0.0) -> float:
     edges = [geo.addLine(corners[k], corners[(k + 1) % 4]) for k in range(4)]
     lengths = (width, height, width, height)
     body = _grid(edges, tuple(1 + int(np.ceil(length / size * (1 - 1e-9))) for length in lengths))
-    _groups(body, bottom=edges[0], right=edges[1], top=edges[2], left=edges[3])
+    _groups(body, [edges[0]], *edges[1:])
     gmsh.model.mesh.generate(2)
     return 1 / _MM
 
@@ -62,26 +64,109 @@ def ridge(size: float, width: float = 483e-6, height: float = 600e-6, amplitude:
     _refuse_non_positive(size=size, width=width, height=height, amplitude=amplitude)
     if amplitude >= height:
         raise GeometryError(f"amplitude is {amplitude:g} m; it must be below the height, {height:g} m")
-    geo = gmsh.model.geo
 
-    def bottom(x: float) -> int:
-        y = amplitude / 2 * (1 - np.cos(2 * np.pi * x / width))
-        return int(geo.addPoint(x * _MM, y * _MM, 0.0))
+    def bottom(x: float) -> tuple[float, float]:
+        return x, amplitude / 2 * (1 - np.cos(2 * np.pi * x / width))
 
     curve = [bottom(x) for x in np.linspace(-width / 2, width / 2, _SAMPLES + 1)]
-    right, left = (geo.addPoint(side * width / 2 * _MM, height * _MM, 0.0) for side in (1, -1))
-    corners = [curve[0], curve[-1], right, left]
-    edges = [geo.addSpline(curve), *(geo.addLine(corners[k], corners[(k + 1) % 4]) for k in (1, 2, 3))]
-    body = geo.addPlaneSurface([geo.addCurveLoop(edges)])
     half = _TOUCHING * width / 2
     tip = [bottom(x) for x in np.linspace(-half, half, 1 + int(np.ceil(4 * half / size)))]
-    _groups(body, bottom=edges[0], right=edges[1], top=edges[2], left=edges[3])
+    return _graded([(curve, 0)], height, size, tip, _GROWTH)
+
+
+def pad(size: float, facets: int, radius: float, span: float) -> float:
+    r"""Mesh a square block with a cylinder's bottom, :math:`y = x^2 / (2R)`, in the current gmsh session.
+
+    The tip is a node. Groups are those of :func:`block`.
+
+    Args:
+        size: length of the facets that can touch (m).
+        facets: how many of these are on either side of the tip.
+        radius: R (m).
+        span: width and height of the block (m).
+
+    Returns:
+        The length of gmsh's unit in m.
+
+    Raises:
+        GeometryError: a length is not positive, or the facets leave no flank.
+    """
+    _refuse_non_positive(size=size, facets=facets, radius=radius, span=span, flank=span / 2 - facets * size)
+
+    def bottom(x: float) -> tuple[float, float]:
+        return x, x**2 / (2 * radius)
+
+    ends = [-span / 2, -facets * size, facets * size, span / 2]
+    curves = [[bottom(x) for x in np.linspace(a, b, _SAMPLES + 1)] for a, b in zip(ends, ends[1:], strict=False)]
+    tip = [bottom(x) for x in np.linspace(ends[1], ends[2], 4 * facets + 1)]
+    return _graded(list(zip(curves, (0, 2 * facets, 0), strict=True)), span, size, tip, _GROWTH)
+
+
+def foot(size: float, half_width: float, step: float, span: float) -> float:
+    """Mesh a square block with a flat foot on the screen, the rest of its bottom recessed.
+
+    Groups are those of :func:`block`. The step is one facet long.
+
+    Args:
+        size: length of the facets at the foot's edges (m).
+        half_width: of the foot (m).
+        step: height of the recess (m).
+        span: width and height of the block (m).
+
+    Returns:
+        The length of gmsh's unit in m.
+
+    Raises:
+        GeometryError: a length is not positive, or the foot leaves no recess.
+    """
+    recess = span / 2 - half_width - size
+    _refuse_non_positive(size=size, half_width=half_width, step=step, span=span, recess=recess)
+    x = [-span / 2, -half_width - size, -half_width, half_width, half_width + size, span / 2]
+    corners = list(zip(x, [step, step, 0.0, 0.0, step, step], strict=True))
+    lines = [([a, b], one) for a, b, one in zip(corners, corners[1:], (0, 1, 0, 1, 0), strict=False)]
+    return _graded(lines, span, size, corners[1:-1], _GROWTH / 2)
+
+
+_Point = tuple[float, float]
+
+
+def _graded(
+    bottom: Sequence[tuple[Sequence[_Point], int]], height: float, size: float, fine: Sequence[_Point], growth: float
+) -> float:
+    """Mesh what lies between curves, each a spline through points (m), and a flat top.
+
+    Args:
+        bottom: the curves, from left to right, and the number of facets on each, 0 where the size decides.
+        height: of the top (m).
+        size: element size at the points ``fine`` (m).
+        fine: where elements are smallest.
+        growth: increase of the element size per distance from there.
+    """
+    geo = gmsh.model.geo
+
+    def add(point: _Point) -> int:
+        return int(geo.addPoint(point[0] * _MM, point[1] * _MM, 0.0))
+
+    first = add(bottom[0][0][0])
+    curves, last = [], first
+    for curve, facets in bottom:
+        points = [last, *(add(point) for point in curve[1:])]
+        curves.append(geo.addSpline(points))
+        last = points[-1]
+        if facets:
+            geo.mesh.setTransfiniteCurve(curves[-1], facets + 1)
+    right, left = (add((point[0], height)) for point in (bottom[-1][0][-1], bottom[0][0][0]))
+    corners = [last, right, left, first]
+    sides = [geo.addLine(*pair) for pair in zip(corners, corners[1:], strict=False)]
+    body = geo.addPlaneSurface([geo.addCurveLoop([*curves, *sides])])
+    points = [add(point) for point in fine]
+    _groups(body, curves, *sides)
 
     fields = gmsh.model.mesh.field
-    distance, growth = fields.add("Distance"), fields.add("MathEval")
-    fields.setNumbers(distance, "PointsList", tip)
-    fields.setString(growth, "F", f"{size * _MM} + {_GROWTH} * F{distance}")
-    fields.setAsBackgroundMesh(growth)
+    distance, slope = fields.add("Distance"), fields.add("MathEval")
+    fields.setNumbers(distance, "PointsList", points)
+    fields.setString(slope, "F", f"{size * _MM} + {growth} * F{distance}")
+    fields.setAsBackgroundMesh(slope)
     for option in ("MeshSizeExtendFromBoundary", "MeshSizeFromPoints", "MeshSizeFromCurvature"):
         gmsh.option.setNumber(f"Mesh.{option}", 0)
     gmsh.model.mesh.generate(2)
@@ -120,7 +205,7 @@ def quarter_tube(inner: float, outer: float, divisions: int) -> float:
         geo.addCircleArc(top[0], centre, right[0]),
     ]
     body = _grid(edges, (divisions + 1,) * 4)
-    _groups(body, bottom=edges[1], right=edges[0], top=edges[3], left=edges[2])
+    _groups(body, bottom=[edges[1]], right=edges[0], top=edges[3], left=edges[2])
     gmsh.model.mesh.generate(2)
     return 1 / _MM
 
@@ -146,7 +231,7 @@ def cooks_membrane(divisions: int, gap: float = 10e-3) -> float:
     corners = [geo.addPoint(x, y + low, 0.0) for x, y in ((0.0, 0.0), (48.0, 44.0), (48.0, 60.0), (0.0, 44.0))]
     edges = [geo.addLine(corners[k], corners[(k + 1) % 4]) for k in range(4)]
     body = _grid(edges, (divisions + 1,) * 4)
-    _groups(body, bottom=edges[0], right=edges[1], top=edges[3], left=edges[2])
+    _groups(body, bottom=[edges[0]], right=edges[1], top=edges[3], left=edges[2])
     gmsh.model.mesh.generate(2)
     return 1 / _MM
 
@@ -167,9 +252,9 @@ def _refuse_non_positive(**lengths: float) -> None:
             raise GeometryError(f"{name} is {value:g} m; it must be positive")
 
 
-def _groups(body: int, bottom: int, right: int, top: int, left: int) -> None:
+def _groups(body: int, bottom: list[int], right: int, top: int, left: int) -> None:
     gmsh.model.geo.synchronize()
     gmsh.model.addPhysicalGroup(2, [body], tags.STRATUM_CORNEUM, "stratum corneum")
-    gmsh.model.addPhysicalGroup(1, [bottom], tags.ridge(0), "ridge 0")
+    gmsh.model.addPhysicalGroup(1, bottom, tags.ridge(0), "ridge 0")
     gmsh.model.addPhysicalGroup(1, [top], tags.BONE_RIM, "bone rim")
     gmsh.model.addPhysicalGroup(1, [left, right], tags.SIDES, "sides")

@@ -1,5 +1,6 @@
 """The energy balance closes on smooth paths, each of its terms is a derivative, and a jump leaves what it releases."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -11,7 +12,9 @@ from geometry.benchmarks import block, ridge
 from geometry.mesh import load
 from tests import spring
 from tests.test_contact import HEIGHT, MU_F, WIDTH, make
-from variational.energy import Balance
+from variational import electroadhesion
+from variational.electroadhesion import Attraction
+from variational.energy import Balance, EnergyBook
 from variational.quantities import Observer
 from variational.solver import Control
 
@@ -173,3 +176,12 @@ def test_energy_released_by_pull_in(steps):
     assert released[jump] > 0
     assert released[jump] == pytest.approx(expected, abs=uncertain + 0.01 * expected)
     assert np.abs(np.delete(released, jump)).sum() < 0.02 * expected
+
+
+def test_another_attraction_is_refused():
+    """The book takes the work of the voltage from the electrostatic potential."""
+    problem = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3))).problem
+    other = Attraction(electroadhesion.attraction, lambda y, d_eq, voltage, h_0: -y)
+    problem.interface = replace(problem.interface, attraction=other)
+    with pytest.raises(ValueError, match="electrostatic attraction only"):
+        EnergyBook(problem, Observer(problem).state(), np.zeros(2), np.zeros(2), np.array([D_EQ]))

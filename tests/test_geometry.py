@@ -14,7 +14,7 @@ from pydantic import ValidationError
 from scipy.spatial import cKDTree
 
 from geometry import fingertip, tags
-from geometry.benchmarks import block, cooks_membrane, quarter_tube, ridge
+from geometry.benchmarks import block, cooks_membrane, foot, pad, quarter_tube, ridge
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError, Profiles
@@ -359,6 +359,41 @@ def test_cooks_membrane():
     assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(48 * 30 * MM**2, rel=1e-9)
     lowest = MPI.COMM_WORLD.allreduce(float(body.mesh.geometry.x[:, 1].min()), op=MPI.MIN)
     assert lowest == pytest.approx(10 * MM, rel=1e-9)
+
+
+def bottom(body) -> np.ndarray:
+    """Return the bottom's nodes from left to right, shape (nodes, 2)."""
+    nodes = vertices(body, body.facet_tags.find(tags.ridge(0)))[:, :2]
+    return nodes[np.argsort(nodes[:, 0])]
+
+
+def test_pad():
+    """Its bottom is a parabola, the facets beside the tip are as long as asked for, and the tip is a node."""
+    size, radius, span = 10 * UM, 0.1, 2 * MM
+    body = load(MPI.COMM_SELF, partial(pad, size, 8, radius, span))
+    x, y = bottom(body).T
+    np.testing.assert_allclose(y, x**2 / (2 * radius), atol=1e-6 * span)  # a spline's ends
+    np.testing.assert_allclose(x[np.abs(x) < 8.5 * size], size * np.arange(-8, 9), atol=1e-6 * size)
+    assert lengths(body)[tags.BONE_RIM] == pytest.approx(span, rel=1e-12)
+    assert lengths(body)[tags.SIDES] == pytest.approx(2 * (span - span**2 / 8 / radius), rel=1e-9)
+
+
+def test_foot():
+    """Flat within its half-width, recessed by the step a facet farther out. Tolerance: splines through two points."""
+    size, half_width, step, span = 10 * UM, 0.2 * MM, 2 * UM, 2 * MM
+    body = load(MPI.COMM_SELF, partial(foot, size, half_width, step, span))
+    x, y = bottom(body).T
+    np.testing.assert_allclose(y, np.where(np.abs(x) < half_width + size / 2, 0.0, step), atol=1e-9 * span)
+    assert np.abs(np.abs(x[y > step / 2]).min() - half_width - size) < 1e-9 * span
+    assert lengths(body)[tags.BONE_RIM] == pytest.approx(span, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("build", "name"), [(partial(pad, MM, 8, 0.1, 2 * MM), "flank"), (partial(foot, UM, MM, UM, MM), "recess")]
+)
+def test_body_without_its_sides_is_refused(build, name):
+    with pytest.raises(GeometryError, match=f"{name} is .*; it must be positive"):
+        build()
 
 
 @pytest.mark.parametrize("value", [0.0, -1e-3, float("nan"), float("inf")])

@@ -4,8 +4,9 @@ import json
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
-from benchmarks.verification import page
+from benchmarks.verification import dugdale, page
 from benchmarks.verification.areas import AREAS
 from benchmarks.verification.case import Case, Outcome, Row
 
@@ -18,6 +19,34 @@ def test_case(case):
     outcome = case.run(True)
     assert outcome.rows
     assert [f"{row.quantity}: {row.ours} instead of {row.reference}" for row in outcome.rows if not row.holds] == []
+
+
+def test_maugis_tractions():
+    """The reference's tractions bear its force and, by Flamant, close the gap in contact and leave h_0 at its end.
+
+    Tolerance: quadrature of weak singularities.
+    """
+    a, radius, e_star, sigma_0, h_0 = 3e-4, 0.1, 1.1e6, 2200.0, 4e-7
+    c = a * dugdale.ratio(a, radius, e_star, sigma_0, h_0)
+
+    def pressure(x):
+        if abs(x) >= a:
+            return -sigma_0
+        pull = np.arctan(np.sqrt((c**2 - a**2) / (a**2 - x**2)))
+        return e_star / (2 * radius) * np.sqrt(a**2 - x**2) - 2 * sigma_0 / np.pi * pull
+
+    def integral(f, *breaks):
+        ends = sorted({-c, -a, a, c, *breaks})
+        return sum(quad(f, *pair, limit=200, epsabs=0, epsrel=1e-9)[0] for pair in zip(ends, ends[1:], strict=False))
+
+    def gap(x):
+        sunk = integral(lambda s: pressure(s) * np.log(max(abs((x - s) / a), 1e-300)), x)
+        return x**2 / (2 * radius) - 2 / (np.pi * e_star) * sunk
+
+    expected = dugdale.force(a, radius, e_star, sigma_0, h_0)
+    assert integral(pressure) == pytest.approx(expected, rel=1e-7)
+    gaps = [gap(x) - gap(0.0) for x in (0.5 * a, a, c)]
+    assert gaps == pytest.approx([0.0, 0.0, h_0], abs=1e-7 * h_0)
 
 
 def test_names_are_files_names():

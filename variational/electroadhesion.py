@@ -15,6 +15,10 @@ screen that looks the same everywhere. With d_eq(p_c) there is no potential; the
 frozen in each solve.
 """
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
 import ufl
 
 VACUUM_PERMITTIVITY = 8.854e-12  # F/m, Table 3
@@ -44,3 +48,16 @@ def potential(y, d_eq, voltage, h_0):
     outside = -half / (h_0 + y)
     inside = -half / (h_0 + d_eq) - half / (h_0 + d_eq) ** 2 * (d_eq - y)
     return ufl.conditional(ufl.gt(y, d_eq), outside, inside)
+
+
+@dataclass(frozen=True)
+class Attraction:
+    """A law of attraction and its potential, UFL functions of (y, d_eq, voltage, h_0)."""
+
+    pressure: Callable[[Any, Any, Any, Any], Any]
+    """As :func:`attraction` (Pa of current area)."""
+    potential: Callable[[Any, Any, Any, Any], Any]
+    """As :func:`potential` (N/m per current dx): its derivative by y is the pressure."""
+
+
+ELECTROSTATIC = Attraction(attraction, potential)

@@ -30,7 +30,7 @@ from dolfinx import fem
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from variational.electroadhesion import VACUUM_PERMITTIVITY
+from variational.electroadhesion import ELECTROSTATIC, VACUUM_PERMITTIVITY
 from variational.problem import Problem
 from variational.quantities import SurfaceState
 
@@ -74,7 +74,13 @@ class EnergyBook:
     """Keeps the energies of accepted states; reads the problem and changes nothing in it."""
 
     def __init__(self, problem: Problem, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array) -> None:
-        """Start from an equilibrium; arguments as in :meth:`step`."""
+        """Start from an equilibrium; arguments as in :meth:`step`.
+
+        Raises:
+            ValueError: the attraction is not the electrostatic one, whose potential the book knows.
+        """
+        if problem.interface.attraction != ELECTROSTATIC:
+            raise ValueError("the energy balance knows the potential of the electrostatic attraction only")
         self._problem = problem
         self._last = self._state(surface, bone, reaction, d_eq)
 

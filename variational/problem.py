@@ -72,6 +72,8 @@ class Interface:
     """Friction coefficient."""
     h_0: float
     """Effective insulator thickness (m)."""
+    attraction: electroadhesion.Attraction = electroadhesion.ELECTROSTATIC
+    """What draws the skin to the screen."""
 
 
 class Problem:
@@ -150,7 +152,7 @@ class Problem:
         self.densities = {tags: law.energy(F, self.pressures[tags]) for tags, law in self.laws.items()}
 
         self.y = kinematics.current_height(mesh, u)
-        self.p_el = electroadhesion.attraction(self.y, self.d_eq, self.voltage, h_0)
+        self.p_el = interface.attraction.pressure(self.y, self.d_eq, self.voltage, h_0)
         normal = ufl.FacetNormal(mesh)
         self.area = kinematics.cofactor(F) * normal  # current per reference area, a vector
         skin = Skin(
@@ -167,7 +169,7 @@ class Problem:
         self.contact = Contact(skin, formulation.springs(skin), mu_f, self.guess)
         self.opening = formulation.opening(skin, self.contact)
         dS = surface.measure
-        energy += -electroadhesion.potential(self.y, self.d_eq, self.voltage, h_0) * self.area[1] * dS
+        energy += -interface.attraction.potential(self.y, self.d_eq, self.voltage, h_0) * self.area[1] * dS
         residual = ufl.derivative(energy, u, v) + formulation.virtual_work(skin, self.contact, v) * dS
         du = ufl.TrialFunction(self.V)
         jacobian = ufl.derivative(residual, u, du) + self.eta * ufl.dot(du, v) * dS

@@ -1,11 +1,26 @@
 """All cases, by area."""
 
-from benchmarks.verification import constitutive, cook, discretisation, energy, invariance, microscale, tube, two_scales
+from benchmarks.verification import (
+    adhesion,
+    constitutive,
+    cook,
+    discretisation,
+    energy,
+    friction,
+    invariance,
+    microscale,
+    normal_contact,
+    tube,
+    two_scales,
+)
 from benchmarks.verification.case import Case
 
 AREAS: dict[str, tuple[Case, ...]] = {
     "Constitutive": constitutive.CASES + invariance.CASES + tube.CASES,
     "Discretisation": discretisation.CASES + cook.CASES,
+    "Normal contact": normal_contact.CASES,
+    "Friction": friction.CASES,
+    "Adhesion": adhesion.CASES,
     "Microscale": microscale.CASES,
     "Two scales": two_scales.CASES,
     "Energy": energy.CASES,

@@ -1,0 +1,103 @@
+"""What the contact cases share: a body over the screen, led through loads, and what it bears."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from dolfinx import fem
+from mpi4py import MPI
+from numpy.typing import ArrayLike, NDArray
+
+from geometry import tags
+from geometry.mesh import load
+from variational.augmented import AugmentedLagrangian
+from variational.contact import Formulation
+from variational.continuation import Continuation
+from variational.coupling import Coupling
+from variational.nitsche import Nitsche
+from variational.penalty import Penalty
+from variational.problem import Interface, Ogden, Problem, SaintVenant
+from variational.quantities import Observer
+from variational.roughness.closure import AirGap
+from variational.solver import Solver
+from variational.surface import Surface
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Smooth:
+    """A screen and skin without roughness: one air gap (m) at any pressure."""
+
+    d_eq: float
+
+    def __call__(self, p_c: ArrayLike) -> AirGap:
+        """Return the air gap, which does not follow the pressure."""
+        none = np.zeros_like(np.asarray(p_c, dtype=np.float64))
+        return AirGap(none + self.d_eq, none)
+
+    def state(self, p_c: float, voltage: float) -> str:
+        """Have nothing to say."""
+        return ""
+
+
+def over_screen(
+    build: Callable[[], float],
+    solid: Ogden | SaintVenant,
+    interface: Interface,
+    force: float,
+    element: str = "P2",
+    held: bool = False,
+    d_eq: float = 1e-6,
+    tolerance: float = 1e-9,
+    **steps: Any,
+) -> Continuation:
+    """Return a body over the screen, unloaded.
+
+    Args:
+        build: makes the mesh.
+        solid: what the body is made of.
+        interface: laws of the contact.
+        force: what its forces are like (N/m).
+        element: a name of :data:`variational.element.ELEMENTS`.
+        held: whether the sides may not move sideways.
+        d_eq: air gap (m).
+        tolerance: part of ``force`` at which solves end.
+        steps: further arguments of :class:`variational.continuation.Continuation`.
+    """
+    body = load(MPI.COMM_SELF, build)
+    surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
+    problem = Problem(body.mesh, body.cell_tags, surface, {tags.STRATUM_CORNEUM: solid}, interface, element)
+    sides = fem.locate_dofs_topological(problem.V, 1, body.facet_tags.find(tags.SIDES))
+    fixed = [(2 * sides, 0.0)] if held else []
+    solver = Solver(problem, body.facet_tags.find(tags.BONE_RIM), force, tolerance, fixed)
+    return Continuation(Coupling(solver, Observer(problem), Smooth(d_eq)), **steps)
+
+
+def formulations(stiffness: float, depth: float) -> dict[str, Formulation]:
+    """Return each way of contact by name.
+
+    Args:
+        stiffness: of the skin over a facet's length (Pa/m).
+        depth: penetration (m) that the augmented Lagrangian leaves.
+    """
+    return {
+        "penalty": Penalty(100 * stiffness, 10 * stiffness),
+        "Nitsche 1": Nitsche(100.0, 1),
+        "Nitsche 0": Nitsche(10.0, 0),
+        "Nitsche -1": Nitsche(10.0, -1),
+        "augmented Lagrangian": AugmentedLagrangian(100 * stiffness, 10 * stiffness, depth),
+    }
+
+
+def profile(run: Continuation, values: Array) -> tuple[Array, Array]:
+    """Return abscissae (m) of the accepted skin's points, from left to right, and values there."""
+    x = run.surface_state.x.ravel()
+    order = np.argsort(x)
+    return x[order], values.ravel()[order]
+
+
+def plane_strain_modulus(young: float, poisson: float) -> float:
+    """Return E* (Pa) against a rigid plane."""
+    return young / (1 - poisson**2)
