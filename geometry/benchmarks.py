@@ -99,8 +99,8 @@ def pad(size: float, facets: int, radius: float, span: float) -> float:
         return x, x**2 / (2 * radius)
 
     ends = [-span / 2, -facets * size, facets * size, span / 2]
-    curves = [[bottom(x) for x in np.linspace(*pair, _SAMPLES + 1)] for pair in zip(ends, ends[1:], strict=False)]
-    tip = [bottom(x) for x in np.linspace(*ends[1:3], 4 * facets + 1)]
+    curves = [[bottom(x) for x in np.linspace(a, b, _SAMPLES + 1)] for a, b in zip(ends, ends[1:], strict=False)]
+    tip = [bottom(x) for x in np.linspace(ends[1], ends[2], 4 * facets + 1)]
     return _graded(list(zip(curves, (0, 2 * facets, 0), strict=True)), span, size, tip, _GROWTH)
 
 
