@@ -91,7 +91,7 @@ def formulations(stiffness: float, depth: float) -> dict[str, Formulation]:
     }
 
 
-def profile(run: Continuation, values: Array) -> tuple[Array, Array]:
+def profile(run: Continuation, values: NDArray[Any]) -> tuple[Array, NDArray[Any]]:
     """Return abscissae (m) of the accepted skin's points, from left to right, and values there."""
     x = run.surface_state.x.ravel()
     order = np.argsort(x)
