@@ -44,7 +44,10 @@ def test_conda(conda, project):
 
 def test_pypi(project):
     assert set(_split(project["project"]["dependencies"])) == _column(3, "run")
-    assert set(_split(project["project"]["optional-dependencies"]["test"])) == _column(3, "test")
+    extras = project["project"]["optional-dependencies"]
+    assert {name: set(_split(listed)) for name, listed in extras.items()} == {
+        name: _column(3, name) for name in ("test", "topography")
+    }
 
 
 def test_ranges_agree(conda, project):

@@ -1,0 +1,323 @@
+"""Height maps: trends, distribution, spectrum, fit, synthesis, files; and the benchmark that shows their bias."""
+
+import builtins
+import importlib
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from benchmarks import topography as benchmark
+from variational.roughness.bam import BearingArea
+from variational.roughness.heightfile import read
+from variational.roughness.selfaffine import SelfAffine, prefactor
+from variational.roughness.spectrum import power_spectrum, roughness_table
+from variational.roughness.topography import HeightMap, distribution
+
+UM = 1e-6
+SHAPE, SIZE = (256, 256), (800 * UM, 800 * UM)
+
+
+@pytest.fixture
+def rough() -> HeightMap:
+    return SelfAffine().surface(SHAPE, SIZE, seed=3)
+
+
+def grid(shape, size):
+    """Return x and y (m) of the pixels."""
+    return np.meshgrid(*(length / n * np.arange(n) for n, length in zip(shape, size, strict=True)), indexing="ij")
+
+
+def wave(shape=(48, 32), size=(60 * UM, 80 * UM), periods=(3, 2), amplitude=2 * UM) -> HeightMap:
+    x, y = grid(shape, size)
+    return HeightMap(amplitude * np.sin(2 * np.pi * (periods[0] * x / size[0] + periods[1] * y / size[1])), size)
+
+
+@pytest.mark.parametrize("trend", ["tilt", "curvature"])
+def test_a_trend_is_removed_exactly(trend):
+    """Polynomials of the trend's degree leave rounding errors of a projection, far below 1e-12 of their height."""
+    x, y = grid((20, 31), (100 * UM, 70 * UM))
+    h = 3 * UM + 0.02 * x - 0.1 * y
+    if trend == "curvature":
+        h = h + 300 * x**2 - 200 * x * y + 100 * y**2
+    flat = HeightMap(h, (100 * UM, 70 * UM)).detrended(trend)
+    assert np.abs(flat.heights).max() < 1e-12 * np.ptp(h)
+
+
+def test_a_lower_trend_leaves_a_paraboloid():
+    """x^2 without mean and tilt over [-L/2, L/2] is 1/sqrt(180) L^2 rms, up to 1/n^2 for the grid."""
+    x, _ = grid((200, 10), (1.0, 1.0))
+    assert HeightMap(x**2, (1.0, 1.0)).detrended("tilt").h_rms == pytest.approx(1 / np.sqrt(180), rel=1e-3)
+
+
+def test_distribution_of_a_sine():
+    """A sine has rms 1/sqrt(2), no skewness and kurtosis 3/2; whole periods make the sums exact."""
+    found = distribution(wave(amplitude=1.0))
+    assert (found.h_rms, found.skewness, found.kurtosis) == pytest.approx((np.sqrt(0.5), 0, 1.5), abs=1e-12)
+
+
+def test_distribution_of_gaussian_heights():
+    """N = 1e5 independent heights: skewness and kurtosis scatter by sqrt(6/N) and sqrt(24/N)."""
+    n = 100_000
+    found = distribution(HeightMap(2.0 + np.random.default_rng(0).normal(size=(400, 250)), (1.0, 1.0)))
+    assert abs(found.skewness) < 3 * np.sqrt(6 / n)
+    assert abs(found.kurtosis - 3) < 3 * np.sqrt(24 / n)
+    assert found.distance < 1.6 / np.sqrt(n)
+    assert np.sum(found.density * np.diff(found.edges)) == pytest.approx(1)
+
+
+def test_parseval(rough):
+    """Without a window the spectrum's sum is the mean square, to rounding; the radial average keeps the sum."""
+    spectrum = power_spectrum(rough)
+    assert spectrum.h_rms == pytest.approx(rough.h_rms, rel=1e-12)
+    ring = spectrum.radial()
+    assert np.sqrt(np.sum(ring.psd * ring.modes) / np.prod(SIZE)) == pytest.approx(rough.h_rms, rel=1e-12)
+
+
+def test_integral_over_wavevectors(rough):
+    """(1/2pi) int q C dq over rings: a tenth is what they miss of a lattice whose first rings hold few modes."""
+    ring = power_spectrum(rough).radial()
+    edges = np.sqrt(np.append(ring.q[:-1] * ring.q[1:], ring.q[-1] ** 2))
+    inner = np.append(ring.q[0] ** 2 / edges[0], edges[:-1])
+    total = np.sum(ring.psd * (edges**2 - inner**2) / 2) / (2 * np.pi)
+    assert np.sqrt(total) == pytest.approx(rough.h_rms, rel=0.1)
+
+
+def test_spectrum_of_a_sine():
+    """A sine of amplitude a has C = a^2 A / 4 at q and -q, and nothing else."""
+    m = wave()
+    psd = power_spectrum(m).psd
+    assert psd[3, 2] == pytest.approx((2 * UM) ** 2 * 60 * UM * 80 * UM / 4, rel=1e-12)
+    assert psd[3, 2] + psd[-3, -2] == pytest.approx(psd.sum(), rel=1e-12)
+    assert power_spectrum(m).q[3, 2] == pytest.approx(2 * np.pi * np.hypot(3 / (60 * UM), 2 / (80 * UM)))
+
+
+def test_hann_keeps_the_power_of_a_sine():
+    """<w^2> makes up for the window: a wave not at the lowest modes keeps its mean square exactly."""
+    m = wave()
+    assert power_spectrum(m, window="hann").h_rms == pytest.approx(m.h_rms, rel=1e-12)
+
+
+def test_hann_takes_away_the_jump_at_the_ends():
+    """A slope's jump falls as q^-2 without a window; with one it is below 1e-6 of that at the highest wavevectors."""
+    x, _ = grid((64, 64), (1.0, 1.0))
+    none, hann = (power_spectrum(HeightMap(x, (1.0, 1.0)), window=w).psd[32, 0] for w in ("none", "hann"))
+    assert hann < 1e-6 * none
+
+
+@pytest.mark.parametrize("plateau", [True, False])
+def test_prefactor_is_the_variance(plateau):
+    """The integral of q C over a fine grid of q to 1e5 q_0, where 1e-7 of the variance is left."""
+    kind = SelfAffine(plateau=plateau)
+    q = kind.q_0 * np.concatenate([np.linspace(1e-6, 1, 2000, endpoint=False), np.geomspace(1, 1e5, 200_000)])
+    assert np.trapezoid(q * kind.psd(q), q) / (2 * np.pi) == pytest.approx(kind.h_rms**2, rel=1e-3)
+
+
+def test_printed_prefactor_holds_57_percent_from_q0_up():
+    assert prefactor(0.75, plateau=True) / prefactor(0.75, plateau=False) == pytest.approx(1 / 1.75)
+    assert 3.1 * np.sqrt(1 / 1.75) == pytest.approx(2.34, abs=0.005)
+
+
+def test_seed():
+    one, same, other = (SelfAffine().surface((32, 32), SIZE, seed).heights for seed in (1, 1, 2))
+    assert np.array_equal(one, same) and not np.allclose(one, other)
+
+
+@pytest.mark.parametrize("plateau", [True, False])
+def test_surfaces_have_the_rms_asked_for(plateau):
+    """12 surfaces scatter by 2 % each (64 patches of lambda_0^2); three standard errors of the mean are 2 %."""
+    rms = [SelfAffine(plateau=plateau).surface(SHAPE, SIZE, seed).h_rms for seed in range(12)]
+    assert np.mean(rms) == pytest.approx(3.1 * UM, rel=0.02)
+
+
+def test_fit_recovers_a_surface():
+    """Three times the scatter found over 12 surfaces of four times the pixels, doubled for half the range of q."""
+    kind = SelfAffine(h_rms=2 * UM, hurst=0.6, wavelength=80 * UM)
+    fit = power_spectrum(kind.surface(SHAPE, SIZE, seed=5)).fit()
+    assert fit.resolved
+    assert fit.hurst == pytest.approx(0.6, abs=0.04)
+    assert fit.wavelength == pytest.approx(80 * UM, rel=0.15)
+    assert fit.h_rms(plateau=True) == pytest.approx(2 * UM, rel=0.1)
+
+
+def test_fit_of_a_surface_without_plateau():
+    """From q_0 up there is no roll-off to be seen; h_rms then comes from the other reading."""
+    kind = SelfAffine(plateau=False)
+    fit = power_spectrum(kind.surface(SHAPE, SIZE, seed=5)).fit((kind.q_0, 8 * kind.q_0))
+    assert not fit.resolved
+    assert fit.hurst == pytest.approx(0.75, abs=0.06)
+    assert fit.h_rms(plateau=False) == pytest.approx(3.1 * UM, rel=0.1)
+
+
+def test_fit_of_the_expected_spectrum_is_exact():
+    """Without scatter nothing is left but the search's tolerance, 1e-5 in H and in ln q_0."""
+    kind = SelfAffine()
+    spectrum = power_spectrum(kind.surface(SHAPE, SIZE, seed=0))
+    np.copyto(spectrum.psd, kind.psd(spectrum.q))
+    fit = spectrum.fit()
+    assert fit.hurst == pytest.approx(kind.hurst, abs=1e-4)
+    assert fit.wavelength == pytest.approx(kind.wavelength, rel=1e-3)
+    np.testing.assert_allclose(fit.psd(spectrum.q_range), kind.psd(spectrum.q_range), rtol=1e-3)
+
+
+def test_table_feeds_the_closure(rough):
+    """A map of many lambda_0 shows its roll-off. Three times the scatter of surfaces this large."""
+    table = roughness_table(rough)
+    closure = BearingArea(0.514 * UM, **table)
+    assert closure.h_rms == rough.detrended("curvature").h_rms == pytest.approx(3.1 * UM, rel=0.1)
+    assert closure.wavelength == pytest.approx(100 * UM, rel=0.2)
+
+
+def test_table_of_spots_takes_their_length(rough):
+    """Spots of lambda_0 cannot show a roll-off; the paper takes their length."""
+    spots = [rough.cut((i, j), (32, 32)) for i in (0, 64, 128) for j in (0, 64, 128)]
+    assert roughness_table(*spots)["wavelength"] == pytest.approx(100 * UM)
+
+
+def test_spot_bias_is_the_expected_one():
+    """Ensemble and sum over the spectrum: 256 spots of 3 surfaces scatter by 14 %; three standard errors are 6 %."""
+    kind = SelfAffine()
+    surfaces = [kind.surface(SHAPE, SIZE, seed) for seed in range(3)]
+    flat = [spot.detrended("curvature") for s in surfaces for spot in benchmark.spots(s, 100 * UM)]
+    found = np.sqrt(np.mean([m.h_rms**2 for m in flat]))
+    assert found == pytest.approx(benchmark.expected_rms(kind, 256, 32, "curvature"), rel=0.06)
+
+
+def test_a_spot_of_100_um_shows_2_2_um_of_3_1():
+    """With the plateau, the curvature removed; without the plateau it shows 2.7 um."""
+    with_plateau, without = (benchmark.expected_rms(kind, 256, 32, "curvature") for kind in benchmark.READINGS)
+    assert with_plateau == pytest.approx(2.2 * UM, abs=0.05 * UM)
+    assert without == pytest.approx(2.73 * UM, abs=0.05 * UM)
+
+
+@pytest.mark.parametrize(
+    ("heights", "size", "words"),
+    [
+        (np.full((4, 4), np.nan), (1.0, 1.0), "16 of 16 heights are missing"),
+        (np.zeros((4, 4)), (1.0, 0.0), "two positive lengths"),
+        (np.zeros((4, 4)), (1.0, np.nan), "two positive lengths"),
+        (np.zeros(16), (1.0, 1.0), r"shape \(16,\)"),
+        (np.zeros((2, 8)), (1.0, 1.0), "at least 3 x 3"),
+    ],
+)
+def test_bad_maps(heights, size, words):
+    with pytest.raises(ValueError, match=words):
+        HeightMap(heights, size)
+
+
+def test_nothing_to_analyse():
+    flat = HeightMap(np.zeros((32, 32)), (1.0, 1.0))
+    with pytest.raises(ValueError, match="no roughness"):
+        distribution(flat)
+    with pytest.raises(ValueError, match="no roughness"):
+        power_spectrum(flat).fit()
+    with pytest.raises(ValueError, match="factor of 3"):
+        power_spectrum(flat).fit((1.0, 2.9))
+    with pytest.raises(ValueError, match="same shape"):
+        power_spectrum(flat, wave())
+    with pytest.raises(ValueError, match="not inside"):
+        flat.cut((20, 0), (16, 16))
+    with pytest.raises(ValueError, match="too large"):
+        SelfAffine(plateau=False, wavelength=1 * UM).surface((8, 8), SIZE, 0)
+    with pytest.raises(ValueError, match="Hurst"):
+        SelfAffine(hurst=1.2)
+
+
+@pytest.mark.parametrize("name", ["map.npy", "map.txt", "map.csv"])
+def test_plain_files(tmp_path, name):
+    """Text keeps 18 digits, so nothing is lost."""
+    m, path = wave(), tmp_path / name
+    if path.suffix == ".npy":
+        np.save(path, m.heights)
+    else:
+        np.savetxt(path, m.heights, delimiter="," if path.suffix == ".csv" else " ")
+    found = read(path, m.size)
+    np.testing.assert_array_equal(found.heights, m.heights)
+    assert found.size == m.size
+
+
+def test_bad_files(tmp_path):
+    (tmp_path / "words.txt").write_text("no numbers")
+    np.save(tmp_path / "line.npy", np.zeros(9))
+    with pytest.raises(ValueError, match="give the lengths"):
+        read(tmp_path / "words.txt")
+    with pytest.raises(ValueError, match="no matrix of numbers"):
+        read(tmp_path / "words.txt", (1.0, 1.0))
+    with pytest.raises(ValueError, match="line.npy: heights have shape"):
+        read(tmp_path / "line.npy", (1.0, 1.0))
+    with pytest.raises(ValueError, match="has its own size"):
+        read(tmp_path / "scan.vk4", (1.0, 1.0))
+
+
+def test_without_the_optional_package(monkeypatch, tmp_path):
+    original = builtins.__import__
+
+    def missing(name, *args, **kwargs):
+        if name.startswith("SurfaceTopography"):
+            raise ImportError(name)
+        return original(name, *args, **kwargs)
+
+    monkeypatch.setattr(builtins, "__import__", missing)
+    with pytest.raises(ImportError, match=r"pip install fingerpad\[topography\]"):
+        read(tmp_path / "scan.vk4")
+
+
+@pytest.fixture
+def other():
+    return pytest.importorskip("SurfaceTopography", reason="pip install fingerpad[topography]")
+
+
+def test_same_as_surface_topography(other, rough):
+    """rms, spectrum mode by mode, its mean in rings and the heights without curvature: the same up to rounding."""
+    theirs = other.Topography(rough.heights, rough.size, unit="m", periodic=True)
+    ours = power_spectrum(rough)
+    assert theirs.Sq() == pytest.approx(rough.h_rms, rel=1e-12)
+    edges = 2 * np.pi / SIZE[0] * np.array([3.5, 7.5, 15.5, 31.5, 63.5])
+    _, rings, psd = theirs.power_spectrum_from_area(collocation=edges, return_map=True)
+    np.testing.assert_allclose(psd.ravel()[1:], ours.psd.ravel()[1:], rtol=1e-9)
+    means = [ours.psd[(ours.q >= a) & (ours.q < b)].mean() for a, b in zip(edges, edges[1:], strict=False)]
+    np.testing.assert_allclose(np.asarray(rings), means, rtol=1e-9)
+    flat = theirs.detrend("curvature").heights()
+    np.testing.assert_allclose(flat, rough.detrended("curvature").heights, atol=1e-9 * rough.h_rms)
+
+
+def test_fit_of_a_surface_made_by_surface_topography(other):
+    """Its generator is not ours: H, roll-off and rms are found as in our own surfaces, within three scatters."""
+    theirs = importlib.import_module("SurfaceTopography.Generation").fourier_synthesis(
+        SHAPE, SIZE, hurst=0.75, rms_height=3.1 * UM, long_cutoff=100 * UM, unit="m", rng=np.random.default_rng(2)
+    )
+    fit = power_spectrum(HeightMap(theirs.heights(), SIZE)).fit()
+    assert fit.hurst == pytest.approx(0.75, abs=0.04)
+    assert fit.wavelength == pytest.approx(100 * UM, rel=0.15)
+    assert fit.h_rms(plateau=True) == pytest.approx(3.1 * UM, rel=0.1)
+
+
+def test_instrument_files(other, tmp_path):
+    """A file in micrometres comes out in metres, to the rounding of the factor."""
+    m = wave()
+    kept = other.Topography(m.heights / UM, tuple(v / UM for v in m.size), unit="µm")
+    kept.to_netcdf(str(tmp_path / "map.nc"))
+    found = read(tmp_path / "map.nc")
+    np.testing.assert_allclose(found.heights, m.heights, atol=1e-12 * UM)
+    assert found.size == pytest.approx(m.size)
+    (tmp_path / "words.vk4").write_text("no map")
+    with pytest.raises(ValueError, match="no height map of a format"):
+        read(tmp_path / "words.vk4")
+
+
+def test_page_and_picture(tmp_path, monkeypatch):
+    monkeypatch.setattr(benchmark, "FINE", 256)
+    monkeypatch.setattr(benchmark, "COARSE", 256)
+    assert benchmark.main(["--surfaces", "1", "--docs", str(tmp_path)]) == 0
+    text = (tmp_path / "topography.md").read_text(encoding="utf-8")
+    assert text.count("| 100 |") == 2 and "57% of the variance" in text
+    assert (tmp_path / "topography.png").stat().st_size > 10_000
+
+
+def test_imports_without_dolfinx():
+    code = (
+        "import sys; import variational.roughness.spectrum, variational.roughness.heightfile; "
+        "sys.exit(any(m in sys.modules for m in ('dolfinx', 'petsc4py', 'mpi4py', 'ufl', 'SurfaceTopography')))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

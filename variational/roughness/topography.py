@@ -1,0 +1,124 @@
+r"""Height maps of a ridge's surface: what is taken away from them and how their heights are distributed.
+
+A map of heights h (m) over a rectangle loses its mean, its tilt or its curvature by least squares, that is by
+projection off the polynomials of degree 0, 1 or 2 (Forsbach et al. 2023, section 3.1,
+doi:10.3389/fmech.2022.1074393). Of what is left, with <.> the mean over the map,
+
+.. math:: h_{rms}^2 = \langle h^2 \rangle, \quad
+          S_{sk} = \langle h^3 \rangle / h_{rms}^3, \quad S_{ku} = \langle h^4 \rangle / h_{rms}^4
+
+(ISO 25178-2; 0 and 3 for a Gaussian). Removing a trend removes roughness too: docs/topography.md says how much.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
+
+Array = NDArray[np.float64]
+Trend = Literal["mean", "tilt", "curvature"]
+_DEGREE: dict[Trend, int] = {"mean": 0, "tilt": 1, "curvature": 2}
+
+
+@dataclass(frozen=True, eq=False)
+class HeightMap:
+    """Heights on a regular grid.
+
+    Raises:
+        ValueError: heights that are not a finite matrix of at least 3 x 3, or a size that is not positive.
+    """
+
+    heights: Array
+    """Heights (m), shape (nx, ny), positive outwards: those of a replica have to be inverted first."""
+    size: tuple[float, float]
+    """Lengths (m) of the map along x and y; a pixel is size / shape."""
+
+    def __post_init__(self) -> None:
+        heights = np.asarray(self.heights, dtype=float)
+        if heights.ndim != 2 or min(heights.shape) < 3:
+            raise ValueError(f"heights have shape {heights.shape}; a height map is a matrix of at least 3 x 3")
+        if missing := int(np.count_nonzero(~np.isfinite(heights))):
+            raise ValueError(f"{missing} of {heights.size} heights are missing or infinite; fill them in first")
+        if len(self.size) != 2 or not all(0 < length < np.inf for length in self.size):
+            raise ValueError(f"the size of a height map is two positive lengths in m, not {self.size}")
+        object.__setattr__(self, "heights", heights)
+        object.__setattr__(self, "size", (float(self.size[0]), float(self.size[1])))
+
+    @property
+    def pixel(self) -> tuple[float, float]:
+        """Lengths (m) of a pixel along x and y."""
+        (nx, ny), (lx, ly) = self.heights.shape, self.size
+        return lx / nx, ly / ny
+
+    @property
+    def h_rms(self) -> float:
+        """Root mean square height (m) about the mean."""
+        return float(self.heights.std())
+
+    def detrended(self, trend: Trend) -> "HeightMap":
+        """Return the map without the polynomials up to the degree that ``trend`` names (0, 1, 2)."""
+        basis = polynomials(self.heights.shape, _DEGREE[trend])
+        h = self.heights.ravel()
+        return HeightMap((h - basis @ (basis.T @ h)).reshape(self.heights.shape), self.size)
+
+    def cut(self, corner: tuple[int, int], shape: tuple[int, int]) -> "HeightMap":
+        """Return the part of ``shape`` pixels that begins at pixel ``corner``.
+
+        Raises:
+            ValueError: that part is not inside the map.
+        """
+        (i, j), (nx, ny) = corner, shape
+        if i < 0 or j < 0 or i + nx > self.heights.shape[0] or j + ny > self.heights.shape[1]:
+            raise ValueError(f"{nx} x {ny} pixels from {corner} are not inside a map of {self.heights.shape}")
+        return HeightMap(self.heights[i : i + nx, j : j + ny], (nx * self.pixel[0], ny * self.pixel[1]))
+
+
+def polynomials(shape: tuple[int, ...], degree: int) -> Array:
+    """Return the polynomials in x and y up to a total degree as orthonormal columns, one row a pixel of ``shape``."""
+    x, y = (np.linspace(-1, 1, n) for n in shape)
+    powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
+    columns = [np.multiply.outer(x**i, y**j).ravel() for i, j in powers]
+    return np.linalg.qr(np.stack(columns, axis=1))[0]
+
+
+@dataclass(frozen=True, eq=False)
+class Distribution:
+    """How the heights of one or more maps are distributed about their means."""
+
+    edges: Array
+    """Edges (m) of the histogram's bins."""
+    density: Array
+    """Probability density (1/m) in each bin; its integral is 1."""
+    h_rms: float
+    """Root mean square height (m)."""
+    skewness: float
+    kurtosis: float
+    """Fourth moment over h_rms^4: 3 for a Gaussian."""
+    distance: float
+    """Largest difference of the cumulative distribution from the Gaussian's of the same h_rms (Kolmogorov's)."""
+
+    def gaussian(self, height: Array) -> Array:
+        """Return the Gaussian's density (1/m) of the same h_rms at heights (m)."""
+        return np.asarray(np.exp(-((height / self.h_rms) ** 2) / 2) / (np.sqrt(2 * np.pi) * self.h_rms))
+
+
+def distribution(*maps: HeightMap, bins: int = 60) -> Distribution:
+    """Return the distribution of the heights of all maps together, each about its own mean.
+
+    Raises:
+        ValueError: no maps, or flat ones.
+    """
+    if not maps:
+        raise ValueError("a distribution of heights needs at least one map")
+    h = np.sort(np.concatenate([(m.heights - m.heights.mean()).ravel() for m in maps]))
+    h_rms = float(np.sqrt(np.mean(h**2)))
+    if h_rms == 0:
+        raise ValueError("all heights are the same; there is no roughness to describe")
+    density, edges = np.histogram(h, bins=bins, density=True)
+    z = h / h_rms
+    below = np.arange(len(z) + 1) / len(z)
+    gaussian = ndtr(z)
+    distance = max(np.max(below[1:] - gaussian), np.max(gaussian - below[:-1]))
+    return Distribution(edges, density, h_rms, float(np.mean(z**3)), float(np.mean(z**4)), float(distance))
