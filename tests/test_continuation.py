@@ -58,3 +58,14 @@ def test_other_failures_are_not_leapt_over(sliding):
     """Newton's method failing is no sign of an equilibrium further on: the step is halved, and at last given up."""
     with pytest.raises(StepFailed, match="bone x 0.00023.* m: TEST"):
         sliding(0.235e-3, 0.350e-3, cycling=False)
+
+
+def test_target_that_is_reached_already():
+    """A load that changes nothing, such as a charge to 0 V, is one step."""
+    solver = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), held=False)
+    run = Continuation(Coupling(solver, Observer(solver.problem), BearingArea(H_0)))
+    run.run(Target("press", f_ext=1.0))
+    for target in (Target("charge", voltage=0.0), Target("stay", f_ext=1.0), Target("stand", bone_x=0.0)):
+        before = run.steps
+        run.run(target)
+        assert run.steps == before + 1

@@ -186,18 +186,19 @@ class Continuation:
 
     def _largest_step(self, target: Target) -> float:
         """Return the largest part of a target that one step may cover."""
-        a, steps = self._now, [np.inf]
+        a = self._now
+        steps: list[tuple[float, float]] = []  # how far one step may go, and how far the target is
         if target.f_ext is not None:
-            change = abs(np.sqrt(target.f_ext) - np.sqrt(max(a.control.force, 0.0)))
-            steps.append(_FORCE * np.sqrt(max(target.f_ext, a.control.force, 1e-300)) / max(change, 1e-300))
+            roots = np.sqrt(target.f_ext), np.sqrt(max(a.control.force, 0.0))
+            steps.append((_FORCE * max(roots), abs(roots[0] - roots[1])))
         if target.voltage is not None:
-            change = abs(target.voltage**2 - a.voltage**2)
-            steps.append(_VOLTAGE * max(target.voltage, a.voltage, 1e-300) ** 2 / max(change, 1e-300))
+            squares = target.voltage**2, a.voltage**2
+            steps.append((_VOLTAGE * max(squares), abs(squares[0] - squares[1])))
         if target.bone_height is not None:
-            steps.append(_SINK / max(abs(target.bone_height - self._height()), 1e-300))
+            steps.append((_SINK, abs(target.bone_height - self._height())))
         if target.bone_x is not None:
-            steps.append(_SLIDE / max(abs(target.bone_x - a.control.x), 1e-300))
-        return float(min(1.0, self.step_scale * min(steps)))
+            steps.append((_SLIDE, abs(target.bone_x - a.control.x)))
+        return float(min([1.0, *(self.step_scale * most / whole for most, whole in steps if whole > 0)]))
 
     def _reach(self, target: Target) -> None:
         at, largest = self._loads(target), self._largest_step(target)
