@@ -17,6 +17,13 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
+VARIANTS = {
+    "current area": "contact pressure and friction per current area",
+    "nodes": "integrals over the skin by Simpson's rule, whose points are nodes",
+    "as installed": "the program's own element, known to be wrong",
+}
+
+
 @dataclass(frozen=True)
 class Load:
     """Where the top is taken by a step, and the sides, in x, with it; a load with a name is reported."""
@@ -43,8 +50,8 @@ class Case:
     poisson: float = 0.48
     eps_n: float = 1000.0
     eps_t: float = 100.0
-    current_area: bool = False
-    """Whether contact pressure and friction are per current area instead (for programs that can)."""
+    variant: str = ""
+    """A deviation that explains another program's: one of VARIANTS, for the programs that can."""
 
     @property
     def bulk_modulus(self) -> float:

@@ -1,6 +1,10 @@
 """The ridge in FElupe: its Ogden law, differentiated by tensortrax, and its own contact with a rigid plane.
 
-That contact is between nodes and a plane, its stiffness one number per node. So that it is a penalty per area, every
+In FElupe 11.3.0 the derivative by s of the quadratic triangle's last shape function, 4 s (1 - r - s), is 4 (1 - 2r - s)
+instead of 4 (1 - r - 2s): gradients of quadratic fields are wrong. The element is corrected here; the variant "as
+installed" shows what the slip does.
+
+The contact is between nodes and a plane, its stiffness one number per node. So that it is a penalty per area, every
 node of the skin gets a plane of its own, with the penalty times the area that belongs to the node: the weights of
 Simpson's rule, by which the middle of an edge has 2/3 of its length and each end 1/6. A node that touches during a step
 is taken to be dragged from the moment of the touch, found by interpolation, not from the beginning of the step.
@@ -13,6 +17,25 @@ from benchmarks.peers.exchange import Answer, Case, Ridge, State, main, steps
 
 _TOLERANCE = 1e-10  # norm of the imbalance over that of the reactions
 _MOST = 60  # iterations a step
+
+
+class CorrectedTriangle(fem.QuadraticTriangle):
+    """The quadratic triangle with the derivatives of its own shape functions."""
+
+    def gradient(self, rs):
+        """Return the derivatives of the shape functions at (r, s), shape (6, 2)."""
+        r, s = rs
+        t = 1 - r - s
+        return np.array(
+            [
+                [1 - 4 * t, 1 - 4 * t],
+                [4 * r - 1, 0],
+                [0, 4 * s - 1],
+                [4 * (t - r), -4 * r],
+                [4 * s, 4 * r],
+                [-4 * s, 4 * (t - s)],
+            ]
+        )
 
 
 def areas(ridge: Ridge) -> tuple[np.ndarray, np.ndarray]:
@@ -28,7 +51,8 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     """Lead the ridge along the loads."""
     plane = len(ridge.points)  # the node that is the plane
     mesh = fem.Mesh(np.vstack([ridge.points, [0.0, 0.0]]), ridge.triangles, "triangle6")
-    region = fem.RegionQuadraticTriangle(mesh)
+    element = fem.QuadraticTriangle() if case.variant == "as installed" else CorrectedTriangle()
+    region = fem.Region(mesh, element, fem.TriangleQuadrature(order=2))
     u = fem.FieldPlaneStrain(region, dim=2)
     field = fem.FieldContainer([u])
     law = fem.Hyperelastic(fem.ogden, mu=[case.shear_modulus], alpha=[case.exponent])

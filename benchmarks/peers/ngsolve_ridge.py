@@ -15,6 +15,7 @@ _DELTA = 1e-6
 _TOLERANCE = 1e-12  # N/mm, norm of the nodal imbalance
 _MOST = 60  # iterations a step
 _POINTS = 4  # Gauss points on an edge
+_SIMPSON = ng.IntegrationRule([(0.0,), (0.5,), (1.0,)], [1 / 6, 2 / 3, 1 / 6])
 _TRIANGLE = ng.IntegrationRule([(1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3)], [1 / 6] * 3)
 
 
@@ -53,9 +54,9 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     V = ng.VectorH1(mesh, order=2, dirichletx="top|sides", dirichlety="top")
     u, v = V.TnT()
     now = ng.GridFunction(V)
-    edge = ng.IntegrationRule(ng.SEGM, 2 * _POINTS - 1)
-    places = ng.comp.IntegrationRuleSpaceSurface(mesh, order=_POINTS - 1, definedon=mesh.Boundaries("skin"))
-    if places.ndof != _POINTS * len(ridge.skin):
+    edge = _SIMPSON if case.variant == "nodes" else ng.IntegrationRule(ng.SEGM, 2 * _POINTS - 1)
+    places = ng.comp.IntegrationRuleSpaceSurface(mesh, order=len(edge.points) - 1, definedon=mesh.Boundaries("skin"))
+    if places.ndof != len(edge.points) * len(ridge.skin):
         raise RuntimeError("friction's history has other points than the integrals over the skin")
     anchor = ng.GridFunction(places)
 
@@ -66,7 +67,7 @@ def solve(case: Case, ridge: Ridge) -> Answer:
         limit, trial = case.mu_f * p, case.eps_t * (anchor - displacement[0])
         t = ng.IfPos(trial - limit, limit, ng.IfPos(-limit - trial, -limit, trial))
         tangent = ng.specialcf.tangential(2)
-        stretch = ng.Norm(tangent + gradient * tangent) if case.current_area else ng.CF(1.0)
+        stretch = ng.Norm(tangent + gradient * tangent) if case.variant == "current area" else ng.CF(1.0)
         return stretch * t, stretch * p, t
 
     loaded = ng.BilinearForm(V)
