@@ -70,3 +70,77 @@ def deck(case: Case, ridge: Ridge) -> str:
             lines += ["*NODE PRINT, NSET=SKIN, FREQUENCY=999", "U", "*CONTACT PRINT, FREQUENCY=999", "CDIS"]
         lines.append("*END STEP")
     return "\n".join(lines) + "\n"
+
+
+def blocks(text: str) -> Iterator[tuple[str, float, list[list[float]]]]:
+    """Yield the tables of a .dat file: heading, total time (a step takes 1), rows."""
+    heading, time, rows = "", 0.0, list[list[float]]()
+    for line in text.splitlines():
+        if " time " in line:
+            if heading:
+                yield heading, time, rows
+            heading, _, end = line.strip().rpartition(" time ")
+            time, rows = float(end), []
+        elif line.strip():
+            rows.append([float(word) for word in line.split()])
+    if heading:
+        yield heading, time, rows
+
+
+def on_skin(ridge: Ridge, u: np.ndarray, gaps: Iterable[list[float]], stresses: Iterable[list[float]]) -> np.ndarray:
+    """Return abscissa (mm), pressure and friction (MPa of reference area) of each contact point, by abscissa.
+
+    CalculiX prints a point's element, face and gap, but not where on the face it is: that is found by the gap.
+    """
+    of_face = {frozenset(edge[:2]): edge for edge in ridge.skin.tolist()}
+    xi = np.linspace(0.0, 1.0, 401)
+    shapes = np.array([(1 - xi) * (1 - 2 * xi), xi * (2 * xi - 1), 4 * xi * (1 - xi)])
+    slopes = np.array([4 * xi - 3, 4 * xi - 1, 4 - 8 * xi])
+    points = set()
+    for (cell, face, gap, *_), (*_, pressure, friction, _) in zip(gaps, stresses, strict=True):
+        corners = ridge.triangles[int(cell) - 1, :3].tolist()
+        side = int(face) - 3  # of the prism's faces, the first two are the triangles
+        edge = of_face[frozenset((corners[side], corners[(side + 1) % 3]))]
+        place = ridge.points[edge] + u[edge]
+        k = int(np.argmin(np.abs(shapes.T @ place[:, 1] - gap)))
+        length = np.linalg.norm(ridge.points[edge[1]] - ridge.points[edge[0]])
+        stretch = float(np.linalg.norm(slopes[:, k] @ place) / length)
+        points.add((float(shapes[:, k] @ place[:, 0]), pressure * stretch, friction * stretch))
+    return np.array(sorted(points))
+
+
+def solve(case: Case, ridge: Ridge) -> Answer:
+    """Lead the ridge along the loads."""
+    with tempfile.TemporaryDirectory() as folder:
+        job = Path(folder) / _JOB
+        job.with_suffix(".inp").write_text(deck(case, ridge), encoding="ascii")
+        run = subprocess.run(["ccx", "-i", _JOB], cwd=folder, capture_output=True, text=True, check=False)
+        if "Job finished" not in run.stdout:
+            raise RuntimeError("CalculiX: " + "; ".join(run.stdout.split("\n")[-12:]))
+        tables = list(blocks(job.with_suffix(".dat").read_text(encoding="ascii")))
+        summary = [line.split() for line in job.with_suffix(".sta").read_text(encoding="ascii").splitlines()[2:]]
+    version = subprocess.run(["ccx", "-v"], capture_output=True, text=True, check=False).stdout.split()[-1]
+    answer = Answer("CalculiX", version, "GPL 2 or later", iterations=sum(int(row[3]) for row in summary))
+    for step, load in enumerate(case.loads, start=1):
+        if not load.name:
+            continue
+        found = {heading.split()[0] + heading.split()[1]: rows for heading, time, rows in tables if round(time) == step}
+        u = np.full((len(ridge.points), 2), np.nan)
+        for node, *components in found["displacements(vx,vy,vz)"]:
+            u[int(node) - 1] = components[:2]
+        forces = np.array(found["forces(fx,fy,fz)"])[:, 1:].sum(axis=0)
+        x, p, t = on_skin(ridge, u, found["relativecontact"], found["contactstress"]).T
+        answer.states.append(
+            State(
+                load.name,
+                -float(forces[1]),
+                -float(forces[0]),
+                u[ridge.skin.ravel()].tolist(),
+                *(values.tolist() for values in (x, p, t)),
+            )
+        )
+    return answer
+
+
+if __name__ == "__main__":
+    main(solve)

@@ -2,7 +2,8 @@ r"""The ridge in NGSolve: energies and weak forms written in its own symbols.
 
 The stretches are those of the eigenvalues of C, :math:`\lambda^2 = \tfrac12 \mathrm{tr} C \pm r` with
 :math:`r^2 = \tfrac14 (C_{11} - C_{22})^2 + C_{12}^2 + \delta^2`: delta keeps the root's derivatives finite where the
-two coincide and changes the energy by G_0 delta^2. Friction anchors are values at the integration points of the skin.
+two coincide and changes the energy by G_0 delta^2. Friction anchors are values at the integration
+points of the skin.
 """
 
 import netgen.meshing as netgen
@@ -83,6 +84,7 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     skin = mesh.Boundaries("skin")
     nodes = mesh.MapToAllElements({ng.SEGM: ng.IntegrationRule([(0.0,), (1.0,), (0.5,)], [1.0] * 3)}, skin)
     points = mesh.MapToAllElements({ng.SEGM: edge}, skin)
+    dofs = np.concatenate([e.dofs for e in places.Elements(ng.BND) if e.mat == "skin"])  # read by number of the point
     answer = Answer("NGSolve", ng.__version__, "LGPL 2.1")
     for before, load in steps(case):
         now.vec.data += (load.x - before.x) * lifts["x"].vec + (load.y - before.y) * lifts["y"].vec
@@ -106,7 +108,7 @@ def solve(case: Case, ridge: Ridge) -> Answer:
                     t_points[order].tolist(),
                 )
             )
-        anchor.Interpolate(now[0] + law / case.eps_t, definedon=skin)
+        anchor.vec.FV().NumPy()[dofs] = np.ravel((now[0] + law / case.eps_t)(points))
     return answer
 
 
