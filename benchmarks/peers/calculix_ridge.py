@@ -1,8 +1,8 @@
 """The ridge in CalculiX: an input deck of CPE6 elements, its Ogden law and its face-to-face penalty contact.
 
-CalculiX makes a solid one element thick of the plane strain elements, prescribes its displacements in z and presses it on
-a rigid block. Its contact stiffness is per current area. Every load is a step of the deck without any subdivision.
-Ogden's exponent has Abaqus's sign, so that the printed alpha = -14.53 is 14.53 here; D = 2/K.
+CalculiX makes a solid one element thick of the plane strain elements, holds it in z and presses it on a rigid block.
+Its contact stiffness is per current area. Every load is a step of the deck without any subdivision. Ogden's exponent
+has Abaqus's sign, so that the printed alpha = -14.53 is 14.53 here; D = 2/K.
 """
 
 import subprocess
@@ -24,7 +24,7 @@ def deck(case: Case, ridge: Ridge) -> str:
     lines = ["*NODE, NSET=ALL"]
     lines += [f"{k}, {x:.15g}, {y:.15g}, 0" for k, (x, y) in enumerate(np.vstack([ridge.points, _BLOCK]), start=1)]
     lines.append("*ELEMENT, TYPE=CPE6, ELSET=BODY")
-    lines += [f"{k}, " + ", ".join(map(str, cell + 1)) for k, cell in enumerate(ridge.triangles, start=1)]
+    lines += [f"{k}, " + ", ".join(str(node + 1) for node in cell) for k, cell in enumerate(ridge.triangles, start=1)]
     last = len(ridge.triangles) + 1
     lines += ["*ELEMENT, TYPE=CPE4, ELSET=BLOCK", f"{last}, " + ", ".join(str(count + k) for k in range(1, 5))]
     for name, nodes in {

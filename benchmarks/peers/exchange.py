@@ -10,16 +10,17 @@ import os
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 
 
 VARIANTS = {
-    "current area": "contact pressure and friction per current area",
-    "nodes": "integrals over the skin by Simpson's rule, whose points are nodes",
+    "as FElupe": "skin integrated by Simpson's rule, whose points are nodes; new points drag since they touched",
+    "as CalculiX": "stiffnesses per current area; new points drag since the unloaded state",
     "as installed": "the program's own element, known to be wrong",
 }
 
@@ -39,8 +40,8 @@ class Case:
 
     .. math:: W = \frac{2 G_0}{a^2} (\bar\lambda_1^a + \bar\lambda_2^a + \bar\lambda_3^a - 3) + \frac K2 (J - 1)^2
 
-    The contact pressure is eps_n times the penetration and friction that of springs eps_t, dragged where they would bear
-    more than mu_f times the pressure; all per reference area.
+    The contact pressure is eps_n times the penetration and friction that of springs eps_t, dragged where they would
+    bear more than mu_f times the pressure; all per reference area.
     """
 
     mu_f: float
@@ -52,6 +53,10 @@ class Case:
     eps_t: float = 100.0
     variant: str = ""
     """A deviation that explains another program's: one of VARIANTS, for the programs that can."""
+
+    def __post_init__(self) -> None:
+        if self.variant and self.variant not in VARIANTS:
+            raise ValueError(f"variant is {self.variant!r}; it must be one of {', '.join(VARIANTS)}")
 
     @property
     def bulk_modulus(self) -> float:
@@ -74,10 +79,10 @@ class Ridge:
 
     points: Array
     vertices: int
-    triangles: NDArray[np.int64]
-    skin: NDArray[np.int64]
-    top: NDArray[np.int64]
-    sides: NDArray[np.int64]
+    triangles: Array
+    skin: Array
+    top: Array
+    sides: Array
 
     def save(self, path: Path) -> None:
         """Write the mesh as .npz."""

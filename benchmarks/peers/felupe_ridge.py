@@ -95,7 +95,8 @@ def solve(case: Case, ridge: Ridge) -> Answer:
         answer.iterations += found.iterations
         if load.name:
             forces = np.asarray(found.fun).reshape(-1, 2)
-            on_skin = np.array([c.assemble.vector(field).toarray().reshape(-1, 2)[k] for k, c in zip(nodes, contacts)])
+            of_contacts = sum(contact.assemble.vector(field).toarray() for contact in contacts)
+            on_skin = of_contacts.reshape(-1, 2)[nodes]
             x = ridge.points[nodes, 0] + u.values[nodes, 0]
             order = np.argsort(x)
             answer.states.append(

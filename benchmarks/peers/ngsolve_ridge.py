@@ -55,20 +55,24 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     V = ng.VectorH1(mesh, order=2, dirichletx="top|sides", dirichlety="top")
     u, v = V.TnT()
     now = ng.GridFunction(V)
-    edge = _SIMPSON if case.variant == "nodes" else ng.IntegrationRule(ng.SEGM, 2 * _POINTS - 1)
+    edge = _SIMPSON if case.variant == "as FElupe" else ng.IntegrationRule(ng.SEGM, 2 * _POINTS - 1)
     places = ng.comp.IntegrationRuleSpaceSurface(mesh, order=len(edge.points) - 1, definedon=mesh.Boundaries("skin"))
     if places.ndof != len(edge.points) * len(ridge.skin):
         raise RuntimeError("friction's history has other points than the integrals over the skin")
-    anchor = ng.GridFunction(places)
+    anchor, before_x, before_gap = (ng.GridFunction(places) for _ in range(3))
 
     def tractions(displacement, gradient):
         """Return friction and pressure per reference area, and per the area that the stiffnesses are of."""
         depth = -(ng.y + displacement[1])
         p = case.eps_n * ng.IfPos(depth, depth, 0.0)
-        limit, trial = case.mu_f * p, case.eps_t * (anchor - displacement[0])
+        slip = displacement[0] - anchor
+        if case.variant == "as FElupe":  # what touches in a step has slipped since the touch, found by interpolation
+            since = depth / (before_gap + depth) * (displacement[0] - before_x)
+            slip = ng.IfPos(before_gap, ng.IfPos(depth, since, 0.0), slip)
+        limit, trial = case.mu_f * p, -case.eps_t * slip
         t = ng.IfPos(trial - limit, limit, ng.IfPos(-limit - trial, -limit, trial))
         tangent = ng.specialcf.tangential(2)
-        stretch = ng.Norm(tangent + gradient * tangent) if case.variant == "current area" else ng.CF(1.0)
+        stretch = ng.Norm(tangent + gradient * tangent) if case.variant == "as CalculiX" else ng.CF(1.0)
         return stretch * t, stretch * p, t
 
     loaded = ng.BilinearForm(V)
@@ -85,6 +89,7 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     nodes = mesh.MapToAllElements({ng.SEGM: ng.IntegrationRule([(0.0,), (1.0,), (0.5,)], [1.0] * 3)}, skin)
     points = mesh.MapToAllElements({ng.SEGM: edge}, skin)
     dofs = np.concatenate([e.dofs for e in places.Elements(ng.BND) if e.mat == "skin"])  # read by number of the point
+    before_gap.vec.FV().NumPy()[dofs] = np.ravel(ng.y(points))
     answer = Answer("NGSolve", ng.__version__, "LGPL 2.1")
     for before, load in steps(case):
         now.vec.data += (load.x - before.x) * lifts["x"].vec + (load.y - before.y) * lifts["y"].vec
@@ -108,7 +113,11 @@ def solve(case: Case, ridge: Ridge) -> Answer:
                     t_points[order].tolist(),
                 )
             )
-        anchor.vec.FV().NumPy()[dofs] = np.ravel((now[0] + law / case.eps_t)(points))
+        after = now[0] + law / case.eps_t
+        if case.variant == "as CalculiX":  # what touches in a step has slipped since the beginning of all steps
+            after = ng.IfPos(p, after, 0.0)
+        for field, value in ((anchor, after), (before_x, now[0]), (before_gap, ng.y + now[1])):
+            field.vec.FV().NumPy()[dofs] = np.ravel(value(points))
     return answer
 
 

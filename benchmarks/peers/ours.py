@@ -12,6 +12,7 @@ from benchmarks.peers.exchange import Answer, Case, Ridge, State, steps
 from geometry import tags
 from geometry.benchmarks import ridge
 from geometry.mesh import TaggedMesh, load
+from variational.compat import cell_geometry
 from variational.contact import History
 from variational.penalty import Penalty
 from variational.problem import Interface, Ogden, Problem
@@ -34,21 +35,18 @@ def for_peers(body: TaggedMesh) -> Ridge:
     """Return the same mesh for the others, with a node in the middle of each edge."""
     mesh = body.mesh
     corners = mesh.geometry.x[:, :2] / _MM
-    cells = np.array(mesh.geometry.dofmap, dtype=np.int64)
-    (a, b), (c, d) = (np.moveaxis(corners[cells[:, (k, k + 1)]] - corners[cells[:, :1]], 1, 0) for k in (0, 1))
-    del a, c
-    clockwise = b[:, 0] * d[:, 1] - b[:, 1] * d[:, 0] < 0
+    cells = np.array(cell_geometry(mesh), dtype=np.int64)
+    clockwise = np.linalg.det(corners[cells[:, 1:]] - corners[cells[:, :1]]) < 0
     cells[clockwise, 1:] = cells[clockwise, :0:-1]
     pairs = np.sort(cells[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     edges, number = np.unique(pairs, axis=0, return_inverse=True)
-    middles = len(corners) + np.arange(len(edges))
-    triangles = np.hstack([cells, middles[number.reshape(-1, 3)]])
-    middle_of = {tuple(edge): middle for edge, middle in zip(edges.tolist(), middles.tolist(), strict=True)}
+    triangles = np.hstack([cells, len(corners) + number.reshape(-1, 3)])
+    middle_of = {frozenset(edge): len(corners) + k for k, edge in enumerate(edges)}
 
     def edges_of(tag: int) -> np.ndarray:
         facets = body.facet_tags.find(tag)
         ends = dolfinx.mesh.entities_to_geometry(mesh, 1, facets).reshape(-1, 2)
-        return np.array([[*pair, middle_of[tuple(sorted(pair))]] for pair in ends.tolist()])
+        return np.array([[*pair, middle_of[frozenset(pair)]] for pair in ends])
 
     points = np.vstack([corners, corners[edges].mean(axis=1)])
     skin = edges_of(tags.ridge(0))

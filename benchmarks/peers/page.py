@@ -18,13 +18,13 @@ _STYLES = {"fingerpad": ("C0", "-", ""), "NGSolve": ("C1", "", "o"), "GetFEM": (
            "FElupe": ("C3", "", "s"), "CalculiX": ("C4", "", "^")}  # fmt: skip
 _HEADER = """# Other codes, same problem
 
-Made by `benchmarks/peers/run`; do not edit. One papillary ridge, 0.483 mm wide and 0.6 mm high, is pressed by 0.06 mm on a
-rigid plane in 20 equal steps, without friction and with a coefficient of 0.25; then its top and sides are moved sideways by
-5 µm in 10 steps and on to 50 µm in 15. Stratum corneum of the paper: G_0 = 0.08676 MPa, exponent 14.53 of the modified
-stretches, ν = 0.48, plane strain. Penalty 1000 N/mm³, tangential 100 N/mm³, per reference area. All programs read the
-same mesh of six-node triangles and take the same steps; each uses its own assembly, differentiation and contact, or
-weak forms written anew in its own language. Half the contact's current length is found from the skin's displaced nodes
-in the same way for all; the peak pressure is the largest at a program's own contact points.
+Made by `benchmarks/peers/run`; do not edit. One papillary ridge, 0.483 mm wide and 0.6 mm high, is pressed by 0.06 mm
+on a rigid plane in 20 equal steps, without friction and with a coefficient of 0.25; then its top and sides are moved
+sideways by 5 µm in 10 steps and on to 50 µm in 15. Stratum corneum of the paper: G_0 = 0.08676 MPa, exponent 14.53 of
+the modified stretches, ν = 0.48, plane strain. Penalty 1000 N/mm³, tangential 100 N/mm³, per reference area. All
+programs read the same mesh of six-node triangles and take the same steps; each uses its own assembly, differentiation
+and contact, or weak forms written anew in its own language. Half the contact's current length is found from the skin's
+displaced nodes in the same way for all; the peak pressure is the largest at a program's own contact points.
 
 **!** marks a difference from ours above 0.05 % of a force or 1 % of half-width or peak pressure. Friction is zero by
 symmetry in the pressed ridge; its difference there is not judged.
@@ -67,8 +67,8 @@ def line(one: Row, ours: Row) -> str:
     """Return a row of the table, with differences from ours."""
     cells = [one.program]
     slides = abs(ours.f_t) > 1e-2 * ours.f_n
-    judged = (True, slides, True, True)
-    for value, reference, bar, judge in zip(one.numbers, ours.numbers, (FORCE, FORCE, SHAPE, SHAPE), judged, strict=True):
+    bars, judged = (FORCE, FORCE, SHAPE, SHAPE), (True, slides, True, True)
+    for value, reference, bar, judge in zip(one.numbers, ours.numbers, bars, judged, strict=True):
         text = f"{value:.6f}"
         if one is not ours and judge:
             difference = value / reference - 1
@@ -142,7 +142,8 @@ def write(folder: Path, docs: Path) -> Path:
     ]
     pictures = docs / "peers"
     pictures.mkdir(parents=True, exist_ok=True)
-    draw(finest, ["pressed without friction", "moved 5 µm", "moved 50 µm"], pictures / "tractions.png")
+    names = ["pressed without friction", "moved 5 µm", "moved 50 µm"]
+    draw(finest, names, pictures / "tractions.png")
     parts.insert(3, "![Pressure and friction over x in all programs, finest mesh](peers/tractions.png)")
     page = docs / "peers.md"
     page.write_text("\n\n".join(parts) + "\n", encoding="utf-8")
