@@ -105,7 +105,8 @@ def on_skin(ridge: Ridge, u: np.ndarray, gaps: Iterable[list[float]], stresses: 
         k = int(np.argmin(np.abs(shapes.T @ place[:, 1] - gap)))
         length = np.linalg.norm(ridge.points[edge[1]] - ridge.points[edge[0]])
         stretch = float(np.linalg.norm(slopes[:, k] @ place) / length)
-        points.add((float(shapes[:, k] @ place[:, 0]), pressure * stretch, friction * stretch))
+        # Printed is what the skin does to the plane.
+        points.add((float(shapes[:, k] @ place[:, 0]), pressure * stretch, -friction * stretch))
     return np.array(sorted(points))
 
 

@@ -18,13 +18,14 @@ _STYLES = {"fingerpad": ("C0", "-", ""), "NGSolve": ("C1", "", "o"), "GetFEM": (
            "FElupe": ("C3", "", "s"), "CalculiX": ("C4", "", "^")}  # fmt: skip
 _HEADER = """# Other codes, same problem
 
-Made by `benchmarks/peers/run`; do not edit. One papillary ridge, 0.483 mm wide and 0.6 mm high, is pressed by 0.06 mm
-on a rigid plane in 20 equal steps, without friction and with a coefficient of 0.25; then its top and sides are moved
-sideways by 5 µm in 10 steps and on to 50 µm in 15. Stratum corneum of the paper: G_0 = 0.08676 MPa, exponent 14.53 of
-the modified stretches, ν = 0.48, plane strain. Penalty 1000 N/mm³, tangential 100 N/mm³, per reference area. All
-programs read the same mesh of six-node triangles and take the same steps; each uses its own assembly, differentiation
-and contact, or weak forms written anew in its own language. Half the contact's current length is found from the skin's
-displaced nodes in the same way for all; the peak pressure is the largest at a program's own contact points.
+Written from the programs' answers by `python3 -m benchmarks.peers page`, the last step of `benchmarks/peers/run`; do not
+edit. One papillary ridge, 0.483 mm wide and 0.6 mm high, is pressed by 0.06 mm on a rigid plane in 20 equal steps,
+without friction and with a coefficient of 0.25; then its top and sides are moved sideways by 5 µm in 10 steps and on to
+50 µm in 15. Stratum corneum of the paper: G_0 = 0.08676 MPa, exponent 14.53 of the modified stretches, ν = 0.48, plane
+strain. Penalty 1000 N/mm³, tangential 100 N/mm³, per reference area. All programs read the same mesh of six-node
+triangles and take the same steps; each uses its own assembly, differentiation and contact, or weak forms written anew
+in its own language. Half the contact's current length is found from the skin's displaced nodes in the same way for all;
+the peak pressure is the largest at a program's own contact points.
 
 **!** marks a difference from ours above 0.05 % of a force or 1 % of half-width or peak pressure. Friction is zero by
 symmetry in the pressed ridge; its difference there is not judged.
