@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.peers.exchange import Answer, Case, Ridge, State, main, steps
+from benchmarks.peers.exchange import Answer, Case, Ridge, State, main, plain, steps
 
 _BLOCK = np.array([[-1.0, -0.5], [1.0, -0.5], [1.0, 0.0], [-1.0, 0.0]])  # mm, the screen
 _JOB = "ridge"
@@ -34,9 +34,9 @@ def deck(case: Case, ridge: Ridge) -> str:
         "SCREEN": count + np.arange(4),
     }.items():
         lines += [f"*NSET, NSET={name}", *(f"{k + 1}," for k in nodes)]
-    faces = {frozenset(pair) for pair in ridge.skin[:, :2].tolist()}
+    faces = {frozenset(pair) for pair in plain(ridge.skin[:, :2])}
     lines.append("*SURFACE, NAME=SLAVE")
-    for k, (a, b, c) in enumerate(ridge.triangles[:, :3].tolist(), start=1):
+    for k, (a, b, c) in enumerate(plain(ridge.triangles[:, :3]), start=1):
         lines += [f"{k}, S{s}" for s, edge in enumerate(((a, b), (b, c), (c, a)), start=1) if frozenset(edge) in faces]
     law = f"{case.shear_modulus:.15g}, {case.exponent:.15g}, {2 / case.bulk_modulus:.15g}"
     lines += [
@@ -92,16 +92,16 @@ def on_skin(ridge: Ridge, u: np.ndarray, gaps: Iterable[list[float]], stresses: 
 
     CalculiX prints a point's element, face and gap, but not where on the face it is: that is found by the gap.
     """
-    of_face = {frozenset(edge[:2]): edge for edge in ridge.skin.tolist()}
+    of_face = {frozenset(edge[:2]): edge for edge in plain(ridge.skin)}
     xi = np.linspace(0.0, 1.0, 401)
     shapes = np.array([(1 - xi) * (1 - 2 * xi), xi * (2 * xi - 1), 4 * xi * (1 - xi)])
     slopes = np.array([4 * xi - 3, 4 * xi - 1, 4 - 8 * xi])
     points = set()
     for (cell, face, gap, *_), (*_, pressure, friction, _) in zip(gaps, stresses, strict=True):
-        corners = ridge.triangles[int(cell) - 1, :3].tolist()
+        corners = plain(ridge.triangles[int(cell) - 1, :3])
         side = int(face) - 3  # of the prism's faces, the first two are the triangles
         edge = of_face[frozenset((corners[side], corners[(side + 1) % 3]))]
-        place = ridge.points[edge] + u[edge]
+        place: np.ndarray = ridge.points[edge] + u[edge]
         k = int(np.argmin(np.abs(shapes.T @ place[:, 1] - gap)))
         length = np.linalg.norm(ridge.points[edge[1]] - ridge.points[edge[0]])
         stretch = float(np.linalg.norm(slopes[:, k] @ place) / length)
@@ -136,8 +136,8 @@ def solve(case: Case, ridge: Ridge) -> Answer:
                 load.name,
                 -float(forces[1]),
                 -float(forces[0]),
-                u[ridge.skin.ravel()].tolist(),
-                *(values.tolist() for values in (x, p, t)),
+                plain(u[ridge.skin.ravel()]),
+                *(plain(values) for values in (x, p, t)),
             )
         )
     return answer

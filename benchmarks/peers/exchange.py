@@ -128,6 +128,11 @@ class Answer:
     """Processor time, that of starting the program included."""
 
 
+def plain(values: Array) -> Any:
+    """Return an array as lists of Python's own numbers, which JSON takes."""
+    return values.tolist()
+
+
 def write_case(case: Case, path: Path) -> None:
     """Write a case as JSON."""
     path.write_text(json.dumps(asdict(case), indent=1) + "\n", encoding="utf-8")

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import spsolve
 
-from benchmarks.peers.exchange import Answer, Case, Load, Ridge, State, main, steps
+from benchmarks.peers.exchange import Answer, Case, Load, Ridge, State, main, plain, steps
 
 _DELTA = 1e-6
 _TOLERANCE = 1e-12  # N/mm, norm of the nodal imbalance
@@ -34,10 +34,10 @@ def mesh_of(ridge: Ridge) -> gf.Mesh:
     mesh = gf.Mesh("empty", 2)
     corners = ridge.triangles[:, :3]
     cells = mesh.add_convex(gf.GeoTrans("GT_PK(2,1)"), ridge.points[corners].transpose(2, 1, 0))
-    skin = {frozenset(pair) for pair in ridge.skin[:, :2].tolist()}
+    skin = {frozenset(pair) for pair in plain(ridge.skin[:, :2])}
     faces = [
         (cell, opposite)
-        for cell, vertices in zip(cells, corners.tolist(), strict=True)
+        for cell, vertices in zip(cells, plain(corners), strict=True)
         for opposite in range(3)
         if frozenset(vertices[:opposite] + vertices[opposite + 1 :]) in skin
     ]
@@ -82,8 +82,8 @@ def solve(case: Case, ridge: Ridge) -> Answer:
             order = np.argsort(x)
             u = model.variable("u").reshape(-1, 2)
             f_n, f_t = -forces[held["y"]].sum(), -forces[held["x"]].sum()
-            points = (values[order].tolist() for values in (x, p, t))
-            answer.states.append(State(load.name, float(f_n), float(f_t), u[skin].tolist(), *points))
+            points = (plain(values[order]) for values in (x, p, t))
+            answer.states.append(State(load.name, float(f_n), float(f_t), plain(u[skin]), *points))
         model.set_variable("anchor", model.interpolation("u(1) + t / eps_t", at_points, _SKIN))
     return answer
 

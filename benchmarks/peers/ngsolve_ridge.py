@@ -10,7 +10,7 @@ import netgen.meshing as netgen
 import ngsolve as ng
 import numpy as np
 
-from benchmarks.peers.exchange import Answer, Case, Ridge, State, main, steps
+from benchmarks.peers.exchange import Answer, Case, Ridge, State, main, plain, steps
 
 _DELTA = 1e-6
 _TOLERANCE = 1e-12  # N/mm, norm of the nodal imbalance
@@ -20,17 +20,17 @@ _SIMPSON = ng.IntegrationRule([(0.0,), (0.5,), (1.0,)], [1 / 6, 2 / 3, 1 / 6])
 _TRIANGLE = ng.IntegrationRule([(1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3)], [1 / 6] * 3)
 
 
-def mesh_of(ridge: Ridge) -> tuple[ng.Mesh, list]:
-    """Return the mesh, boundaries named skin, top and sides, and for each edge of the skin its vertices in NGSolve."""
+def mesh_of(ridge: Ridge) -> ng.Mesh:
+    """Return the mesh, with boundaries named skin, top and sides."""
     mesh = netgen.Mesh(dim=2)
     points = [mesh.Add(netgen.MeshPoint(netgen.Pnt(x, y, 0.0))) for x, y in ridge.points[: ridge.vertices]]
     body = mesh.AddRegion("body", dim=2)
     for corners in ridge.triangles[:, :3]:
         mesh.Add(netgen.Element2D(body, [points[k] for k in corners]))
     regions = {name: mesh.AddRegion(name, dim=1) for name in ("skin", "top", "sides")}
-    skin = {frozenset(pair) for pair in ridge.skin[:, :2].tolist()}
-    top, sides = set(ridge.top.tolist()), set(ridge.sides.tolist())
-    for a, b, c in ridge.triangles[:, :3].tolist():
+    skin = {frozenset(pair) for pair in plain(ridge.skin[:, :2])}
+    top, sides = set(plain(ridge.top)), set(plain(ridge.sides))
+    for a, b, c in plain(ridge.triangles[:, :3]):
         for pair in ((a, b), (b, c), (c, a)):
             for name, inside in (("skin", frozenset(pair) in skin), ("top", top >= set(pair))):
                 if inside:
@@ -99,18 +99,18 @@ def solve(case: Case, ridge: Ridge) -> Answer:
             loaded.Apply(now.vec, residual)
             x, p_points, t_points = (np.ravel(f(points)) for f in (ng.x + now[0], p, t))
             order = np.argsort(x)
-            places_of = np.hstack([np.reshape(f(nodes), (-1, 1)) for f in (ng.x, now[0], now[1])]).reshape(-1, 3, 3)
-            places_of = np.array([_left_to_right(one) for one in places_of])
-            places_of = places_of[np.argsort(places_of[:, 2, 0])]
+            columns = [np.reshape(f(nodes), (-1, 1)) for f in (ng.x, now[0], now[1])]
+            edges = np.array([_left_to_right(one) for one in np.hstack(columns).reshape(-1, 3, 3)])
+            edges = edges[np.argsort(edges[:, 2, 0])]
             answer.states.append(
                 State(
                     load.name,
                     -ng.InnerProduct(residual, lifts["y"].vec),
                     -ng.InnerProduct(residual, lifts["x"].vec),
-                    places_of[:, :, 1:].reshape(-1, 2).tolist(),
-                    x[order].tolist(),
-                    p_points[order].tolist(),
-                    t_points[order].tolist(),
+                    plain(edges[:, :, 1:].reshape(-1, 2)),
+                    plain(x[order]),
+                    plain(p_points[order]),
+                    plain(t_points[order]),
                 )
             )
         after = now[0] + law / case.eps_t

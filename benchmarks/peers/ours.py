@@ -8,7 +8,7 @@ import numpy as np
 from dolfinx import fem
 from mpi4py import MPI
 
-from benchmarks.peers.exchange import Answer, Case, Ridge, State, steps
+from benchmarks.peers.exchange import Answer, Case, Ridge, State, plain, steps
 from geometry import tags
 from geometry.benchmarks import ridge
 from geometry.mesh import TaggedMesh, load
@@ -41,12 +41,12 @@ def for_peers(body: TaggedMesh) -> Ridge:
     pairs = np.sort(cells[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     edges, number = np.unique(pairs, axis=0, return_inverse=True)
     triangles = np.hstack([cells, len(corners) + number.reshape(-1, 3)])
-    middle_of = {frozenset(edge): len(corners) + k for k, edge in enumerate(edges)}
+    middle_of = {frozenset(edge): len(corners) + k for k, edge in enumerate(plain(edges))}
 
     def edges_of(tag: int) -> np.ndarray:
         facets = body.facet_tags.find(tag)
         ends = dolfinx.mesh.entities_to_geometry(mesh, 1, facets).reshape(-1, 2)
-        return np.array([[*pair, middle_of[frozenset(pair)]] for pair in ends])
+        return np.array([[*pair, middle_of[frozenset(pair)]] for pair in plain(ends)])
 
     points = np.vstack([corners, corners[edges].mean(axis=1)])
     skin = edges_of(tags.ridge(0))
@@ -95,10 +95,10 @@ def solve(case: Case, body: TaggedMesh, skin: np.ndarray) -> Answer:
                     now.name,
                     float(solver.reaction[1]) * _MM,
                     float(loads.f_friction[0]) * _MM,
-                    displacement.tolist(),
-                    (s.x.ravel()[order] / _MM + now.x).tolist(),
-                    (s.p_n.ravel()[order] / 1e6).tolist(),
-                    (s.t_t.ravel()[order] / 1e6).tolist(),
+                    plain(displacement),
+                    plain(s.x.ravel()[order] / _MM + now.x),
+                    plain(s.p_n.ravel()[order] / 1e6),
+                    plain(s.t_t.ravel()[order] / 1e6),
                 )
             )
     answer.iterations = solver.counts.newton

@@ -18,8 +18,8 @@ _STYLES = {"fingerpad": ("C0", "-", ""), "NGSolve": ("C1", "", "o"), "GetFEM": (
            "FElupe": ("C3", "", "s"), "CalculiX": ("C4", "", "^")}  # fmt: skip
 _HEADER = """# Other codes, same problem
 
-Written from the programs' answers by `python3 -m benchmarks.peers page`, the last step of `benchmarks/peers/run`; do not
-edit. One papillary ridge, 0.483 mm wide and 0.6 mm high, is pressed by 0.06 mm on a rigid plane in 20 equal steps,
+Written from the programs' answers by `python3 -m benchmarks.peers page`, the last step of `benchmarks/peers/run`; do
+not edit. One papillary ridge, 0.483 mm wide and 0.6 mm high, is pressed by 0.06 mm on a rigid plane in 20 equal steps,
 without friction and with a coefficient of 0.25; then its top and sides are moved sideways by 5 µm in 10 steps and on to
 50 µm in 15. Stratum corneum of the paper: G_0 = 0.08676 MPa, exponent 14.53 of the modified stretches, ν = 0.48, plane
 strain. Penalty 1000 N/mm³, tangential 100 N/mm³, per reference area. All programs read the same mesh of six-node
