@@ -1,0 +1,79 @@
+"""Meshes, cases and our own answers before the peers run, and the page after; benchmarks/peers/run does all of it.
+
+environment/run python3 -m benchmarks.peers prepare FOLDER SIZE ... | page FOLDER
+"""
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+
+from benchmarks.peers import page
+from benchmarks.peers.exchange import Case, Load, write_answer, write_case
+
+_DOCS = Path(__file__).resolve().parents[2] / "docs"
+_PRESS, _STEPS = -0.06, 20  # mm
+_SLIDES = ((0.005, 10), (0.05, 15))  # mm, steps
+PEERS = ("ngsolve", "getfem", "felupe", "calculix")
+# What explains where a peer is off: programs that can be made to do the same.
+VARIANTS = (
+    ("frictionless", "as CalculiX", "ngsolve"),
+    ("friction", "as CalculiX", "ngsolve"),
+    ("frictionless", "as FElupe", "ngsolve"),
+    ("friction", "as FElupe", "ngsolve"),
+    ("frictionless", "as installed", "felupe"),
+)
+
+
+def cases() -> dict[str, Case]:
+    """Return the two histories of load."""
+    press = [Load(0.0, _PRESS * k / _STEPS) for k in range(1, _STEPS)]
+    loads, x = [*press, Load(0.0, _PRESS, "pressed with friction")], 0.0
+    for end, count in _SLIDES:
+        loads += [Load(x + (end - x) * k / count, _PRESS) for k in range(1, count)]
+        loads += [Load(end, _PRESS, f"moved {1e3 * end:g} µm")]
+        x = end
+    frictionless = Case(0.0, (*press, Load(0.0, _PRESS, "pressed without friction")))
+    return {"frictionless": frictionless, "friction": Case(0.25, tuple(loads))}
+
+
+def prepare(folder: Path, sizes: list[float]) -> None:
+    """Write meshes, cases, what the peers are to do, and our own answers."""
+    from benchmarks.peers import ours  # needs dolfinx, which a reader of answers does not
+
+    folder.mkdir(parents=True, exist_ok=True)
+    jobs = {(name, "", peer): case for name, case in cases().items() for peer in PEERS}
+    jobs |= {job: replace(cases()[job[0]], variant=job[1]) for job in VARIANTS}
+    for (name, variant, _), case in jobs.items():
+        write_case(case, folder / f"{page.stem(name, variant)}.json")
+    tasks = []
+    for size in sizes:
+        mesh = folder / f"{size:g}.npz"
+        body = ours.make(size * 1e-3)
+        ridge = ours.for_peers(body)
+        ridge.save(mesh)
+        for name, case in cases().items():
+            answer = ours.solve(case, body, ridge.points[ridge.skin].reshape(-1, 2))
+            write_answer(answer, page.answer_path(folder, size, name, "", "ours"))
+            print(f"fingerpad: {name}, facets of {size:g} µm, {answer.iterations} iterations", flush=True)
+        for name, variant, peer in jobs:
+            case_path = folder / f"{page.stem(name, variant)}.json"
+            tasks.append(f"{peer} {case_path} {mesh} {page.answer_path(folder, size, name, variant, peer)}")
+    tasks.sort(key=lambda task: task.startswith("calculix"))  # the slowest last
+    (folder / "tasks").write_text("\n".join(tasks) + "\n", encoding="utf-8")
+
+
+def main() -> None:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("action", choices=("prepare", "page"))
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("sizes", type=float, nargs="*")
+    args = parser.parse_args()
+    if args.action == "prepare":
+        prepare(args.folder, args.sizes)
+    else:
+        print(page.write(args.folder, _DOCS))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,105 @@
+"""The ridge by this package, and its mesh for the others."""
+
+import importlib.metadata
+from functools import partial
+
+import dolfinx
+import numpy as np
+from dolfinx import fem
+from mpi4py import MPI
+
+from benchmarks.peers.exchange import Answer, Case, Ridge, State, plain, steps
+from geometry import tags
+from geometry.benchmarks import ridge
+from geometry.mesh import TaggedMesh, load
+from variational.compat import cell_geometry
+from variational.contact import History
+from variational.penalty import Penalty
+from variational.problem import Interface, Ogden, Problem
+from variational.quantities import Observer
+from variational.solver import Control, Solver
+from variational.surface import Surface
+
+_MM = 1e-3  # m
+_STIFFNESS = 1e9  # Pa/m in a N/mm^3
+_H_0 = 0.514e-6  # m, not felt: there is no voltage
+_IMBALANCE = 1e-9  # N/m
+
+
+def make(size: float) -> TaggedMesh:
+    """Return the ridge with facets of a given length (mm)."""
+    return load(MPI.COMM_SELF, partial(ridge, size * _MM))
+
+
+def for_peers(body: TaggedMesh) -> Ridge:
+    """Return the same mesh for the others, with a node in the middle of each edge."""
+    mesh = body.mesh
+    corners = mesh.geometry.x[:, :2] / _MM
+    cells = np.array(cell_geometry(mesh), dtype=np.int64)
+    clockwise = np.linalg.det(corners[cells[:, 1:]] - corners[cells[:, :1]]) < 0
+    cells[clockwise, 1:] = cells[clockwise, :0:-1]
+    pairs = np.sort(cells[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges, number = np.unique(pairs, axis=0, return_inverse=True)
+    triangles = np.hstack([cells, len(corners) + number.reshape(-1, 3)])
+    middle_of = {frozenset(edge): len(corners) + k for k, edge in enumerate(plain(edges))}
+
+    def edges_of(tag: int) -> np.ndarray:
+        facets = body.facet_tags.find(tag)
+        ends = dolfinx.mesh.entities_to_geometry(mesh, 1, facets).reshape(-1, 2)
+        return np.array([[*pair, middle_of[frozenset(pair)]] for pair in plain(ends)])
+
+    points = np.vstack([corners, corners[edges].mean(axis=1)])
+    skin = edges_of(tags.ridge(0))
+    backwards = points[skin[:, 0], 0] > points[skin[:, 1], 0]
+    skin[backwards, :2] = skin[backwards, 1::-1]
+    skin = skin[np.argsort(points[skin[:, 2], 0])]
+    return Ridge(
+        points, len(corners), triangles, skin, np.unique(edges_of(tags.BONE_RIM)), np.unique(edges_of(tags.SIDES))
+    )
+
+
+def solve(case: Case, body: TaggedMesh, skin: np.ndarray) -> Answer:
+    """Lead the ridge along the loads.
+
+    The screen is moved instead of top and sides, the other way: friction feels the screen by its anchors alone.
+
+    Args:
+        case: penalty per reference area.
+        body: made by :func:`make`.
+        skin: places (mm) of the skin's nodes to be reported.
+    """
+    surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
+    skins = {tags.STRATUM_CORNEUM: Ogden(case.shear_modulus * 1e6, -case.exponent, case.poisson)}
+    formulation = Penalty(case.eps_n * _STIFFNESS, case.eps_t * _STIFFNESS)
+    problem = Problem(body.mesh, body.cell_tags, surface, skins, Interface(formulation, case.mu_f, _H_0))
+    sides = fem.locate_dofs_topological(problem.V, 1, body.facet_tags.find(tags.SIDES))
+    solver = Solver(problem, body.facet_tags.find(tags.BONE_RIM), 1.0, _IMBALANCE, [(2 * sides, 0.0)])
+    observer = Observer(problem)
+    places = problem.V.tabulate_dof_coordinates()[:, :2] / _MM
+    nodes = [int(np.argmin(np.linalg.norm(places - place, axis=1))) for place in skin]
+    answer = Answer("fingerpad", f"{importlib.metadata.version('fenics-dolfinx')} (dolfinx)", "this project")
+    for before, now in steps(case):
+        h, moved = problem.history, (now.x - before.x) * _MM
+        problem.set_history(History(h.anchor - moved, h.pressure, h.x))
+        solver.x.array_w[::2] -= moved  # the first guess: no point slips
+        solver.new_load(Control(0.0, now.y * _MM), 0.0, slipping=bool(now.x))
+        solver.solve()
+        s = observer.state()
+        problem.set_history(History(s.anchor, s.p_n, s.x))
+        if now.name:
+            loads = observer.ridge_loads(s)
+            displacement = problem.u.x.array.reshape(-1, 2)[nodes] / _MM + (now.x, 0.0)
+            order = np.argsort(s.x.ravel())
+            answer.states.append(
+                State(
+                    now.name,
+                    float(solver.reaction[1]) * _MM,
+                    float(loads.f_friction[0]) * _MM,
+                    plain(displacement),
+                    plain(s.x.ravel()[order] / _MM + now.x),
+                    plain(s.p_n.ravel()[order] / 1e6),
+                    plain(s.t_t.ravel()[order] / 1e6),
+                )
+            )
+    answer.iterations = solver.counts.newton
+    return answer

@@ -1,0 +1,166 @@
+"""What other codes are told and how their answers are read: the parts that need none of them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks.peers import calculix_ridge, ours, page, profile
+from benchmarks.peers.__main__ import cases
+from benchmarks.peers.exchange import (
+    Answer,
+    Case,
+    Load,
+    Ridge,
+    State,
+    read_answer,
+    read_case,
+    steps,
+    write_answer,
+    write_case,
+)
+
+WIDTH = 0.483  # mm
+
+
+@pytest.fixture(scope="module")
+def body():
+    return ours.make(0.04)
+
+
+@pytest.fixture(scope="module")
+def ridge(body) -> Ridge:
+    return ours.for_peers(body)
+
+
+@pytest.fixture(scope="module")
+def answer(body, ridge) -> Answer:
+    pressed, moved = Load(0.0, -0.01, "pressed without friction"), Load(0.02, -0.01, "moved 5 µm")
+    case = Case(0.25, (Load(0.0, -0.005), pressed, moved))
+    return ours.solve(case, body, ridge.points[ridge.skin].reshape(-1, 2))
+
+
+def test_mesh_file(ridge, tmp_path):
+    ridge.save(tmp_path / "mesh.npz")
+    again = Ridge.read(tmp_path / "mesh.npz")
+    assert again.vertices == ridge.vertices
+    for name in ("points", "triangles", "skin", "top", "sides"):
+        np.testing.assert_array_equal(getattr(again, name), getattr(ridge, name))
+
+
+def test_triangles(ridge):
+    """Counter-clockwise, each middle half-way along its edge (roundoff), and together the ridge.
+
+    Tolerance of the area: chords of 40 um over a curvature of 4 per mm miss a thousandth of the bottom's 0.05 mm.
+    """
+    p = ridge.points[ridge.triangles]
+    for k in range(3):
+        np.testing.assert_allclose(p[:, 3 + k], (p[:, k] + p[:, (k + 1) % 3]) / 2, atol=1e-14)
+    (a, b), (c, d) = ((p[:, k] - p[:, 0]).T for k in (1, 2))
+    area = (a * d - b * c) / 2
+    assert area.min() > 0
+    assert area.sum() == pytest.approx(WIDTH * (0.6 - 0.05), rel=2e-3)
+
+
+def test_skin(ridge):
+    """The skin leads from side to side, left to right, without a gap."""
+    np.testing.assert_array_equal(ridge.skin[1:, 0], ridge.skin[:-1, 1])
+    ends = ridge.points[ridge.skin[[0, -1], [0, 1]]]
+    np.testing.assert_allclose(ends, [[-WIDTH / 2, 0.1], [WIDTH / 2, 0.1]], atol=1e-12)
+
+
+def test_supports(ridge):
+    assert (ridge.points[ridge.top, 1] > 0.6 - 1e-12).all()
+    assert (np.abs(ridge.points[ridge.sides, 0]) > WIDTH / 2 - 1e-12).all()
+
+
+def test_case_file(tmp_path):
+    for name, case in cases().items():
+        write_case(case, tmp_path / f"{name}.json")
+        assert read_case(tmp_path / f"{name}.json") == case
+
+
+def test_steps():
+    assert list(steps(Case(0.0, (Load(0.0, -1.0), Load(2.0, -1.0))))) == [
+        (Load(0.0, 0.0), Load(0.0, -1.0)),
+        (Load(0.0, -1.0), Load(2.0, -1.0)),
+    ]
+
+
+def test_answer_file(answer, tmp_path):
+    write_answer(answer, tmp_path / "answer.json")
+    assert read_answer(tmp_path / "answer.json") == answer
+
+
+def test_screen_that_moves_instead(answer):
+    """After 20 um under a penetration of 10 um all slips: friction on the skin is mu_f F_n, against the motion.
+
+    Tolerance: the imbalance at which solves end, 1e-12 N/mm, on some 30 nodes.
+    """
+    _, moved = answer.states
+    assert moved.f_t == pytest.approx(-0.25 * moved.f_n, abs=1e-10)
+
+
+def test_half_width_holds_the_points_that_touch(ridge, answer):
+    """The contact ends beyond the outermost points under pressure, by less than a facet at each end."""
+    for state in answer.states:
+        touching = np.array(state.x)[np.array(state.p_n) > 0]
+        half = profile.half_width(ridge, state)
+        assert np.ptp(touching) / 2 < half < np.ptp(touching) / 2 + 0.04
+
+
+def test_half_width_of_a_parabola():
+    """An edge from (0, -1) to (2, 3) with its middle at (1, 0.25): y = -1 + x/2 + 3/4 x^2, below until its root."""
+    points = np.array([[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]])
+    mesh = Ridge(points, 2, np.zeros((0, 6), int), np.array([[0, 1, 2]]), np.zeros(0, int), np.zeros(0, int))
+    state = State("", 0, 0, [[0.0, -1.0], [0.0, 3.0], [0.0, 0.25]], [], [], [])
+    x = np.linspace(0, (-0.5 + np.sqrt(0.25 + 3)) / 1.5, 200001)
+    exact = np.hypot(np.diff(x), np.diff(-1 + x / 2 + 0.75 * x**2)).sum() / 2
+    assert profile.half_width(mesh, state) == pytest.approx(exact, rel=1e-5)  # the error of six Gauss points
+
+
+def test_deck(ridge):
+    """CalculiX gets Ogden's exponent in its own sign, D = 2/K, and every facet of the skin once."""
+    deck = calculix_ridge.deck(cases()["friction"], ridge)
+    lines = deck.splitlines()
+    law = [float(word) for word in lines[lines.index("*HYPERELASTIC, OGDEN, N=1") + 1].split(",")]
+    assert law == pytest.approx([0.08676, 14.53, 3 * (1 - 2 * 0.48) / (0.08676 * 1.48)])
+    slave = lines[lines.index("*SURFACE, NAME=SLAVE") + 1 : lines.index("*SURFACE, NAME=MASTER")]
+    assert len(slave) == len(ridge.skin)
+    assert deck.count("*STEP") == len(cases()["friction"].loads)
+
+
+def test_tables_of_calculix():
+    text = "\n forces (fx,fy,fz) for set HELD and time  0.2000000E+01\n\n  1 -2.5E-01 1. 0.\n  7 1. 2. 3.\n"
+    assert list(calculix_ridge.blocks(text)) == [
+        ("forces (fx,fy,fz) for set HELD and", 2.0, [[1, -0.25, 1, 0], [7, 1, 2, 3]])
+    ]
+
+
+def test_differences_are_marked(answer, ridge):
+    """A difference is flagged above the bar and only there; friction that vanishes by symmetry is not judged."""
+    one = page.row(answer, answer.states[1], ridge)
+    assert page.line(one, one).count("%") == 0
+    assert "**!**" not in page.line(replace(one, f_n=one.f_n * (1 + 0.9 * page.FORCE)), one)
+    assert page.line(replace(one, f_n=one.f_n * (1 + 1.1 * page.FORCE)), one).count("**!**") == 1
+    assert page.line(replace(one, peak=one.peak * (1 - 1.1 * page.SHAPE)), one).count("**!**") == 1
+    still = replace(one, f_t=0.0)
+    assert "**!**" not in page.line(replace(still, f_t=1e-6), still)
+
+
+def test_page(answer, ridge, tmp_path):
+    """The page names every program that answered, with its version, licence and picture."""
+    ridge.save(tmp_path / "40.npz")
+    other = replace(answer, program="GetFEM", version="5.4")
+    for program, found in (("ours", answer), ("getfem", other)):
+        for name in cases():
+            write_answer(found, page.answer_path(tmp_path, 40, name, "", program))
+    text = page.write(tmp_path, tmp_path / "docs").read_text()
+    assert "| GetFEM | 5.4 | this project |" in text
+    assert text.count("| fingerpad |") == 1 + 2 * len(answer.states)
+    assert (tmp_path / "docs/peers/tractions.png").stat().st_size > 1000
+
+
+def test_unknown_variant():
+    with pytest.raises(ValueError, match="as FElupe"):
+        Case(0.0, (), variant="upside down")
