@@ -9,9 +9,12 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+from mpi4py import MPI
+
 from benchmarks.verification import page
 from benchmarks.verification.areas import AREAS
 from benchmarks.verification.case import Case, Outcome
+from variational import jit
 
 _ROOT = Path(__file__).resolve().parents[1]
 
@@ -33,6 +36,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--small", action="store_true", help="coarse meshes, as in the tests")
     parser.add_argument("--docs", type=Path, default=_ROOT / "docs", help="folder of the page")
     args = parser.parse_args(arguments)
+    jit.sweep(MPI.COMM_WORLD)
     results = {area: [(case, _run(area, case, args.small)) for case in AREAS[area]] for area in args.only}
     if not args.small and len(results) == len(AREAS):
         page.write(results, args.docs)
