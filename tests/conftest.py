@@ -10,6 +10,12 @@ from geometry.benchmarks import block
 from geometry.mesh import TaggedMesh, load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
+from variational import jit
+
+
+def pytest_sessionstart():
+    """Delete compiles that were killed, each of which would block its form."""
+    jit.sweep(MPI.COMM_WORLD)
 
 
 def pytest_collection_modifyitems(config, items):
