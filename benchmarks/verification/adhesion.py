@@ -194,7 +194,7 @@ def maugis(small: bool) -> Outcome:
         ax.plot(np.pi / 4 * (x / unit) ** 2, x / unit, "C1--", lw=0.8, label="Hertz, no attraction")
         a, f = np.array(found).T
         ax.plot(f / scale, a / unit, "C0o", mfc="none", label="finite elements, pulled off")
-        ax.set(xlabel="f R / (E* b²), b³ = w R² / E*", ylabel="a / b", xlim=(-1.0, 1.0))
+        ax.set(xlabel="f R / (E* b²), b³ = w R² / E*", ylabel="a / b", xlim=(-1.8, 1.0))
         ax.legend()
 
     return Outcome(tuple(rows), draw)
