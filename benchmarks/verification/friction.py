@@ -15,7 +15,8 @@ NAFEMS CGS-4 (Feng and Prinja, Benchmark Tests for Finite Element Modelling of C
 R0081, 2001): a wedge of weight G is pushed up a slope of tan alpha = 0.1 by a horizontal force F, with
 F / G = (tan alpha + mu) / (1 - mu tan alpha). The screen here is horizontal, so the slope is one of the loads: with N
 normal to it and Q along it, F = Q cos alpha + N sin alpha and G = N cos alpha - Q sin alpha. The bone's N is given and
-its Q found; Coulomb's law knows no scale, so N may be any. The benchmark's deformable base and spring are left out.
+its Q found; Coulomb's law knows no scale, so N may be any. Formula and tan alpha are as FrontISTR's tests cite them
+(gitlab.com/FrontISTR-Commons/FrontISTR, merge request 599); the benchmark's own report was not at hand.
 """
 
 from dataclasses import dataclass
@@ -42,13 +43,13 @@ _SKIN = Ogden(86.76e3, -14.53, 0.48)
 def full_slip(small: bool) -> Outcome:
     """One ridge of skin under 100 V, dragged to full slip and 0.2 mm further."""
     mu_f, force = 0.25, 5.0
-    ways: dict[str, Formulation] = {
-        "penalty": Penalty(1.5e12, 5e10),
-        "Nitsche 0": Nitsche(10.0, 0),
-        "augmented Lagrangian": AugmentedLagrangian(1.5e13, 5e11, 5e-11),
-    }
+    ways: dict[str, Formulation] = {"penalty": Penalty(1.5e12, 5e10), "Nitsche 0": Nitsche(10.0, 0)}
     if not small:
-        ways |= {"Nitsche 1": Nitsche(10.0, 1), "Nitsche -1": Nitsche(10.0, -1)}
+        ways |= {
+            "Nitsche 1": Nitsche(10.0, 1),
+            "Nitsche -1": Nitsche(10.0, -1),
+            "augmented Lagrangian": AugmentedLagrangian(1.5e13, 5e11, 5e-10),
+        }
     rows, paths = [], {}
     for name, formulation in ways.items():
         path: list[tuple[float, float, float]] = []
@@ -61,7 +62,8 @@ def full_slip(small: bool) -> Outcome:
         run = over_screen(partial(ridge, 20e-6), _SKIN, interface, force, d_eq=2e-6, on_accept=accept)
         run.run(Target("press", f_ext=force))
         run.run(Target("charge", voltage=100.0))
-        run.run(Target("slide", bone_x=0.4e-3, until_full_slip=True))
+        for x in (10e-6, 20e-6, 30e-6, 45e-6, 0.4e-3):
+            run.run(Target("slide", bone_x=x, until_full_slip=True))
         first = path[-1][1]
         run.run(Target("slide on", bone_x=path[-1][0] + 0.2e-3))
         _, f_t, f_c = path[-1]
@@ -69,7 +71,10 @@ def full_slip(small: bool) -> Outcome:
         why = "asked for: the law, to the nodal imbalances of the solve"
         mesh = "P2, facets of 20 um"
         rows.append(Row(f"f_T at full slip over mu_0 f_c, {name}", f_t / (mu_f * f_c), 1.0, 1e-6, why, mesh))
-        rows.append(Row(f"f_T after 0.2 mm more, over that, {name}", f_t / first, 1.0, 1e-6, why, mesh))
+        same = 1e-6
+        if isinstance(formulation, AugmentedLagrangian):
+            same, why = 1e-5, "multipliers end at 0.5 nm, over which the attraction beside the contact changes by 4e-4"
+        rows.append(Row(f"f_T after 0.2 mm more, over that, {name}", f_t / first, 1.0, same, why, mesh))
 
     def draw(figure: Figure) -> None:
         ax = figure.subplots()
@@ -154,7 +159,7 @@ def partial_slip(small: bool) -> Outcome:
         for k, state in enumerate(states):
             ax.plot(x, shear(x * HALF_WIDTH, state.part) / unit, "k-", lw=0.8, label="Cattaneo" if k == 0 else None)
             label = f"Q / μP = {state.part:.2f}"
-            ax.plot(state.x / HALF_WIDTH, state.t / unit, f"C{k}{'.+x1'[k]}", ms=3, label=label)
+            ax.plot(state.x / HALF_WIDTH, state.t / unit, f"C{k}{'o+xv'[k]}", ms=3, mfc="none", label=label)
         ax.set(xlabel="x / a", ylabel="t / (μ p_0)", xlim=(-1.2, 1.2))
         ax.legend()
 

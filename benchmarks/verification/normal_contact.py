@@ -130,8 +130,8 @@ def hertz(small: bool) -> Outcome:
         ax = figure.subplots()
         x = np.linspace(-1.2, 1.2, 481)
         ax.plot(x, hertz_pressure(x * HALF_WIDTH) / P_0, "k-", lw=0.8, label="Hertz")
-        for (name, r), style in zip(finest.items(), ("C0.", "C1+"), strict=True):
-            ax.plot(r.x / HALF_WIDTH, r.p_n / P_0, style, ms=3, label=name)
+        for (name, r), style in zip(finest.items(), ("C0o", "C1+"), strict=True):
+            ax.plot(r.x / HALF_WIDTH, r.p_n / P_0, style, ms=4, mfc="none", label=name)
         ax.set(xlabel="x / a", ylabel="p_n / p_0", xlim=(-1.2, 1.2))
         ax.legend()
 
