@@ -1,6 +1,8 @@
 """The cache of compiled forms."""
 
 import os
+import subprocess
+import sys
 import time
 
 from mpi4py import MPI
@@ -17,3 +19,17 @@ def test_sweep_takes_what_a_killed_compile_left(tmp_path, monkeypatch):
         os.utime(tmp_path / name, times=(time.time() - 600,) * 2)
     jit.sweep(MPI.COMM_SELF)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["done.c", "done.c.cached", "young.c"]
+
+
+def test_sweep_leaves_what_a_compiler_is_at(tmp_path, monkeypatch):
+    """However old: on a machine with much to do a compile takes minutes."""
+    monkeypatch.setitem(jit.OPTIONS, "cache_dir", tmp_path)
+    source = tmp_path / "slow_form.c"
+    source.touch()
+    os.utime(source, times=(time.time() - 6000,) * 2)
+    with subprocess.Popen([sys.executable, "-c", "input()", str(source)], stdin=subprocess.PIPE) as compiler:
+        jit.sweep(MPI.COMM_SELF)
+        assert source.exists()
+        compiler.communicate(b"\n")
+    jit.sweep(MPI.COMM_SELF)
+    assert not source.exists()

@@ -1,8 +1,10 @@
 """Compiled forms: for which processor, how long to wait for a compile, and what a killed one leaves behind."""
 
+import contextlib
 import hashlib
 import platform
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +12,7 @@ import dolfinx.jit
 from mpi4py import MPI
 
 _CPU = Path("/proc/cpuinfo")
-_DEAD = 180.0  # s after which an unfinished compile is taken for killed; the longest here takes half a minute
+_DEAD = 300.0  # s after which an unfinished compile that no compiler is at is taken for killed; mostly it takes seconds
 
 
 def _options() -> dict[str, Any]:
@@ -31,7 +33,22 @@ def sweep(comm: MPI.Comm) -> None:
     if comm.rank == 0:
         folder = Path(OPTIONS.get("cache_dir", dolfinx.jit.get_options()["cache_dir"]))
         for source in folder.glob("*.c"):
-            finished = source.with_name(source.name + ".cached").exists()
-            if not finished and time.time() - source.stat().st_mtime > _DEAD:
+            if not source.with_name(source.name + ".cached").exists() and _dead(source):
                 source.unlink(missing_ok=True)
     comm.barrier()
+
+
+def _dead(source: Path) -> bool:
+    """Return whether nobody has touched a source for long, nor compiles it now, as far as can be seen."""
+    try:
+        old = time.time() - source.stat().st_mtime > _DEAD
+    except FileNotFoundError:  # somebody else was faster
+        return False
+    return old and not any(source.name.encode() in command for command in _commands())
+
+
+def _commands() -> Iterator[bytes]:
+    """Yield the command line of each process that can be seen; none where there is no /proc."""
+    for process in Path("/proc").glob("[0-9]*/cmdline"):
+        with contextlib.suppress(OSError):
+            yield process.read_bytes()
