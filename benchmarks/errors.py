@@ -7,7 +7,6 @@ what has been run is written to docs/errors.md, docs/errors.png and, as the refe
 docs/errors.json.
 """
 
-import argparse
 import csv
 import json
 import sys
@@ -17,12 +16,11 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from benchmarks import arguments
 from benchmarks.convergence import Limit, limit
-from fingerpad.command import positive
 from fingerpad.scene import Scene, from_data
 from fingerpad.sweep import key, result, sweep
 
-_ROOT = Path(__file__).resolve().parents[1]
 _LIMIT = 10800.0  # s of processor time for one run; the finest mesh takes far longer than a trace
 CONTACT = (20e-6, 10e-6, 5e-6, 2.5e-6)
 AT = 10e-6  # m, contact size of the other studies
@@ -169,14 +167,11 @@ def write(out: Path, docs: Path) -> None:
     (docs / "errors.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+def main(given: Sequence[str] | None = None) -> int:
     """Run what is missing of the studies asked for and write the page."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=_ROOT / "results" / "traces", help="folder of results")
-    parser.add_argument("--docs", type=Path, default=_ROOT / "docs", help="folder of the page")
-    parser.add_argument("--jobs", type=positive(int), default=2, help="runs at a time")
+    parser = arguments.parser(__doc__)
     parser.add_argument("--only", nargs="*", choices=STUDIES, default=list(STUDIES), help="studies to run")
-    args = parser.parse_args(arguments)
+    args = parser.parse_args(given)
     scenes = {f"{name} {value:g}": scene for name in args.only for value, scene in study(name).items()}
     # The finest first: it takes longest.
     summaries = sweep(dict(reversed(scenes.items())), args.out, args.jobs, _LIMIT)

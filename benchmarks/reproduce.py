@@ -7,13 +7,13 @@ what is missing or changed is run, and drawing anew takes seconds. Writes docs/p
 docs/paper/paper.json.
 """
 
-import argparse
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from benchmarks import arguments
 from benchmarks.paper import friction, micro, page, scenes, section, sed, tables
 from benchmarks.paper.data import Run
 from benchmarks.paper.statement import Statement
@@ -22,7 +22,6 @@ from fingerpad.command import positive
 from fingerpad.scene import Scene
 from fingerpad.sweep import sweep
 
-_ROOT = Path(__file__).resolve().parents[1]
 _LIMIT = 3600.0  # s of processor time for one run; the sine takes longest
 
 
@@ -116,16 +115,13 @@ def make(out: Path, docs: Path, size: float, measured: friction.Measured | None)
     return book
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+def main(given: Sequence[str] | None = None) -> int:
     """Run what is missing, draw, and write the page."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=_ROOT / "results" / "traces", help="folder of results")
-    parser.add_argument("--docs", type=Path, default=_ROOT / "docs", help="folder of the page and its pictures")
-    parser.add_argument("--jobs", type=positive(int), default=2, help="runs at a time")
+    parser = arguments.parser(__doc__)
     parser.add_argument("--contact-size", type=positive(float), default=scenes.SIZE, help="m")
     parser.add_argument("--measured", type=Path, help="CSV of measured friction, drawn into Fig. 6")
     parser.add_argument("--draw", action="store_true", help="run nothing, draw what is there")
-    args = parser.parse_args(arguments)
+    args = parser.parse_args(given)
     size = args.contact_size
     measured = friction.Measured.read(args.measured) if args.measured else None
     if not args.draw:

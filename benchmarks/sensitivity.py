@@ -6,7 +6,6 @@ Friction, contact length, its reduction by sliding, and strain energy density at
 and tornado plots in docs/sensitivity.md. Runs are kept in results/traces by a hash of their parameters.
 """
 
-import argparse
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,13 +14,13 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from benchmarks import arguments
 from benchmarks.paper.data import Run
 from benchmarks.paper.style import BLUE, VERMILION, draw
 from fingerpad.command import positive
 from fingerpad.scene import Scene, SceneError, check, from_data
 from fingerpad.sweep import sweep
 
-_ROOT = Path(__file__).resolve().parents[1]
 _LAYERS = ("subcutis", "dermis", "viable_epidermis", "stratum_corneum")
 _DEFAULTS = Scene()
 
@@ -158,15 +157,12 @@ def write(changes: Sequence[Change], total: int, size: float, docs: Path) -> Non
     (docs / "sensitivity.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+def main(given: Sequence[str] | None = None) -> int:
     """Run what is missing and write the page."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=_ROOT / "results" / "traces", help="folder of results")
-    parser.add_argument("--docs", type=Path, default=_ROOT / "docs", help="folder of the page")
-    parser.add_argument("--jobs", type=positive(int), default=2, help="runs at a time")
+    parser = arguments.parser(__doc__)
     parser.add_argument("--contact-size", type=positive(float), default=10e-6, help="m")
     parser.add_argument("--draw", action="store_true", help="run nothing, draw what is there")
-    args = parser.parse_args(arguments)
+    args = parser.parse_args(given)
     wanted = scenes(args.contact_size)
     if not args.draw:
         sweep({f"{choice} {way}".strip(): each for (choice, way), each in wanted.items()}, args.out, args.jobs)

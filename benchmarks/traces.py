@@ -6,13 +6,12 @@ Default options throughout. Results are kept in results/traces, a folder a scene
 is run. What is there is written to docs/traces.md.
 """
 
-import argparse
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from fingerpad.command import positive
+from benchmarks import arguments
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene import load as load_scene
 from fingerpad.sweep import Summary, result, sweep
@@ -112,14 +111,11 @@ def page(out: Path) -> str:
     return "\n\n".join([*parts, "\n".join(lines)]) + "\n"
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+def main(given: Sequence[str] | None = None) -> int:
     """Run what is missing of the groups asked for and write the page."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=_ROOT / "results" / "traces", help="folder of results")
-    parser.add_argument("--docs", type=Path, default=_ROOT / "docs", help="folder of the page")
-    parser.add_argument("--jobs", type=positive(int), default=2, help="runs at a time")
+    parser = arguments.parser(__doc__)
     parser.add_argument("--only", nargs="*", choices=GROUPS, default=list(GROUPS), help="groups to run")
-    args = parser.parse_args(arguments)
+    args = parser.parse_args(given)
     scenes = {name: scene for group in args.only for name, scene in GROUPS[group]().items()}
     summaries = sweep(scenes, args.out, args.jobs)
     (args.docs / "traces.md").write_text(page(args.out), encoding="utf-8")
