@@ -25,11 +25,15 @@ def test_bar_covers_a_second_power():
 
 @pytest.mark.parametrize("values", [[1.0, 1.2, 1.1, 1.15], [1.0, 1.1, 1.2, 1.3], [1.0, 1.0, 1.1, 1.1]])
 def test_no_order(values):
-    """Values that swing, or whose changes do not shrink, or vanish: three times the largest of the last two changes, to roundoff."""
+    """Values that swing, or whose changes do not shrink, or vanish: three times the largest of the last two changes.
+
+    Tolerance: roundoff.
+    """
     found = limit(values)
     assert found.order is None
     assert found.value == values[-1]
-    assert found.bar == pytest.approx(3 * max(abs(values[-1] - values[-2]), abs(values[-2] - values[-3])), rel=1e-14, abs=0)
+    changes = abs(values[-1] - values[-2]), abs(values[-2] - values[-3])
+    assert found.bar == pytest.approx(3 * max(changes), rel=1e-14, abs=0)
 
 
 def test_accident_is_no_order():
