@@ -115,7 +115,8 @@ def test_every_facet_is_counted_once(name, request):
     lengths = surface.per_ridge(np.ones((len(surface.pairs), 4)))
     ds = ufl.Measure("ds", body.mesh, subdomain_data=body.facet_tags)
     for k, j in enumerate(surface.names):
-        length = body.mesh.comm.allreduce(fem.assemble_scalar(fem.form(fem.Constant(body.mesh, 1.0) * ds(tags.ridge(j)))))
+        form = fem.form(fem.Constant(body.mesh, 1.0) * ds(tags.ridge(j)))
+        length = body.mesh.comm.allreduce(fem.assemble_scalar(form))
         assert lengths[k] == pytest.approx(length, rel=1e-12, abs=0)
 
 
