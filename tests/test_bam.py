@@ -18,20 +18,24 @@ def bam() -> BearingArea:
 
 
 def test_no_fold_at_low_voltage(bam):
-    """p_ext(u_bar) turns first at 155.5 V, at a separation of 2.5 h_rms."""
+    """p_ext(u_bar) turns first at 155.5 V, at a separation of 2.5 h_rms.
+
+    Tolerance: half a volt higher the fold, which moves with the root of the voltage's excess, is 4 % nearer.
+    """
     assert bam.pull_off_fold(155.0) is None
-    assert bam.pull_off_fold(156.0) == pytest.approx(2.5 * bam.h_rms, rel=0.05)
+    assert bam.pull_off_fold(156.0) == pytest.approx(2.5 * bam.h_rms, rel=0.05, abs=0)
 
 
 def test_derivative(bam):
-    """Central differences of step 1e-4 relative leave an error of 1e-8 times the third derivative's scale."""
+    """Central differences of step 1e-4 relative leave an error of 1e-8 times the third derivative's scale: 6e-8."""
     p = np.array([2e3, 1e4, 5e4, 2e5])
     step = 1e-4 * p
     numeric = (bam(p + step).d_eq - bam(p - step).d_eq) / (2 * step)
-    np.testing.assert_allclose(bam(p).derivative, numeric, rtol=1e-6)
+    np.testing.assert_allclose(bam(p).derivative, numeric, rtol=2e-7)
 
 
 def test_ends_are_held_and_named(bam):
+    """Beyond either end d_eq is that of the end. Tolerance: half the last digit of 11.8 um and of 259.7 kPa."""
     assert bam(0.0).d_eq == bam(bam.p_floor).d_eq == pytest.approx(11.8 * UM, abs=0.05 * UM)
     assert bam(1e6).d_eq == bam.air_gap(0.0)
     assert bam(0.0).derivative == bam(1e6).derivative == 0

@@ -71,26 +71,29 @@ def test_pressure(gap, pressure):
 # -- patch test ----------------------------------------------------------------------------------------
 @pytest.mark.parametrize("part", [0.001, 0.02, 0.1])
 def test_patch(body, part):
-    """A block pressed flat bears one pressure everywhere, confined compression's. Tolerance: that of the solve."""
+    """A block pressed flat bears one pressure everywhere, confined compression's.
+
+    Tolerance: that of the solve, 1e-9 N/m on a sixth of a facet of 0.25 mm, is 1e-8 of the least pressure, 2 kPa.
+    """
     solver = make(body)
     solver.control = Control(0.0, -part * HEIGHT)
     solver.solve()
     p_n = Observer(solver.problem).state().p_n
-    np.testing.assert_allclose(p_n, uniform_pressure(part * HEIGHT), rtol=1e-7)
+    np.testing.assert_allclose(p_n, uniform_pressure(part * HEIGHT), rtol=2e-8)
 
 
 def test_patch_under_voltage(body):
-    """Attraction adds to the contact pressure: p_n = elastic stress + p_el."""
+    """Attraction adds to the contact pressure: p_n = elastic stress + p_el. Tolerance: 1e-9 N/m on 73 kPa, as above."""
     solver = make(body)
     solver.problem.voltage.value = VOLTAGE
     solver.control = Control(0.0, -0.02 * HEIGHT)
     solver.solve()
     p_n = Observer(solver.problem).state().p_n
-    np.testing.assert_allclose(p_n, uniform_pressure(0.02 * HEIGHT, P_EL), rtol=1e-7)
+    np.testing.assert_allclose(p_n, uniform_pressure(0.02 * HEIGHT, P_EL), rtol=1e-9)
 
 
 def test_no_contact_no_force():
-    """Above the screen the body keeps its shape, exactly."""
+    """Above the screen the body keeps its shape. Tolerance: ten nodal imbalances; contact is exactly none."""
     solver = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3, gap=10e-6)))
     solver.control = Control(0.0, -9e-6)
     solver.solve()
@@ -102,18 +105,21 @@ def test_no_contact_no_force():
 
 
 def test_resultants_of_the_patch(body):
-    """Force, length, mean pressure and attraction of the ridge are the uniform ones times the width."""
+    """Force, length, mean pressure and attraction of the ridge are the uniform ones times the width.
+
+    Tolerance: the solve's on 73 kPa; roundoff for what does not depend on the pressure.
+    """
     solver = make(body)
     solver.problem.voltage.value = VOLTAGE
     solver.control = Control(0.0, -0.02 * HEIGHT)
     solver.solve()
     loads = Observer(solver.problem).ridge_loads()
     p_n = uniform_pressure(0.02 * HEIGHT, P_EL)
-    assert loads.length[0] == pytest.approx(WIDTH, rel=1e-10)  # the skin stays flat to the solve's tolerance
-    assert loads.f_contact[0] == pytest.approx(p_n * WIDTH, rel=1e-7)
-    assert loads.p_c[0] == pytest.approx(p_n, rel=1e-7)
-    assert loads.f_attraction[0] == pytest.approx(P_EL * WIDTH, rel=1e-10)
-    assert loads.f_attraction_x[0] == pytest.approx(0, abs=1e-10 * P_EL * WIDTH)
+    assert loads.length[0] == pytest.approx(WIDTH, rel=1e-10, abs=0)  # the skin stays flat to the solve's tolerance
+    assert loads.f_contact[0] == pytest.approx(p_n * WIDTH, rel=1e-9)
+    assert loads.p_c[0] == pytest.approx(p_n, rel=1e-9)
+    assert loads.f_attraction[0] == pytest.approx(P_EL * WIDTH, rel=1e-12)
+    assert loads.f_attraction_x[0] == pytest.approx(0, abs=1e-12 * P_EL * WIDTH)
 
 
 # -- force control -------------------------------------------------------------------------------------
@@ -137,17 +143,20 @@ def test_force_is_reached(body, voltage):
     assert solver.reaction[1] == pytest.approx(force, abs=10 * TOLERANCE)
     # The balance over all nodes adds up to some fifty imbalances
     assert (loads.f_contact - loads.f_attraction)[0] == pytest.approx(force, abs=50 * TOLERANCE)
-    assert loads.f_attraction[0] == pytest.approx(attraction, rel=1e-10)
+    assert loads.f_attraction[0] == pytest.approx(attraction, rel=1e-12)  # roundoff: the skin is below d_eq
 
 
 def test_height_under_force(body):
-    """Force and height are two ways to the same state: the height reached is confined compression's."""
+    """Force and height are two ways to the same state: the height reached is confined compression's.
+
+    Tolerance: some ten imbalances of 1e-9 N/m in 5 N/m, on a height of a micrometre.
+    """
     force = 5.0
     solver = make(body)
     press(solver, force)
     p_n = force / WIDTH
     stretch = brentq(lambda x: confined_stress(x) + p_n, 0.5, 1.0, xtol=1e-15)
-    assert solver.bone[1] == pytest.approx(-(1 - stretch) * HEIGHT - p_n / EPS_N, rel=1e-7)
+    assert solver.bone[1] == pytest.approx(-(1 - stretch) * HEIGHT - p_n / EPS_N, rel=1e-8, abs=0)
     assert solver.bone[0] == 0
 
 
@@ -164,7 +173,8 @@ def test_bone_moves_as_one(body):
 def test_ridge():
     """One papillary ridge pressed 60 um: 36.048 N/m, the limit over meshes of other programs too.
 
-    Straight facets of 20, 10 and 5 um miss it by 4e-3, 8e-4 and 6e-5: the limit is known to 6e-5 itself.
+    Straight facets of 20, 10 and 5 um miss it by 4e-3, 8e-4 and 6e-5: the limit is known to 6e-5 itself. The bone
+    bears the same but for some hundred nodal imbalances.
     """
     solver = make(load(MPI.COMM_WORLD, partial(ridge, 5e-6)), eps_n=1e12)
     for step in range(1, 7):
@@ -216,7 +226,7 @@ def test_stick_comes_first(slide):
 
 
 def test_friction_grows_until_full_slip(slide):
-    """Friction at constant force grows with the bone's way, up to full slip, and stays."""
+    """Friction at constant force grows with the bone's way, up to full slip, and stays. Tolerance: some imbalances."""
     friction = np.array([-loads.f_friction[0] for _, _, loads, *_ in slide[1:]])
     assert (np.diff(friction) > -1e-8 * friction.max()).all()
     assert slide[-1][-1] == (1.0, True)
@@ -237,7 +247,7 @@ def test_bone_bears_the_friction(slide):
 
 
 def test_force_is_held_while_sliding(slide):
-    """Under force control the contact force is the prescribed one, sliding or not."""
+    """Under force control the contact force is the prescribed one, sliding or not. Tolerance as above."""
     for control, _, loads, *_ in slide[1:]:
         assert loads.f_contact[0] == pytest.approx(control.force, abs=100 * TOLERANCE)
 

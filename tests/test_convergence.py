@@ -10,11 +10,11 @@ SIZES = 0.5 ** np.arange(4)
 
 @pytest.mark.parametrize("order", [1.0, 1.5, 2.0, 3.0])
 def test_power_law(order):
-    """A single power of the size is found exactly. Tolerance: roundoff of differences."""
+    """A single power of the size is found exactly. Tolerance: roundoff of differences, 1e-14 of numbers about 2."""
     found = limit(list(2 - 0.3 * SIZES**order))
-    assert found.order == pytest.approx(order, rel=1e-9)
-    assert found.value == pytest.approx(2, rel=1e-12)
-    assert found.bar == pytest.approx(1.25 * 0.3 * SIZES[-1] ** order, rel=1e-9)
+    assert found.order == pytest.approx(order, rel=1e-12)
+    assert found.value == pytest.approx(2, rel=1e-14, abs=0)
+    assert found.bar == pytest.approx(1.25 * 0.3 * SIZES[-1] ** order, rel=1e-12, abs=0)
 
 
 def test_bar_covers_a_second_power():
@@ -25,18 +25,25 @@ def test_bar_covers_a_second_power():
 
 @pytest.mark.parametrize("values", [[1.0, 1.2, 1.1, 1.15], [1.0, 1.1, 1.2, 1.3], [1.0, 1.0, 1.1, 1.1]])
 def test_no_order(values):
-    """Values that swing, or whose changes do not shrink, or vanish: three times the largest of the last two changes."""
+    """Values that swing, or whose changes do not shrink, or vanish: three times the largest of the last two changes.
+
+    Tolerance: roundoff.
+    """
     found = limit(values)
     assert found.order is None
     assert found.value == values[-1]
-    assert found.bar == pytest.approx(3 * max(abs(values[-1] - values[-2]), abs(values[-2] - values[-3])))
+    changes = abs(values[-1] - values[-2]), abs(values[-2] - values[-3])
+    assert found.bar == pytest.approx(3 * max(changes), rel=1e-14, abs=0)
 
 
 def test_accident_is_no_order():
-    """A last change that happens to be small does not claim an accuracy of 2^-10: at most order 4 is believed."""
+    """A last change that happens to be small does not claim an accuracy of 2^-10: at most order 4 is believed.
+
+    Tolerance: roundoff of the last change, 1e-4 of numbers about 1.
+    """
     found = limit([1.0, 1.1024, 1.1025])
-    assert found.order == pytest.approx(10, rel=1e-9)
-    assert found.bar == pytest.approx(1.25 * 1e-4 / 15, rel=1e-9)
+    assert found.order == pytest.approx(10, rel=1e-11)
+    assert found.bar == pytest.approx(1.25 * 1e-4 / 15, rel=1e-11, abs=0)
 
 
 def test_two_values_are_too_few():

@@ -1,4 +1,7 @@
-"""The loop over the scales on macroscales that are one formula: where it converges, how fast, and what it leaves."""
+"""The loop over the scales on macroscales that are one formula: where it converges, how fast, and what it leaves.
+
+Where no other tolerance is named, 1e-6 of d_eq is the one at which the loop ends.
+"""
 
 from types import SimpleNamespace
 
@@ -57,12 +60,15 @@ def flat(p_ext: float, noise: float = 0.0) -> Stub:
 
 @pytest.mark.parametrize("gain", [-3.0, -0.9, 0.0, 0.5, 0.9, 0.99])
 def test_linear_ridge_takes_few_sweeps(gain):
-    """The plain loop diverges at a gain of -3 and takes a thousand sweeps at 0.99; the secant is exact."""
+    """The plain loop diverges at a gain of -3 and takes a thousand sweeps at 0.99; the secant is exact.
+
+    Tolerance: the loop's, and roundoff of a secant over changes of a tenth.
+    """
     stub = line(gain)
     stub.coupling.solve()
     assert len(stub.coupling.history.changes) <= 5
     assert stub.coupling.d_eq[0] == pytest.approx(CENTRE, rel=1e-6)
-    assert stub.coupling.gain[0] == pytest.approx(gain, abs=1e-6)
+    assert stub.coupling.gain[0] == pytest.approx(gain, abs=1e-9)
     assert not stub.coupling.history.jumped
 
 
@@ -87,7 +93,10 @@ def test_state_past_the_fold_is_left(gain, side):
 
 
 def test_ridges_that_feel_each_other():
-    """A pressure that follows the neighbours' air gaps by a hundredth disturbs the secants, but not for long."""
+    """A pressure that follows the neighbours' air gaps by a hundredth disturbs the secants, but not for long.
+
+    Tolerance: the loop's, twice for what one ridge's error does to the others.
+    """
     weak = 0.01 * (np.ones((3, 3)) - np.eye(3)) + np.diag([0.3, 0.9, -0.5])
     stub = Stub(lambda p_c: AirGap(CENTRE + p_c, np.ones_like(p_c)), lambda d: weak @ (d - CENTRE), 3)
     stub.coupling.set_air_gaps(CENTRE * np.array([1.1, 0.9, 1.0]))
@@ -109,7 +118,7 @@ def test_towards_the_fold(gain, noise):
     """A ridge led up to its pull-off fold by halves of the distance settles where its gain is the one asked for.
 
     Pressures come with the error a solve may leave. That of d_eq is a tenth of the tolerance by secant, or the noise
-    over 1 - gain.
+    over 1 - gain. The last secant's gain lags behind the tangent's by 5e-5.
     """
     closure = BearingArea(H_0, p_floor=1.0)
     fold = closure.pull_off_fold(FOLD_VOLTAGE)
@@ -123,7 +132,7 @@ def test_towards_the_fold(gain, noise):
         assert len(stub.coupling.history.changes) <= 10
         assert stub.coupling.d_eq[0] == pytest.approx(float(closure.air_gap(part * end)), rel=1e-6)
     assert not stub.coupling.history.jumped
-    assert stub.coupling.gain[0] == pytest.approx(gain, abs=0.02)
+    assert stub.coupling.gain[0] == pytest.approx(gain, abs=2e-4)
 
 
 @pytest.mark.parametrize("beyond", [1.0, 10.0, 100.0])  # Pa

@@ -29,7 +29,7 @@ def test_anchor(part):
     u_x = part * LIMIT / EPS_T
     t_t = traction(u_x)
     anchor = friction.new_anchor(u_x, t_t, EPS_T)
-    assert traction(u_x, anchor) == pytest.approx(t_t, rel=1e-12)
+    assert traction(u_x, anchor) == pytest.approx(t_t, rel=1e-14)
     assert anchor == pytest.approx((part - np.clip(part, -1, 1)) * LIMIT / EPS_T, abs=1e-12 * LIMIT / EPS_T)
 
 

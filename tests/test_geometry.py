@@ -75,11 +75,11 @@ def test_layers_are_mirrored(finger_mesh, layer):
 
 @pytest.mark.mpi
 def test_no_cell_is_without_layer(finger_mesh):
-    """The layers together are the whole section."""
+    """The layers together are the whole section. Tolerance: roundoff of the sums."""
     whole = finger_mesh.mesh.comm.allreduce(
         fem.assemble_scalar(fem.form(fem.Constant(finger_mesh.mesh, 1.0) * ufl.dx(finger_mesh.mesh)))
     )
-    assert sum(integral(finger_mesh, tag) for tag in tags.LAYERS.values()) == pytest.approx(whole, rel=1e-12)
+    assert sum(integral(finger_mesh, tag) for tag in tags.LAYERS.values()) == pytest.approx(whole, rel=1e-12, abs=0)
 
 
 @pytest.mark.mpi
@@ -103,30 +103,39 @@ def away_from(curve, points) -> float:
 
 
 def test_ridges_of_the_mesh(finger_mesh, profiles):
-    """Ridge j's nodes are on the skin's curve about s = j wavelengths. Tolerance: splines through 32 points a ridge."""
+    """Ridge j's nodes are on the skin's curve about s = j wavelengths. Tolerance: splines through 32 points a ridge.
+
+    Its two ends are nodes, to roundoff.
+    """
     for j in finger_mesh.ridges():
         s = (j + np.linspace(-0.5, 0.5, 40001)) * WAVE
         nodes = vertices(finger_mesh, finger_mesh.facet_tags.find(tags.ridge(j)))
         assert away_from(profiles.point(s, profiles.skin(s)), nodes) < 0.05 * UM
         ends = profiles.point(s[[0, -1]], profiles.skin(s[[0, -1]]))
-        assert away_from(nodes, ends) < 1e-9
+        assert away_from(nodes, ends) < 1e-15
 
 
 def test_lowest_node(finger_mesh):
-    """The mesh reaches the screen but for the sagitta of a facet, here up to 40 um, at a tip of radius 118 um."""
+    """The mesh reaches the screen but for the sagitta of a facet, here up to 40 um, at a tip of radius 118 um.
+
+    Below the screen it may be by what splines miss of the curve.
+    """
     lowest = vertices(finger_mesh, finger_mesh.facet_tags.find(tags.ridge(0)))[:, 1].min()
     assert -0.05 * UM < lowest < (40 * UM) ** 2 / (8 * 118 * UM)
 
 
 def test_contact_size(finger_mesh):
-    """Facets about the tips that can touch are about as long as asked; those in the grooves may be longer."""
+    """Facets about the tips that can touch are about as long as asked; those in the grooves may be longer.
+
+    Tolerance: gmsh's freedom to space them, 2 % here; those in the grooves are at most twice as long on average.
+    """
     body = finger_mesh
     for j in (-4, 0, 3):
         facets = body.facet_tags.find(tags.ridge(j))
         x = np.sort(vertices(body, facets)[:, 0])
         if j == 0:
             x = x[np.abs(x) < 0.3 * WAVE]
-            assert np.diff(x).max() < 1.3 * 30 * UM
+            assert np.diff(x).max() < 1.1 * 30 * UM
         assert len(facets) >= WAVE / (2 * 30 * UM)
 
 
@@ -311,13 +320,17 @@ def lengths(body) -> dict[int, float]:
 
 @pytest.mark.mpi
 def test_block():
-    """Its area, its faces and the heights of bottom and top; 5 x 2 rectangles, as 0.21 mm go into 1 mm five times."""
+    """Its area, its faces and the heights of bottom and top; 5 x 2 rectangles, as 0.21 mm go into 1 mm five times.
+
+    Tolerance: roundoff.
+    """
     body = load(MPI.COMM_WORLD, partial(block, MM, 0.4 * MM, 0.21 * MM, gap=7 * UM))
     assert body.mesh.topology.index_map(2).size_global == 20
-    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(0.4 * MM**2, rel=1e-12)
-    assert lengths(body) == pytest.approx({tags.ridge(0): MM, tags.BONE_RIM: MM, tags.SIDES: 0.8 * MM}, rel=1e-12)
+    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(0.4 * MM**2, rel=1e-12, abs=0)
+    expected = {tags.ridge(0): MM, tags.BONE_RIM: MM, tags.SIDES: 0.8 * MM}
+    assert lengths(body) == pytest.approx(expected, rel=1e-12, abs=0)
     mean_height = integral(body, tags.STRATUM_CORNEUM, ufl.SpatialCoordinate(body.mesh)[1]) / (0.4 * MM**2)
-    assert mean_height == pytest.approx(207 * UM, rel=1e-12)
+    assert mean_height == pytest.approx(207 * UM, rel=1e-12, abs=0)
     assert body.ridges() == [0]
 
 
@@ -340,13 +353,13 @@ def test_quarter_tube():
     assert body.mesh.topology.index_map(2).size_global == 2 * n**2
     chord = 2 * n * np.sin(np.pi / 4 / n) * MM
     assert lengths(body) == pytest.approx(
-        {tags.ridge(0): 2 * chord, tags.BONE_RIM: chord, tags.SIDES: 2 * MM}, rel=1e-9
+        {tags.ridge(0): 2 * chord, tags.BONE_RIM: chord, tags.SIDES: 2 * MM}, rel=1e-12, abs=0
     )
     area = n / 2 * np.sin(np.pi / 2 / n) * (4 - 1) * MM**2
-    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(area, rel=1e-9)
+    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(area, rel=1e-12, abs=0)
     for tag, radius in ((tags.ridge(0), 2 * MM), (tags.BONE_RIM, MM)):
         x = vertices(body, body.facet_tags.find(tag))
-        np.testing.assert_allclose(np.hypot(x[:, 0], x[:, 1] - 4 * MM), radius, rtol=1e-9)
+        np.testing.assert_allclose(np.hypot(x[:, 0], x[:, 1] - 4 * MM), radius, rtol=1e-12)
 
 
 @pytest.mark.mpi
@@ -355,10 +368,10 @@ def test_cooks_membrane():
     body = load(MPI.COMM_WORLD, partial(cooks_membrane, 3))
     assert body.mesh.topology.index_map(2).size_global == 18
     expected = {tags.ridge(0): np.hypot(48, 44), tags.BONE_RIM: 44.0, tags.SIDES: 16 + np.hypot(48, 16)}
-    assert lengths(body) == pytest.approx({tag: value * MM for tag, value in expected.items()}, rel=1e-9)
-    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(48 * 30 * MM**2, rel=1e-9)
+    assert lengths(body) == pytest.approx({tag: value * MM for tag, value in expected.items()}, rel=1e-12)
+    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(48 * 30 * MM**2, rel=1e-12, abs=0)
     lowest = MPI.COMM_WORLD.allreduce(float(body.mesh.geometry.x[:, 1].min()), op=MPI.MIN)
-    assert lowest == pytest.approx(10 * MM, rel=1e-9)
+    assert lowest == pytest.approx(10 * MM, rel=1e-12, abs=0)
 
 
 def bottom(body) -> np.ndarray:
@@ -368,24 +381,27 @@ def bottom(body) -> np.ndarray:
 
 
 def test_pad():
-    """Its bottom is a parabola, the facets beside the tip are as long as asked for, and the tip is a node."""
+    """Its bottom is a parabola, the facets beside the tip are as long as asked for, and the tip is a node.
+
+    Tolerance: roundoff; gmsh places nodes along a spline to a millionth of their distance.
+    """
     size, radius, span = 10 * UM, 0.1, 2 * MM
     body = load(MPI.COMM_SELF, partial(pad, size, 8, radius, span))
     x, y = bottom(body).T
-    np.testing.assert_allclose(y, x**2 / (2 * radius), atol=1e-6 * span)  # a spline's ends
-    np.testing.assert_allclose(x[np.abs(x) < 8.5 * size], size * np.arange(-8, 9), atol=1e-6 * size)
-    assert lengths(body)[tags.BONE_RIM] == pytest.approx(span, rel=1e-12)
-    assert lengths(body)[tags.SIDES] == pytest.approx(2 * (span - span**2 / 8 / radius), rel=1e-9)
+    np.testing.assert_allclose(y, x**2 / (2 * radius), rtol=0, atol=1e-12 * span)
+    np.testing.assert_allclose(x[np.abs(x) < 8.5 * size], size * np.arange(-8, 9), rtol=0, atol=1e-6 * size)
+    assert lengths(body)[tags.BONE_RIM] == pytest.approx(span, rel=1e-12, abs=0)
+    assert lengths(body)[tags.SIDES] == pytest.approx(2 * (span - span**2 / 8 / radius), rel=1e-12)
 
 
 def test_foot():
-    """Flat within its half-width, recessed by the step a facet farther out. Tolerance: splines through two points."""
+    """Flat within its half-width, recessed by the step a facet farther out. Tolerance: roundoff."""
     size, half_width, step, span = 10 * UM, 0.2 * MM, 2 * UM, 2 * MM
     body = load(MPI.COMM_SELF, partial(foot, size, half_width, step, span))
     x, y = bottom(body).T
-    np.testing.assert_allclose(y, np.where(np.abs(x) < half_width + size / 2, 0.0, step), atol=1e-9 * span)
-    assert np.abs(np.abs(x[y > step / 2]).min() - half_width - size) < 1e-9 * span
-    assert lengths(body)[tags.BONE_RIM] == pytest.approx(span, rel=1e-12)
+    np.testing.assert_allclose(y, np.where(np.abs(x) < half_width + size / 2, 0.0, step), rtol=0, atol=1e-12 * span)
+    assert np.abs(np.abs(x[y > step / 2]).min() - half_width - size) < 1e-12 * span
+    assert lengths(body)[tags.BONE_RIM] == pytest.approx(span, rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize(

@@ -142,19 +142,22 @@ def test_friction_loop(slid):
     out = next(s for s in slid.states if s.load == "out")
     cycle = [out, *(s for s in slid.states if s.load in ("back", "forth"))]
     x, f_t = np.array([[s.bone[0], -s.reaction[0]] for s in cycle]).T
-    assert x[-1] == pytest.approx(x[0], abs=1e-20)
-    assert f_t[-1] == pytest.approx(f_t[0], rel=1e-9)
+    assert x[-1] == pytest.approx(x[0], abs=1e-20)  # roundoff of 0.5 um
+    assert f_t[-1] == pytest.approx(f_t[0], rel=1e-9)  # at full slip, to the solve's 1e-9
     assert f_t[0] == pytest.approx(MU_F * FORCE, rel=1e-9)
     area = np.trapezoid(f_t, x)
     assert area == pytest.approx(4 * MU_F * FORCE * (FAR - elastic), rel=0.01)
 
 
 def test_friction_loop_is_dissipated(slid):
-    """Nothing is stored over a closed cycle: the bone's work is friction's, to the error of the balance."""
+    """Nothing is stored over a closed cycle: the bone's work is friction's, to the error of the balance.
+
+    Tolerance: that of the solves for what is stored; 4e-4 is what 20 steps a way leave of the work.
+    """
     cycle = [s.energy for s in slid.states if s.load in ("back", "forth")]
     work, dissipated = (sum(getattr(e, name) for e in cycle) for name in ("external", "dissipation"))
-    assert sum(e.change for e in cycle) == pytest.approx(0, abs=1e-6 * work)
-    assert dissipated == pytest.approx(work, rel=0.01)
+    assert sum(e.change for e in cycle) == pytest.approx(0, abs=1e-9 * work)
+    assert dissipated == pytest.approx(work, rel=1e-3)
 
 
 # -- a flat ridge, charged and discharged ------------------------------------------------------------------
@@ -222,16 +225,19 @@ def near(model: FlatRidge, state: State) -> bool:
 
 
 def test_folds_of_the_scalar_model():
-    """The jump off is below the 163.6 V of Eq. 9's threshold; at 200 V the fold off the screen is at 107 Pa."""
+    """The jump off is below the 163.6 V of Eq. 9's threshold; at 200 V the fold off the screen is at 107 Pa.
+
+    Tolerance: half the last digit; the fold near the screen does not know of the floor, but for the search's end.
+    """
     (off, held), (smooth_off, on) = FlatRidge(1e3).folds, FlatRidge(1.0).folds
-    assert off == pytest.approx(162.57, abs=0.01)
+    assert off == pytest.approx(162.57, abs=0.005)
     assert smooth_off == pytest.approx(off, rel=1e-9)
-    assert held == pytest.approx(179.73, abs=0.01)
-    assert on == pytest.approx(270.36, abs=0.01)
+    assert held == pytest.approx(179.73, abs=0.005)
+    assert on == pytest.approx(270.36, abs=0.005)
 
 
 def test_flat_ridge_is_on_its_branch(charged):
-    """Every state is the scalar model's to 1e-6, before and after the jumps."""
+    """Every state is the scalar model's to 1e-6, the coupling's tolerance, before and after the jumps."""
     model, path, _ = charged
     states = [s for s in path.states if s.load in ("charge", "discharge") and s.voltage > 1]
     found = np.array([s.d_eq for s in states])
@@ -267,10 +273,15 @@ def test_jump_of_an_air_gap_releases_no_energy_of_the_skin(charged):
 
 
 def test_flat_ridge_stays_in_contact(charged):
-    """The external pressure keeps the skin on the screen off which the ridge's roughness jumps."""
+    """The external pressure keeps the skin on the screen off which the ridge's roughness jumps.
+
+    Tolerance: the skin stays flat; some ten imbalances of 1e-9 of the force.
+    """
     _, path, _ = charged
-    assert all(s.loads.length[0] == pytest.approx(SIDE, rel=1e-9) for s in path.states if s.load != "touch")
-    assert all(s.reaction[1] == pytest.approx(P_EXT * SIDE, rel=1e-6) for s in path.states if s.load == "discharge")
+    assert all(s.loads.length[0] == pytest.approx(SIDE, rel=1e-9, abs=0) for s in path.states if s.load != "touch")
+    assert all(
+        s.reaction[1] == pytest.approx(P_EXT * SIDE, rel=1e-8, abs=0) for s in path.states if s.load == "discharge"
+    )
 
 
 # -- leaving contact ---------------------------------------------------------------------------------------
@@ -285,18 +296,21 @@ def lifted():
 
 
 def test_ridge_without_contact_has_the_air_gap_of_the_floor(lifted):
-    """Pressed, its air gap is small; once it bears nothing, it is the closure's at p_floor, not more, not the last."""
+    """Pressed, its air gap is small; once it bears nothing, it is the closure's at p_floor, not more, not the last.
+
+    Tolerance: roundoff.
+    """
     pressed = next(s for s in lifted.states[::-1] if s.load == "charge")
     apart = [s for s in lifted.states if s.load == "lift" and s.loads.length[0] == 0]
     assert len(apart) > 0
     assert pressed.d_eq < 4e-6
-    assert all(s.d_eq == pytest.approx(float(BearingArea(H_0)(1e3).d_eq), rel=1e-12) for s in apart)
+    assert all(s.d_eq == pytest.approx(float(BearingArea(H_0)(1e3).d_eq), rel=1e-12, abs=0) for s in apart)
     assert all(s.loads.p_c[0] == 0 for s in apart)
 
 
 def test_ridge_without_contact_is_attracted_across_its_height(lifted):
-    """Higher than its d_eq a ridge feels Eq. 3 at its height: an integral over the undeformed cosine, 1 % of it."""
+    """Higher than its d_eq a ridge feels Eq. 3 at its height: an integral over the undeformed cosine, 1e-4 of it."""
     x = np.linspace(-483e-6 / 2, 483e-6 / 2, 20001)
     y = 40e-6 + 50e-6 * (1 - np.cos(2 * np.pi * x / 483e-6))
     expected = np.trapezoid(EPS_0 * 150.0**2 / 2 / (H_0 + y) ** 2, x)
-    assert lifted.states[-1].loads.f_attraction[0] == pytest.approx(expected, rel=0.01)
+    assert lifted.states[-1].loads.f_attraction[0] == pytest.approx(expected, rel=3e-4)

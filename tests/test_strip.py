@@ -41,11 +41,14 @@ def mean_depths() -> list[float]:
 
 @pytest.mark.mpi
 def test_area(body):
-    """Each layer is its mean thickness wide times the strip's width. Tolerance: facets of up to 60 um on the waves."""
+    """Each layer is its mean thickness wide times the strip's width.
+
+    Tolerance: facets of up to 60 um cut the waves by 6e-4.
+    """
     ridges, mesh = body
     expected = np.diff(mean_depths()) * ridges * WAVE
     found = [integral(mesh.mesh, layer(mesh, tag)) for tag in strip.LAYERS]
-    assert_allclose(found, expected, rtol=5e-3)
+    assert_allclose(found, expected, rtol=2e-3)
 
 
 @pytest.mark.mpi
@@ -63,6 +66,7 @@ def test_ridges(body):
     """As many as asked for, ridge 0 in the middle, each a sinusoid long.
 
     Tolerance: chords of h = 60 um in grooves of radius r = 118 um are short by (h / r)^2 / 24 = 1 %, most far less.
+    Centres are where they belong to the placing of nodes along mirrored curves.
     """
     ridges, mesh = body
     assert mesh.ridges() == list(range(-(ridges // 2), ridges // 2 + 1))
@@ -74,44 +78,50 @@ def test_ridges(body):
         found = integral(mesh.mesh, ds(tags.ridge(j)))
         assert found == pytest.approx(length, rel=3e-3)
         centre = integral(mesh.mesh, ds(tags.ridge(j)), ufl.SpatialCoordinate(mesh.mesh)[0]) / found
-        assert centre == pytest.approx(j * WAVE, abs=1e-3 * WAVE)
+        assert centre == pytest.approx(j * WAVE, abs=1e-6 * WAVE)
 
 
 @pytest.mark.mpi
 def test_rim_and_sides(body):
-    """The top is as wide as the ridges and at its height; the sides reach from the grooves to it."""
+    """The top is as wide as the ridges and at its height; the sides reach from the grooves to it.
+
+    Tolerance: roundoff.
+    """
     ridges, mesh = body
     ds = ufl.Measure("ds", mesh.mesh, subdomain_data=mesh.facet_tags)
-    assert integral(mesh.mesh, ds(tags.BONE_RIM)) == pytest.approx(ridges * WAVE, rel=1e-12)
+    assert integral(mesh.mesh, ds(tags.BONE_RIM)) == pytest.approx(ridges * WAVE, rel=1e-12, abs=0)
     height = integral(mesh.mesh, ds(tags.BONE_RIM), ufl.SpatialCoordinate(mesh.mesh)[1]) / (ridges * WAVE)
-    assert height == pytest.approx(HEIGHT, rel=1e-12)
-    assert integral(mesh.mesh, ds(tags.SIDES)) == pytest.approx(2 * (HEIGHT - 100 * UM), rel=1e-12)
+    assert height == pytest.approx(HEIGHT, rel=1e-12, abs=0)
+    assert integral(mesh.mesh, ds(tags.SIDES)) == pytest.approx(2 * (HEIGHT - 100 * UM), rel=1e-12, abs=0)
 
 
 def test_tips_are_on_the_screen(body):
-    """The lowest nodes of the mesh are at y = 0, one a ridge, a multiple of the wavelength apart."""
+    """The lowest nodes of the mesh are at y = 0, one a ridge, a multiple of the wavelength apart.
+
+    Tolerance: a millionth of a micrometre.
+    """
     ridges, mesh = body
     x, y = mesh.mesh.geometry.x[:, 0], mesh.mesh.geometry.x[:, 1]
     assert y.min() == pytest.approx(0, abs=1e-12)
     low = np.sort(x[y < 1e-12])
-    assert_allclose(low, (np.arange(ridges) - ridges // 2) * WAVE, atol=1e-12)
+    assert_allclose(low, (np.arange(ridges) - ridges // 2) * WAVE, rtol=0, atol=1e-12)
 
 
 def test_contact_size():
-    """Facets about a tip are as long as asked. Tolerance: gmsh's freedom to space them."""
+    """Facets about a tip are as long as asked. Tolerance: gmsh's freedom to space them, -9 % to 2 %."""
     mesh = load(MPI.COMM_WORLD, partial(strip.build, Fingertip(), MeshSize(contact=5 * UM, interface=60 * UM)))
     x, y = mesh.mesh.geometry.x[:, 0], mesh.mesh.geometry.x[:, 1]
     on_skin = (np.abs(y - Profiles(Fingertip()).skin(x)) < 0.1 * UM) & (np.abs(x) < 0.15 * WAVE)
     spacing = np.diff(np.sort(x[on_skin]))
-    assert spacing.max() < 1.3 * 5 * UM
-    assert spacing.min() > 0.5 * 5 * UM
+    assert spacing.max() < 1.1 * 5 * UM
+    assert spacing.min() > 0.8 * 5 * UM
 
 
 def test_finger_without_ridged_flanks():
-    """A finger of one ridge makes a strip of one, whose grooves reach their full depth."""
+    """A finger of one ridge makes a strip of one, whose grooves reach their full depth. Tolerance: roundoff."""
     mesh = load(MPI.COMM_WORLD, partial(strip.build, Fingertip(ridge_count=1), SIZE))
     ds = ufl.Measure("ds", mesh.mesh, subdomain_data=mesh.facet_tags)
-    assert integral(mesh.mesh, ds(tags.SIDES)) == pytest.approx(2 * (HEIGHT - 100 * UM), rel=1e-12)
+    assert integral(mesh.mesh, ds(tags.SIDES)) == pytest.approx(2 * (HEIGHT - 100 * UM), rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize(

@@ -46,9 +46,9 @@ def test_a_trend_is_removed_exactly(trend):
 
 
 def test_a_lower_trend_leaves_a_paraboloid():
-    """x^2 without mean and tilt over [-L/2, L/2] is 1/sqrt(180) L^2 rms, up to 1/n^2 for the grid."""
+    """x^2 without mean and tilt over [-L/2, L/2] is 1/sqrt(180) L^2 rms, up to 2.5/n^2 = 6e-5 for the grid."""
     x, _ = grid((200, 10), (1.0, 1.0))
-    assert HeightMap(x**2, (1.0, 1.0)).detrended("tilt").h_rms == pytest.approx(1 / np.sqrt(180), rel=1e-3)
+    assert HeightMap(x**2, (1.0, 1.0)).detrended("tilt").h_rms == pytest.approx(1 / np.sqrt(180), rel=1e-4)
 
 
 def test_distribution_of_a_sine():
@@ -70,33 +70,33 @@ def test_distribution_of_gaussian_heights():
 def test_parseval(rough):
     """Without a window the spectrum's sum is the mean square, to rounding; the radial average keeps the sum."""
     spectrum = power_spectrum(rough)
-    assert spectrum.h_rms == pytest.approx(rough.h_rms, rel=1e-12)
+    assert spectrum.h_rms == pytest.approx(rough.h_rms, rel=1e-12, abs=0)
     ring = spectrum.radial()
-    assert np.sqrt(np.sum(ring.psd * ring.modes) / np.prod(SIZE)) == pytest.approx(rough.h_rms, rel=1e-12)
+    assert np.sqrt(np.sum(ring.psd * ring.modes) / np.prod(SIZE)) == pytest.approx(rough.h_rms, rel=1e-12, abs=0)
 
 
 def test_integral_over_wavevectors(rough):
-    """(1/2pi) int q C dq over rings: a tenth is what they miss of a lattice whose first rings hold few modes."""
+    """(1/2pi) int q C dq over rings: 1.6 % is what they miss of a lattice whose first rings hold few modes."""
     ring = power_spectrum(rough).radial()
     edges = np.sqrt(np.append(ring.q[:-1] * ring.q[1:], ring.q[-1] ** 2))
     inner = np.append(ring.q[0] ** 2 / edges[0], edges[:-1])
     total = np.sum(ring.psd * (edges**2 - inner**2) / 2) / (2 * np.pi)
-    assert np.sqrt(total) == pytest.approx(rough.h_rms, rel=0.1)
+    assert np.sqrt(total) == pytest.approx(rough.h_rms, rel=0.03)
 
 
 def test_spectrum_of_a_sine():
-    """A sine of amplitude a has C = a^2 A / 4 at q and -q, and nothing else."""
+    """A sine of amplitude a has C = a^2 A / 4 at q and -q, and nothing else. Tolerance: roundoff."""
     m = wave()
     psd = power_spectrum(m).psd
-    assert psd[3, 2] == pytest.approx((2 * UM) ** 2 * 60 * UM * 80 * UM / 4, rel=1e-12)
-    assert psd[3, 2] + psd[-3, -2] == pytest.approx(psd.sum(), rel=1e-12)
+    assert psd[3, 2] == pytest.approx((2 * UM) ** 2 * 60 * UM * 80 * UM / 4, rel=1e-12, abs=0)
+    assert psd[3, 2] + psd[-3, -2] == pytest.approx(psd.sum(), rel=1e-12, abs=0)
     assert power_spectrum(m).q[3, 2] == pytest.approx(2 * np.pi * np.hypot(3 / (60 * UM), 2 / (80 * UM)))
 
 
 def test_hann_keeps_the_power_of_a_sine():
-    """<w^2> makes up for the window: a wave not at the lowest modes keeps its mean square exactly."""
+    """<w^2> makes up for the window: a wave not at the lowest modes keeps its mean square, to roundoff."""
     m = wave()
-    assert power_spectrum(m, window="hann").h_rms == pytest.approx(m.h_rms, rel=1e-12)
+    assert power_spectrum(m, window="hann").h_rms == pytest.approx(m.h_rms, rel=1e-12, abs=0)
 
 
 def test_hann_takes_away_the_jump_at_the_ends():
@@ -108,15 +108,19 @@ def test_hann_takes_away_the_jump_at_the_ends():
 
 @pytest.mark.parametrize("plateau", [True, False])
 def test_prefactor_is_the_variance(plateau):
-    """The integral of q C over a fine grid of q to 1e5 q_0, where 1e-7 of the variance is left."""
+    """The integral of q C over a fine grid of q to 1e5 q_0, where 1e-7 of the variance is left.
+
+    Tolerance: without plateau the spectrum begins with a jump, which the trapezoidal rule spreads over an interval
+    of q_0 / 2000: that adds 4e-4.
+    """
     kind = SelfAffine(plateau=plateau)
     q = kind.q_0 * np.concatenate([np.linspace(1e-6, 1, 2000, endpoint=False), np.geomspace(1, 1e5, 200_000)])
-    assert np.trapezoid(q * kind.psd(q), q) / (2 * np.pi) == pytest.approx(kind.h_rms**2, rel=1e-3)
+    assert np.trapezoid(q * kind.psd(q), q) / (2 * np.pi) == pytest.approx(kind.h_rms**2, rel=5e-4, abs=0)
 
 
 def test_printed_prefactor_holds_57_percent_from_q0_up():
     assert prefactor(0.75, plateau=True) / prefactor(0.75, plateau=False) == pytest.approx(1 / 1.75)
-    assert 3.1 * np.sqrt(1 / 1.75) == pytest.approx(2.34, abs=0.005)
+    assert 3.1 * np.sqrt(1 / 1.75) == pytest.approx(2.34, abs=0.005)  # the digits given
 
 
 def test_seed():
@@ -185,7 +189,7 @@ def test_spot_bias_is_the_expected_one():
 
 
 def test_a_spot_of_100_um_shows_2_2_um_of_3_1():
-    """With the plateau, the curvature removed; without the plateau it shows 2.7 um."""
+    """With the plateau, the curvature removed; without the plateau it shows 2.73 um. Tolerance: 2 %, said of both."""
     with_plateau, without = (benchmark.expected_rms(kind, 256, 32, "curvature") for kind in benchmark.READINGS)
     assert with_plateau == pytest.approx(2.2 * UM, abs=0.05 * UM)
     assert without == pytest.approx(2.73 * UM, abs=0.05 * UM)
