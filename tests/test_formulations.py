@@ -61,7 +61,8 @@ def confined_stress(stretch: float) -> float:
 def test_patch(formulation, voltage):
     """A block pressed flat bears confined compression's pressure and the attraction everywhere, without a bias.
 
-    Tolerance: the imbalance at which solves end, 1e-9 N/m on a tenth of a millimetre, is 1e-9 of the pressure.
+    Tolerance: the imbalance at which solves end, 1e-9 N/m on a tenth of a millimetre, is 1e-9 of the pressure;
+    the skin is on the screen to what that much bends it.
     """
     run = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), formulation)
     run.run(Target("press", bone_height=-0.02 * HEIGHT))
@@ -72,7 +73,7 @@ def test_patch(formulation, voltage):
 
 
 def test_patch_of_the_penalty():
-    """The skin of the penalty sinks by p_n / eps_n, which is missing in the compression, and no more."""
+    """The skin of the penalty sinks by p_n / eps_n, which the compression lacks, and no more. Tolerance: as above."""
     eps_n = 1.5e12
     run = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), Penalty(eps_n, 1e11))
     run.run(Target("press", bone_height=-0.02 * HEIGHT))
