@@ -29,7 +29,7 @@ class Run:
         """
         summary = result(scene, out)
         if summary is None or "failure" in summary:
-            raise FileNotFoundError(f"no finished run of {key(scene)} in {out}")
+            raise FileNotFoundError(f"run {key(scene)} is not there or did not reach its end")
         self.scene, self.folder, self.summary = scene, out / key(scene), summary
 
     def _columns(self, name: str) -> dict[str, list[str]]:
@@ -86,5 +86,8 @@ class Run:
         Raises:
             FileNotFoundError: the run was made by a version that did not keep them.
         """
-        with np.load(self.folder / f"{name}.npz") as file:
+        path = self.folder / f"{name}.npz"
+        if not path.exists():
+            raise FileNotFoundError(f"run {self.folder.name} has no {path.name}: delete its folder and run it again")
+        with np.load(path) as file:
             return dict(file)
