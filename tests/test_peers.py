@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.peers import calculix_ridge, ours, page, profile
-from benchmarks.peers.__main__ import cases
+from benchmarks.peers.cases import cases
 from benchmarks.peers.exchange import (
     Answer,
     Case,

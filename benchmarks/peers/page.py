@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from benchmarks.peers import profile
+from benchmarks.peers.cases import PEERS, VARIANTS, cases
 from benchmarks.peers.exchange import Answer, Ridge, State, read_answer
 
 matplotlib.use("Agg")
@@ -113,8 +114,6 @@ def draw(answers: list[Answer], names: list[str], path: Path) -> None:
 
 def write(folder: Path, docs: Path) -> Path:
     """Write page and picture from the answers in a folder; return the page."""
-    from benchmarks.peers.__main__ import PEERS, VARIANTS, cases
-
     sizes = sorted((float(path.stem) for path in folder.glob("*.npz")), reverse=True)
     parts, programs = [_HEADER], dict[str, str]()
     for size in sizes:
