@@ -107,7 +107,7 @@ def draw(answers: list[Answer], names: list[str], path: Path) -> None:
         pressure.set(title=name, xlabel="x (µm)", ylabel="contact pressure (kPa)")
         friction.set(title=name, xlabel="x (µm)", ylabel="friction on the skin (kPa)")
         if not any(np.any(s.t_t) for answer in answers for s in answer.states if s.name == name):
-            friction.axis("off")
+            friction.remove()
     axes[0, 0].legend()
     figure.savefig(path, dpi=110)
 
