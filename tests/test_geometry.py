@@ -91,9 +91,11 @@ def test_ridges_that_can_touch(finger_mesh, coarse):
 def vertices(body, facets):
     """Return the vertices of facets, each once; shape (n, 2)."""
     body.mesh.topology.create_connectivity(1, 0)
+    body.mesh.topology.create_connectivity(0, 2)
+    if not len(facets):  # on a rank that has none
+        return np.empty((0, 2))
     links = body.mesh.topology.connectivity(1, 0)
     points = np.unique(np.concatenate([links.links(f) for f in facets]))
-    body.mesh.topology.create_connectivity(0, 2)
     return body.mesh.geometry.x[entities_to_geometry(body.mesh, 0, points.astype(np.int32)).ravel(), :2]
 
 
