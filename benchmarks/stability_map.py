@@ -39,7 +39,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, default=_ROOT / "results" / "stability", help="folder of results")
     parser.add_argument("--docs", type=Path, default=_ROOT / "docs", help="folder of the page and its pictures")
     parser.add_argument("--jobs", type=positive(int), default=2, help="runs at a time")
-    parser.add_argument("--limit", type=positive(float), default=300.0, help="seconds of processor time for one run")
+    parser.add_argument("--limit", type=positive(float), default=120.0, help="seconds of processor time for one run")
     parser.add_argument("--hours", type=positive(float), default=6.0, help="after which no run is started")
     parser.add_argument("--draw", action="store_true", help="run nothing, draw what is there")
     args = parser.parse_args(arguments)
