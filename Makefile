@@ -1,7 +1,7 @@
 # make demo   press, charge and slide the default finger; results in results/demo
 # make test   all tests, then those marked mpi on two ranks
 # make verify every number with a known answer, some minutes; docs/verification.md
-# make paper  every figure and table of the paper, beside what it says; docs/paper.md, up to two hours
+# make paper  every figure and table of the paper, beside what it says; docs/paper.md, an hour or two
 #
 # With SUITE=sid in Debian unstable, that is with a newer dolfinx: make test SUITE=sid
 # All need nothing but Debian 12, root, apt and PyPI: environment/run finds or makes what they run in.

@@ -7,7 +7,6 @@ what has been run is written to docs/errors.md, docs/errors.png and, as the refe
 docs/errors.json.
 """
 
-import csv
 import json
 import sys
 from collections.abc import Mapping, Sequence
@@ -18,8 +17,9 @@ from matplotlib.figure import Figure
 
 from benchmarks import arguments
 from benchmarks.convergence import Limit, limit
+from benchmarks.runs import Run
 from fingerpad.scene import Scene, from_data
-from fingerpad.sweep import key, result, sweep
+from fingerpad.sweep import sweep
 
 _LIMIT = 10800.0  # s of processor time for one run; the finest mesh takes far longer than a trace
 CONTACT = (20e-6, 10e-6, 5e-6, 2.5e-6)
@@ -71,19 +71,17 @@ STUDIES = {  # name: heading, the setting's unit
 
 def values(scene: Scene, out: Path) -> dict[str, float] | None:
     """Return the quantities of a scene that was run to full slip, None of another."""
-    summary = result(scene, out)
-    if summary is None or not summary["full_slip"]:
+    try:
+        run = Run(scene, out)
+    except FileNotFoundError:
         return None
-    found = {name: float(summary[name]) for name in QUANTITIES if name in summary}
-    folder = out / key(scene)
-    with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
-        last = {row["load"]: row["step"] for row in csv.DictReader(file)}
-    ends = {last["charge"]: "normal", last["slide"]: "slip"}
-    with (folder / "receptors.csv").open(encoding="utf-8", newline="") as file:
-        for row in csv.DictReader(file):
-            if row["step"] in ends and int(row["ridge"]) in SITES:
-                found[f"{ends[row['step']]}_sed_{row['ridge']}"] = float(row["merkel_sed"])
-    return found | {"unknowns": float(summary["unknowns"]), "factorisations": float(summary["factorisations"])}
+    if not run.summary["full_slip"]:
+        return None
+    found = {name: float(run.summary[name]) for name in QUANTITIES if name in run.summary}
+    for state, row in (("normal", run.normal), ("slip", run.slip)):
+        sed = dict(zip(run.receptors["ridge"], run.receptors["merkel_sed"][row], strict=True))
+        found |= {f"{state}_sed_{j}": float(sed[j]) for j in SITES}
+    return found | {name: float(run.summary[name]) for name in ("unknowns", "factorisations")}
 
 
 def _cells(name: str, runs: Mapping[float, dict[str, float] | None], unit: float) -> list[str]:
@@ -161,9 +159,11 @@ def write(out: Path, docs: Path) -> None:
             limits = {quantity: estimate(quantity, runs) for quantity in QUANTITIES}
             data["limits"] = {q: vars(found) for q, found in limits.items() if found}
     (docs / "errors.json").write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    draw(out, docs / "errors.png")
-    picture = "![Distance from the limit over the contact size](errors.png)"
-    parts = [_HEADER, _table("contact", out), _LIMITS, picture, *(_table(name, out) for name in list(STUDIES)[1:])]
+    parts = [_HEADER, _table("contact", out)]
+    if data["limits"]:
+        draw(out, docs / "errors.png")
+        parts += [_LIMITS, "![Distance from the limit over the contact size](errors.png)"]
+    parts += [_table(name, out) for name in list(STUDIES)[1:]]
     (docs / "errors.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
 
 

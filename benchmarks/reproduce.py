@@ -15,11 +15,11 @@ from matplotlib.figure import Figure
 
 from benchmarks import arguments
 from benchmarks.paper import friction, micro, page, scenes, section, sed, tables
-from benchmarks.paper.data import Run
 from benchmarks.paper.statement import Statement
 from benchmarks.paper.style import draw
+from benchmarks.runs import Run
 from fingerpad.command import positive
-from fingerpad.scene import Scene
+from fingerpad.scene import Scene, check
 from fingerpad.sweep import sweep
 
 _LIMIT = 3600.0  # s of processor time for one run; the sine takes longest
@@ -32,7 +32,7 @@ class Book:
         self.folder = folder
         self.figures: list[tuple[str, str]] = []
         self.statements: list[Statement] = []
-        self.missing: list[str] = []
+        self.missing: dict[str, str] = {}
 
     def add(
         self,
@@ -47,7 +47,7 @@ class Book:
             draw(self.folder / f"{name}.png", size, paint)
             self.statements += statements()
         except FileNotFoundError as missing:
-            self.missing.append(f"{name} ({missing})")
+            self.missing[name] = str(missing)
             return
         self.figures.append((f"{name}.png", caption))
 
@@ -94,7 +94,7 @@ def make(out: Path, docs: Path, size: float, measured: friction.Measured | None)
         f"Fig. 9A: strain energy density at {scenes.MAP:g} N/m; circles: Merkel sites",
         (9, 9),
         lambda figure: sed.figure_9a(figure, at(scenes.MAP, 0.0), at(scenes.MAP, 200.0)),
-        lambda: sed.statements(at(scenes.MAP, 0.0), at(scenes.MAP, 200.0)),
+        lambda: sed.statements(at(scenes.MAP, 200.0)),
     )
     book.add(
         "fig9b",
@@ -123,7 +123,11 @@ def main(given: Sequence[str] | None = None) -> int:
     parser.add_argument("--draw", action="store_true", help="run nothing, draw what is there")
     args = parser.parse_args(given)
     size = args.contact_size
-    measured = friction.Measured.read(args.measured) if args.measured else None
+    try:
+        check(scenes.grid(size)[scenes.SECTION])
+        measured = friction.Measured.read(args.measured) if args.measured else None
+    except (OSError, ValueError) as error:
+        parser.error(str(error))
     if not args.draw:
         named = {f"{f:g} N/m, {u:g} V": scene for (f, u), scene in scenes.grid(size).items()}
         sweep({"sine": scenes.sine(size)} | named, args.out, args.jobs, _LIMIT)
@@ -134,8 +138,8 @@ def main(given: Sequence[str] | None = None) -> int:
         except FileNotFoundError as missing:
             print(f"the run without voltage but with more friction cannot be made: {missing}")
     book = make(args.out, args.docs, size, measured)
-    for name in book.missing:
-        print(f"missing: {name}")
+    for name, why in book.missing.items():
+        print(f"missing: {name}, {why}")
     print(args.docs / "paper.md")
     return 1 if book.missing else 0
 

@@ -15,8 +15,8 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from benchmarks import arguments
-from benchmarks.paper.data import Run
 from benchmarks.paper.style import BLUE, VERMILION, draw
+from benchmarks.runs import Run
 from fingerpad.command import positive
 from fingerpad.scene import Scene, SceneError, check, from_data
 from fingerpad.sweep import sweep
@@ -163,7 +163,10 @@ def main(given: Sequence[str] | None = None) -> int:
     parser.add_argument("--contact-size", type=positive(float), default=10e-6, help="m")
     parser.add_argument("--draw", action="store_true", help="run nothing, draw what is there")
     args = parser.parse_args(given)
-    wanted = scenes(args.contact_size)
+    try:
+        wanted = scenes(args.contact_size)
+    except SceneError as error:
+        parser.error(str(error))
     if not args.draw:
         sweep({f"{choice} {way}".strip(): each for (choice, way), each in wanted.items()}, args.out, args.jobs)
     changes = collect(args.out, args.contact_size)

@@ -10,23 +10,38 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mpi4py import MPI
+from rich.progress import Progress
 
 from benchmarks.verification import page
 from benchmarks.verification.areas import AREAS
 from benchmarks.verification.case import Case, Outcome
+from fingerpad.sweep import progress
 from variational import jit
 
 _ROOT = Path(__file__).resolve().parents[1]
 
 
-def _run(area: str, case: Case, small: bool) -> Outcome:
+def _run(area: str, case: Case, small: bool, bar: Progress) -> Outcome:
     start = time.perf_counter()
     outcome = case.run(small)
-    print(f"{area}: {case.name} ({time.perf_counter() - start:.0f} s)", flush=True)
+
+    def say(words: str) -> None:
+        bar.console.print(words, highlight=False, markup=False, soft_wrap=True)
+
+    say(f"{area}: {case.name} ({time.perf_counter() - start:.0f} s)")
     for row in outcome.rows:
         verdict = "ok  " if row.holds else "FAIL"
-        print(f"  {verdict} {row.quantity}: {row.ours:.8g}, {row.reference:.8g} expected, error {row.error:.2g}")
+        say(f"  {verdict} {row.quantity}: {row.ours:.8g}, {row.reference:.8g} expected, error {row.error:.2g}")
     return outcome
+
+
+def _run_all(areas: Sequence[str], small: bool) -> dict[str, list[tuple[Case, Outcome]]]:
+    with progress() as bar:
+        cases = [(area, case) for area in areas for case in AREAS[area]]
+        results: dict[str, list[tuple[Case, Outcome]]] = {area: [] for area in areas}
+        for area, case in bar.track(cases, description="cases"):
+            results[area].append((case, _run(area, case, small, bar)))
+    return results
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -37,7 +52,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--docs", type=Path, default=_ROOT / "docs", help="folder of the page")
     args = parser.parse_args(arguments)
     jit.sweep(MPI.COMM_WORLD)
-    results = {area: [(case, _run(area, case, args.small)) for case in AREAS[area]] for area in args.only}
+    results = _run_all(args.only, args.small)
     if not args.small and len(results) == len(AREAS):
         page.write(results, args.docs)
         print(args.docs / "verification.md")

@@ -86,7 +86,7 @@ def finger(path: Path | str, snapshot: "Snapshot", sites: Array | None, title: s
         title: what state it is, see :func:`conditions`.
     """
     xy = _MM * (snapshot.x + snapshot.u)
-    lines = _interfaces(snapshot)
+    lines = interfaces(snapshot.triangles, snapshot.tag)
     left, right, top = _near_contact(xy)
     with matplotlib.rc_context(_STYLE):
         figure = Figure(figsize=(14, 5.2), layout=ConstrainedLayoutEngine(h_pad=0.12))
@@ -116,12 +116,16 @@ def _near_contact(xy: Array) -> tuple[float, float, float]:
     return float(low.min()) - 1, float(low.max()) + 1, 1.3
 
 
-def _interfaces(snapshot: "Snapshot") -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the edges, pairs of vertices, between layers and on the boundary."""
-    t = snapshot.triangles
+def interfaces(t: NDArray[np.int64], tags_of: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the edges, pairs of vertices, between layers and on the boundary.
+
+    Args:
+        t: vertices of each triangle, shape (cells, 3).
+        tags_of: the layer of each, shape (cells,).
+    """
     edges = np.sort(np.concatenate([t[:, [0, 1]], t[:, [1, 2]], t[:, [2, 0]]]), axis=1)
     edges, where, count = np.unique(edges, axis=0, return_inverse=True, return_counts=True)
-    tag = np.tile(snapshot.tag, 3)
+    tag = np.tile(tags_of, 3)
     lowest, highest = np.full(len(edges), np.iinfo(np.int32).max), np.zeros(len(edges), dtype=int)
     np.minimum.at(lowest, where.ravel(), tag)
     np.maximum.at(highest, where.ravel(), tag)

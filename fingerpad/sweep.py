@@ -7,6 +7,7 @@ folder must be deleted.
     python3 -m fingerpad.sweep SCENE.json FOLDER LIMIT    one run, as the sweep starts it
 """
 
+import fcntl
 import hashlib
 import json
 import sys
@@ -37,6 +38,14 @@ def result(scene: Scene, folder: Path) -> Summary | None:
     return None if summary.get("interrupted") else summary
 
 
+def progress() -> Progress:
+    """Return a bar of things done, time taken and time remaining; nothing where the output is no terminal."""
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
+    bar = Progress(*columns, TimeElapsedColumn(), TimeRemainingColumn(), transient=True)
+    bar.disable = not bar.console.is_terminal
+    return bar
+
+
 def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int = 2, limit: float = _LIMIT) -> dict[str, Summary]:
     """Run what has not been run yet, with a progress bar.
 
@@ -56,8 +65,12 @@ def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int = 2, limit: float
     def job(name: str) -> End:
         place = folder / key(scenes[name])
         place.mkdir(parents=True, exist_ok=True)
-        (place / "scene.json").write_text(json.dumps(scenes[name].parameters(), indent=1), encoding="utf-8")
-        return run("fingerpad.sweep", [str(place / "scene.json"), str(place), str(limit)], limit)
+        with (place / "lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)  # another sweep may be at it
+            if result(scenes[name], folder) is not None:
+                return End(0, "", "", "")
+            (place / "scene.json").write_text(json.dumps(scenes[name].parameters(), indent=1), encoding="utf-8")
+            return run("fingerpad.sweep", [str(place / "scene.json"), str(place), str(limit)], limit)
 
     def done(name: str, end: End, left: int) -> None:
         summary = result(scenes[name], folder)
@@ -68,9 +81,7 @@ def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int = 2, limit: float
         bar.advance(task)
 
     missing = [name for name, summary in found.items() if summary is None]
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
-    with Progress(*columns, TimeElapsedColumn(), TimeRemainingColumn(), transient=True) as bar:
-        bar.disable = not bar.console.is_terminal
+    with progress() as bar:
         task = bar.add_task("scenes", total=len(missing))
         Pool[str, End](job, jobs).run(missing, done)
     return {name: result(scene, folder) or broken[name] for name, scene in scenes.items()}

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from benchmarks import reproduce
 from benchmarks.paper import friction, micro, page, scenes, sed, tables
-from benchmarks.paper.data import Run
 from benchmarks.paper.statement import HOLDS, IN_PART, NOT, Statement, verdict
+from benchmarks.runs import Run
 from benchmarks.traces import FORCES, VOLTAGES
 from fingerpad.scene import Scene, from_data
 from fingerpad.sweep import key

@@ -1,6 +1,9 @@
 """Sweeps: what names a run, what is run again, and what a run that is stopped costs."""
 
+import contextlib
 import json
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -67,6 +70,22 @@ def test_run_that_was_stopped_is_no_result(started, tmp_path):
     (tmp_path / key(scene) / "summary.json").write_text(json.dumps(stopped))
     assert sweep(scenes(10), tmp_path)["10 N/m"] == {"f_ext": 10}
     assert len(started) == 1
+
+
+def test_two_sweeps_in_one_folder_run_a_scene_once(started, monkeypatch, tmp_path):
+    """The second waits for the first and takes its result; without the lock both would start it."""
+    fake, inside = module.run, threading.Barrier(2)
+
+    def slow(*arguments):
+        with contextlib.suppress(threading.BrokenBarrierError):
+            inside.wait(0.5)  # s; two runs at a time meet here
+        return fake(*arguments)
+
+    monkeypatch.setattr(module, "run", slow)
+    with ThreadPoolExecutor(2) as pool:
+        found = list(pool.map(lambda _: sweep(scenes(10), tmp_path), range(2)))
+    assert len(started) == 1
+    assert found == [{"10 N/m": {"f_ext": 10}}] * 2
 
 
 def test_run_out_of_time_is_named(tmp_path):

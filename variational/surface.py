@@ -84,7 +84,6 @@ class Surface:
         # of a degree below the number of points.
         self._to_powers = np.linalg.inv(np.vander(self.points[:, 0], increasing=True))
         self._history_maps()
-        self._reversed: NDArray[np.bool_] = np.zeros(len(self.pairs), dtype=bool)
         self._reversed = self._point_order(xy)
 
     def _point_order(self, ends: Array) -> NDArray[np.bool_]:
@@ -93,7 +92,7 @@ class Surface:
         By their cell's numbering in 0.9 no facet's, by their vertices' in 0.11 some.
         """
         position = self.compile(list(ufl.SpatialCoordinate(self.mesh)))
-        first = self.evaluate(position)[:, :, 0].T
+        first = self._as_given(position)[:, 0]
         return np.asarray(np.linalg.norm(first - ends[:, 1, :2], axis=1) < self.length / 2)
 
     # -- history ---------------------------------------------------------------------------------------
@@ -129,13 +128,15 @@ class Surface:
 
     def evaluate(self, compiled: fem.Expression) -> Array:
         """Return values at this rank's Gauss points, shape (expressions, facets, points)."""
-        values = compat.evaluate_on_facets(compiled, self.mesh, self.pairs)
-        shape = (len(self.pairs), len(self.weights), -1)
-        if not len(self.pairs):
-            return np.zeros((int(np.prod(compiled.ufl_expression.ufl_shape)), 0, len(self.weights)))
-        values = values.reshape(shape)
+        values = self._as_given(compiled)
         values[self._reversed] = values[self._reversed, ::-1]
         return np.moveaxis(values, 2, 0)
+
+    def _as_given(self, compiled: fem.Expression) -> Array:
+        """Return values at the points in dolfinx's order, shape (facets, points, expressions)."""
+        values = compat.evaluate_on_facets(compiled, self.mesh, self.pairs)
+        count = int(np.prod(compiled.ufl_expression.ufl_shape))
+        return values.reshape(len(self.pairs), len(self.weights), count)
 
     # -- integrals -------------------------------------------------------------------------------------
     def per_ridge(self, density: Array) -> Array:

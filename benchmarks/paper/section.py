@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from benchmarks.paper.data import Array, Run
 from benchmarks.paper.statement import Statement, verdict
 from benchmarks.paper.style import BLUE, GREEN, PURPLE, VERMILION
+from benchmarks.runs import Array, Run
 
 _STATES = {"normal": "frictional normal contact", "partial": "partial slip", "slip": "full slip"}
 _KPA, _MM, _UM = 1e3, 1e-3, 1e-6

@@ -7,9 +7,10 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
-from benchmarks.paper.data import Array, Run
 from benchmarks.paper.statement import Statement, verdict
 from benchmarks.paper.style import BLUE, GREEN, PURPLE, VERMILION
+from benchmarks.runs import Array, Run
+from fingerpad.pictures import interfaces
 from geometry import tags
 
 _MM, _UM, _KPA = 1e-3, 1e-6, 1e3
@@ -44,7 +45,7 @@ def _map(figure: Figure, ax: Axes, run: Run, load: str) -> None:
     triangles = Triangulation(xy[:, 0], xy[:, 1], a["triangles"][near])
     shown = np.clip(a["sed"][near] / _KPA, norm.vmin, norm.vmax)
     drawn = ax.tripcolor(triangles, facecolors=shown, cmap="viridis", norm=norm, rasterized=True)
-    ax.add_collection(LineCollection(list(xy[_interfaces(a["triangles"], a["tag"])]), colors="white", linewidths=0.5))
+    ax.add_collection(LineCollection(list(xy[interfaces(a["triangles"], a["tag"])[0]]), colors="white", linewidths=0.5))
     sites = a["merkel"] / _MM
     inside = (sites[:, 0] > left) & (sites[:, 0] < right) & (sites[:, 1] < top)
     ax.plot(*sites[inside].T, "o", ms=3, mfc="white", mec="black", mew=0.6)
@@ -56,15 +57,6 @@ def _map(figure: Figure, ax: Axes, run: Run, load: str) -> None:
     ax.axhline(0, color="black", lw=1.5)
     ax.set(xlim=(left, right), ylim=(-0.03, top), aspect="equal", ylabel="y (mm)")
     figure.colorbar(drawn, ax=ax, extend="both", label="SED (kJ/m³)")
-
-
-def _interfaces(triangles: Array, tag: Array) -> Array:
-    """Return the edges, pairs of vertices, between cells of different tags."""
-    edges = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
-    order = np.lexsort(edges.T)
-    edges, tags_of = edges[order], np.tile(tag, 3)[order]
-    same = (edges[1:] == edges[:-1]).all(axis=1)
-    return edges[1:][same & (tags_of[1:] != tags_of[:-1])]
 
 
 # -- the sine --------------------------------------------------------------------------------------------
@@ -160,7 +152,7 @@ def sine_statements(run: Run) -> list[Statement]:
 
 
 # -- statements on the maps --------------------------------------------------------------------------------
-def _changes(run: Run) -> dict[int, float]:
+def _changes(run: Run) -> dict[str, float]:
     """Return by how much the voltage changes a layer's energy near the contact, in normal contact (relative)."""
     before, after = run.arrays("finger_press"), run.arrays("finger_charge")
     centre = (before["x"] + before["u"])[before["triangles"]].mean(axis=1)
@@ -174,15 +166,12 @@ def _changes(run: Run) -> dict[int, float]:
         corners = before["x"][before["triangles"][mine]]
         e, f = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         area = np.abs(e[:, 0] * f[:, 1] - e[:, 1] * f[:, 0]) / 2
-        found[tags.LAYERS[name]] = float(
-            (area @ np.abs(after["sed"][mine] - before["sed"][mine])) / (area @ before["sed"][mine])
-        )
+        found[name] = float((area @ np.abs(after["sed"][mine] - before["sed"][mine])) / (area @ before["sed"][mine]))
     return found
 
 
-def statements(without: Run, with_voltage: Run) -> list[Statement]:
-    """Return the statements on the maps."""
-    run = with_voltage
+def statements(run: Run) -> list[Statement]:
+    """Return the statements on the maps, of a run with voltage."""
     r, normal, slip = run.receptors, run.normal, run.slip
     touching = np.isin(r["ridge"], run.on_ridges(normal, "p_c")[0]) & np.isin(r["ridge"], run.on_ridges(slip, "p_c")[0])
     fall = float((r["merkel_sed"][slip][touching] < r["merkel_sed"][normal][touching]).mean())
@@ -190,7 +179,7 @@ def statements(without: Run, with_voltage: Run) -> list[Statement]:
         row: (r["meissner_left"][row] + r["meissner_right"][row])[touching].mean() / 2 for row in (normal, slip)
     }
     layers = _changes(run)
-    sc, ve, dermis = (layers[tags.LAYERS[n]] for n in ("stratum corneum", "viable epidermis", "dermis"))
+    sc, ve, dermis = layers.values()
     pressed = int(np.flatnonzero(np.array(run.loads) == "press")[-1])
     sites = np.abs(r["merkel_sed"][normal][touching] / r["merkel_sed"][pressed][touching] - 1)
     merkel, away = r["merkel_sed"][normal], ~np.isin(r["ridge"], run.on_ridges(normal, "p_c")[0])

@@ -145,8 +145,10 @@ def read_case(path: Path) -> Case:
 
 
 def write_answer(answer: Answer, path: Path) -> None:
-    """Write an answer as JSON."""
-    path.write_text(json.dumps(asdict(answer)) + "\n", encoding="utf-8")
+    """Write an answer as JSON, whole or not at all: an answer that is there is not asked for again."""
+    partial = path.with_name(f"{path.name}.part")
+    partial.write_text(json.dumps(asdict(answer)) + "\n", encoding="utf-8")
+    partial.replace(path)
 
 
 def read_answer(path: Path) -> Answer:

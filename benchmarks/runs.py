@@ -3,6 +3,7 @@
 import csv
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,8 +81,8 @@ class Run:
         mine = self.ridges["step"] == self.steps["step"][row]
         return self.ridges["ridge"][mine], self.ridges[name][mine]
 
-    def arrays(self, name: str) -> dict[str, Array]:
-        """Return the arrays of ``surface`` or ``finger_…`` .
+    def arrays(self, name: str) -> dict[str, NDArray[Any]]:
+        """Return the arrays of ``surface`` or ``finger_…``.
 
         Raises:
             FileNotFoundError: the run was made by a version that did not keep them.

@@ -1,0 +1,24 @@
+"""What tests measure of a meshed body, on any number of ranks."""
+
+import numpy as np
+import ufl
+from dolfinx import fem
+from dolfinx.mesh import entities_to_geometry
+
+
+def integral(body, tag, integrand=1.0) -> float:
+    """Integrate over a layer on all ranks."""
+    dx = ufl.Measure("dx", body.mesh, subdomain_data=body.cell_tags)
+    form = fem.form(fem.Constant(body.mesh, 1.0) * integrand * dx(tag))
+    return body.mesh.comm.allreduce(fem.assemble_scalar(form))
+
+
+def vertices(body, facets):
+    """Return the vertices of facets, each once; shape (n, 2)."""
+    body.mesh.topology.create_connectivity(1, 0)
+    body.mesh.topology.create_connectivity(0, 2)
+    if not len(facets):  # on a rank that has none
+        return np.empty((0, 2))
+    links = body.mesh.topology.connectivity(1, 0)
+    points = np.unique(np.concatenate([links.links(f) for f in facets]))
+    return body.mesh.geometry.x[entities_to_geometry(body.mesh, 0, points.astype(np.int32)).ravel(), :2]

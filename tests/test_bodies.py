@@ -1,0 +1,137 @@
+"""Bodies of the verification: their sizes, their groups and what they refuse."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+import ufl
+from dolfinx import fem
+from mpi4py import MPI
+
+from geometry import tags
+from geometry.benchmarks import block, cooks_membrane, foot, pad, quarter_tube, ridge
+from geometry.mesh import load
+from geometry.profiles import GeometryError
+from tests.measures import integral, vertices
+from tests.test_profiles import MM, UM
+
+
+def lengths(body) -> dict[int, float]:
+    """Return the length of each facet group on all ranks."""
+    ds, one = ufl.Measure("ds", body.mesh, subdomain_data=body.facet_tags), fem.Constant(body.mesh, 1.0)
+    groups = (tags.ridge(0), tags.BONE_RIM, tags.SIDES)
+    return {tag: body.mesh.comm.allreduce(fem.assemble_scalar(fem.form(one * ds(tag)))) for tag in groups}
+
+
+@pytest.mark.mpi
+def test_block():
+    """Its area, its faces and the heights of bottom and top; 5 x 2 rectangles, as 0.21 mm go into 1 mm five times.
+
+    Tolerance: roundoff.
+    """
+    body = load(MPI.COMM_WORLD, partial(block, MM, 0.4 * MM, 0.21 * MM, gap=7 * UM))
+    assert body.mesh.topology.index_map(2).size_global == 20
+    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(0.4 * MM**2, rel=1e-12, abs=0)
+    expected = {tags.ridge(0): MM, tags.BONE_RIM: MM, tags.SIDES: 0.8 * MM}
+    assert lengths(body) == pytest.approx(expected, rel=1e-12, abs=0)
+    mean_height = integral(body, tags.STRATUM_CORNEUM, ufl.SpatialCoordinate(body.mesh)[1]) / (0.4 * MM**2)
+    assert mean_height == pytest.approx(207 * UM, rel=1e-12, abs=0)
+    assert body.ridges() == [0]
+
+
+@pytest.mark.mpi
+def test_one_ridge():
+    """Its area is w (h - A / 2), its sides h - A each, its bottom a sinusoid's length. Tolerance: chords of 10 um."""
+    body = load(MPI.COMM_WORLD, partial(ridge, 10 * UM))
+    x = np.linspace(-0.5, 0.5, 20001) * 483 * UM
+    y = 50 * UM * (1 - np.cos(2 * np.pi * x / (483 * UM)))
+    expected = {tags.ridge(0): np.hypot(np.diff(x), np.diff(y)).sum(), tags.BONE_RIM: 483 * UM, tags.SIDES: 1000 * UM}
+    assert lengths(body) == pytest.approx(expected, rel=1e-3)
+    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(483 * UM * 550 * UM, rel=1e-3)
+    assert body.ridges() == [0]
+
+
+@pytest.mark.mpi
+def test_quarter_tube():
+    """Its arcs are 24 chords each, on its radii about an axis 4 mm up, its wall the area between; up to roundoff."""
+    body, n = load(MPI.COMM_WORLD, partial(quarter_tube, MM, 2 * MM, 24)), 24
+    assert body.mesh.topology.index_map(2).size_global == 2 * n**2
+    chord = 2 * n * np.sin(np.pi / 4 / n) * MM
+    assert lengths(body) == pytest.approx(
+        {tags.ridge(0): 2 * chord, tags.BONE_RIM: chord, tags.SIDES: 2 * MM}, rel=1e-12, abs=0
+    )
+    area = n / 2 * np.sin(np.pi / 2 / n) * (4 - 1) * MM**2
+    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(area, rel=1e-12, abs=0)
+    for tag, radius in ((tags.ridge(0), 2 * MM), (tags.BONE_RIM, MM)):
+        x = vertices(body, body.facet_tags.find(tag))
+        np.testing.assert_allclose(np.hypot(x[:, 0], x[:, 1] - 4 * MM), radius, rtol=1e-12)
+
+
+@pytest.mark.mpi
+def test_cooks_membrane():
+    """Its edges' lengths and its area, 48 mm times the mean of 44 and 16 mm; tolerance: roundoff."""
+    body = load(MPI.COMM_WORLD, partial(cooks_membrane, 3))
+    assert body.mesh.topology.index_map(2).size_global == 18
+    expected = {tags.ridge(0): np.hypot(48, 44), tags.BONE_RIM: 44.0, tags.SIDES: 16 + np.hypot(48, 16)}
+    assert lengths(body) == pytest.approx({tag: value * MM for tag, value in expected.items()}, rel=1e-12)
+    assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(48 * 30 * MM**2, rel=1e-12, abs=0)
+    lowest = MPI.COMM_WORLD.allreduce(float(body.mesh.geometry.x[:, 1].min()), op=MPI.MIN)
+    assert lowest == pytest.approx(10 * MM, rel=1e-12, abs=0)
+
+
+def bottom(body) -> np.ndarray:
+    """Return the bottom's nodes from left to right, shape (nodes, 2)."""
+    nodes = vertices(body, body.facet_tags.find(tags.ridge(0)))[:, :2]
+    return nodes[np.argsort(nodes[:, 0])]
+
+
+def test_pad():
+    """Its bottom is a parabola, the facets beside the tip are as long as asked for, and the tip is a node.
+
+    Tolerance: roundoff; gmsh places nodes along a spline to a millionth of their distance.
+    """
+    size, radius, span = 10 * UM, 0.1, 2 * MM
+    body = load(MPI.COMM_SELF, partial(pad, size, 8, radius, span))
+    x, y = bottom(body).T
+    np.testing.assert_allclose(y, x**2 / (2 * radius), rtol=0, atol=1e-12 * span)
+    np.testing.assert_allclose(x[np.abs(x) < 8.5 * size], size * np.arange(-8, 9), rtol=0, atol=1e-6 * size)
+    assert lengths(body)[tags.BONE_RIM] == pytest.approx(span, rel=1e-12, abs=0)
+    assert lengths(body)[tags.SIDES] == pytest.approx(2 * (span - span**2 / 8 / radius), rel=1e-12)
+
+
+def test_foot():
+    """Flat within its half-width, recessed by the step a facet farther out. Tolerance: roundoff."""
+    size, half_width, step, span = 10 * UM, 0.2 * MM, 2 * UM, 2 * MM
+    body = load(MPI.COMM_SELF, partial(foot, size, half_width, step, span))
+    x, y = bottom(body).T
+    np.testing.assert_allclose(y, np.where(np.abs(x) < half_width + size / 2, 0.0, step), rtol=0, atol=1e-12 * span)
+    assert np.abs(np.abs(x[y > step / 2]).min() - half_width - size) < 1e-12 * span
+    assert lengths(body)[tags.BONE_RIM] == pytest.approx(span, rel=1e-12, abs=0)
+
+
+@pytest.mark.parametrize(
+    ("build", "name"), [(partial(pad, MM, 8, 0.1, 2 * MM), "flank"), (partial(foot, UM, MM, UM, MM), "recess")]
+)
+def test_body_without_its_sides_is_refused(build, name):
+    with pytest.raises(GeometryError, match=f"{name} is .*; it must be positive"):
+        build()
+
+
+@pytest.mark.parametrize("value", [0.0, -1e-3, float("nan"), float("inf")])
+@pytest.mark.parametrize(
+    ("build", "name"), [(block, "width"), (block, "height"), (block, "size"), (ridge, "size"), (ridge, "amplitude")]
+)
+def test_verification_body_is_refused(build, name, value):
+    lengths = {"width": MM, "height": MM, "size": MM, name: value}
+    with pytest.raises(GeometryError, match=f"{name} is .*; it must be positive"):
+        build(**lengths)
+
+
+def test_ridge_without_a_top_is_refused():
+    with pytest.raises(GeometryError, match="amplitude is 0.001 m; it must be below the height, 0.0006 m"):
+        ridge(10 * UM, amplitude=MM)
+
+
+def test_tube_without_a_wall_is_refused():
+    with pytest.raises(GeometryError, match="inner is 0.001 m; it must be below the outer radius, 0.001 m"):
+        quarter_tube(MM, MM, 4)
