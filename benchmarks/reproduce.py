@@ -4,7 +4,7 @@ environment/run python3 benchmarks/reproduce.py [--jobs 2] [--contact-size 10e-6
 
 Runs are kept in results/traces by a hash of their parameters and shared with the other benchmarks: started again, only
 what is missing or changed is run, and drawing anew takes seconds. Writes docs/paper.md, docs/paper/*.png and
-docs/paper/paper.json.
+docs/paper/paper.json. Ends with 1 if a run is missing, or if a number is not the one that the page had.
 """
 
 import sys
@@ -33,6 +33,7 @@ class Book:
         self.figures: list[tuple[str, str]] = []
         self.statements: list[Statement] = []
         self.missing: dict[str, str] = {}
+        self.moved: list[str] = []
 
     def add(
         self,
@@ -111,6 +112,7 @@ def make(out: Path, docs: Path, size: float, measured: friction.Measured | None)
         lambda: [sed.claim_statement(at(scenes.MAP, 200.0), rougher())],
     )
     missing = f"**Not run yet:** {', '.join(book.missing)}." if book.missing else ""
+    book.moved = page.moved(docs, size, book.statements)
     page.write(docs, size, book.statements, book.figures, tables.tables(), missing)
     return book
 
@@ -140,8 +142,10 @@ def main(given: Sequence[str] | None = None) -> int:
     book = make(args.out, args.docs, size, measured)
     for name, why in book.missing.items():
         print(f"missing: {name}, {why}")
+    for words in book.moved:
+        print(f"moved: {words}")
     print(args.docs / "paper.md")
-    return 1 if book.missing else 0
+    return 1 if book.missing or book.moved else 0
 
 
 if __name__ == "__main__":

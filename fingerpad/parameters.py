@@ -39,7 +39,7 @@ class Load(Part):
     bone_x: Finite | None = None
     """Horizontal position of the bone (m), zero when unloaded."""
     until_full_slip: Annotated[bool, Field(strict=True)] = False
-    """Stop as soon as every point in contact slips one way."""
+    """Stop as soon as every point in contact slips one way; with bone_x alone."""
 
     @model_validator(mode="after")
     def _consistent(self) -> "Load":
@@ -53,7 +53,18 @@ class Load(Part):
                 f"name is {show(self.name)} and nothing else is given; "
                 "it must come with at least one of f_ext, bone_height, voltage and bone_x"
             )
+        if self.until_full_slip:
+            self._refuse_unfinished()
         return self
+
+    def _refuse_unfinished(self) -> None:
+        """Refuse what a load that stops at full slip may not have reached."""
+        for name in ("f_ext", "bone_height", "voltage"):
+            if getattr(self, name) is not None:
+                raise ValueError(
+                    f"{name} is {show(getattr(self, name))} and until_full_slip is true, which may stop before that is "
+                    f"reached; {name} must come in a load of its own"
+                )
 
 
 class Skin(Part):

@@ -86,8 +86,9 @@ def test_state_past_the_fold_is_left(gain, side):
     """A gain above one is an unstable state: the loop does not settle on it, and says which ridge it was."""
     stub = line(gain)
     stub.coupling.set_air_gaps(np.array([side * CENTRE]))
-    with pytest.raises(NotConverged, match="COUPLING_CAP at ridge 0"):
+    with pytest.raises(NotConverged, match="COUPLING_CAP at ridge 0") as failure:
         stub.coupling.solve()
+    assert failure.value.cycling
     assert stub.coupling.history.jumped == {0}
     assert np.sign(stub.coupling.d_eq[0] - CENTRE) == np.sign(side - 1)
 

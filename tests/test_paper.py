@@ -9,12 +9,13 @@ import pytest
 from matplotlib.figure import Figure
 
 from benchmarks import reproduce
-from benchmarks.paper import friction, micro, page, scenes, sed, tables
+from benchmarks.paper import friction, micro, page, scenes, section, sed, style, tables
 from benchmarks.paper.statement import HOLDS, IN_PART, NOT, Statement, verdict
 from benchmarks.runs import Run
 from benchmarks.traces import FORCES, VOLTAGES
 from fingerpad.scene import Scene, from_data
 from fingerpad.sweep import key
+from geometry import tags
 
 MU_0 = 0.25
 
@@ -65,6 +66,67 @@ def test_reduction_is_fitted(grid):
     assert len(found.stress) == 40
     assert found.slope == pytest.approx(2e-5, rel=0.1)
     assert found.r_squared > 0.99
+
+
+def test_markers_of_the_reductions_are_of_their_voltage(grid):
+    """Fig. 8B: a colour a voltage, over f_T / L_R of its runs in kPa."""
+    figure = Figure()
+    friction.figure_8(figure, grid)
+    markers = {line.get_color(): line for line in figure.axes[1].lines if line.get_linestyle() == "None"}
+    for voltage in VOLTAGES:
+        runs = [grid[f, voltage].steps for f in FORCES]
+        stress = [1e-3 * steps["f_t"][-1] / steps["contact_length"][-1] for steps in runs]
+        assert sorted(markers[style.VOLTAGE[voltage][0]].get_xdata()) == pytest.approx(sorted(stress), rel=1e-12)
+
+
+def charged(run_x, tag, before, after):
+    """Return a run whose layers' triangles have energy densities before and after charging."""
+    triangles = np.arange(3 * len(tag)).reshape(-1, 3)
+    finger = {"x": run_x, "u": np.zeros_like(run_x), "triangles": triangles, "tag": np.array(tag)}
+    arrays = {"finger_press": finger | {"sed": np.array(before)}, "finger_charge": finger | {"sed": np.array(after)}}
+    return SimpleNamespace(
+        arrays=arrays.__getitem__, normal=0, on_ridges=lambda row, name: (np.array([-1, 0, 1]), None), scene=Scene()
+    )
+
+
+def test_change_of_a_layer_is_weighed_by_area():
+    """One triangle of 1 and one of 3 area units: 100 % of the small and 20 % of the large are 40 %; one far off."""
+    small, wide = np.array([[0, 0], [2, 0], [0, 1]]), np.array([[0, 0], [6, 0], [0, 1]])
+    layers = [tags.LAYERS[name] for name in ("stratum corneum", "viable epidermis", "dermis")]
+    corners = [1e-5 * small, 1e-5 * wide, 1e-5 * small + [5e-3, 0], 1e-5 * small, 1e-5 * small]
+    tag = [layers[0], layers[0], layers[0], layers[1], layers[2]]
+    run = charged(np.concatenate(corners), tag, [1.0, 1.0, 1.0, 2.0, 4.0], [2.0, 0.8, 9.0, 2.0, 5.0])
+    assert list(sed._changes(run).values()) == pytest.approx([0.4, 0.0, 0.25], rel=1e-12)
+
+
+def sheared():
+    """Return a run with a partial slip state in which the leading half slips, and symmetric normal contact."""
+    x = np.linspace(-1, 1, 9)
+    p = np.array([0.0, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0, 0.0])
+    normal = {"x": x, "p": p, "p_el": np.where(p > 0, 0.5, 0.3), "t": 0.1 * x}
+    partial = {"x": x, "p": p, "t": MU_0 * p * np.where(x > 0, 1.0, 0.5)}
+    found = {f"{state}_{k}": v for state, a in (("normal", normal), ("partial", partial)) for k, v in a.items()}
+    steps = {
+        "f_ext": np.full(4, 10.0),
+        "contact_length": np.array([1.0, 2.0, 4.0, 5.0]),
+        "bone_x": np.array([0.0, 1e-4, 2e-4, 3e-4]),
+        "slipping": np.array([0.5, 0.1, 0.6, 1.0]),
+    }
+    gaps = {0: np.linspace(2e-6, 4.8e-6, 9), 3: np.full(9, 2e-6)}
+    return SimpleNamespace(
+        arrays=lambda _: found, steps=steps, normal=0, slip=3, scene=Scene(),
+        on_ridges=lambda row, name: (np.arange(-4, 5), gaps[row]),
+    )  # fmt: skip
+
+
+def test_section_statements():
+    run = sheared()
+    assert [section._scale(run, state) for state in ("normal", "partial", "slip")] == [10.0, 2.5, 2.0]
+    leading = by(section.statements(run), "leading")
+    assert (leading.numbers, leading.verdict) == ({"leading": 1.0, "trailing": 0.0}, HOLDS)
+    assert by(section.statements(run), "tensile").numbers["tension"] == pytest.approx(-0.03)
+    assert by(section.statements(run), "point-symmetric").numbers["even"] == pytest.approx(0, abs=1e-15)
+    assert by(section.statements(run), "1.7 to 3").numbers["share"] == pytest.approx(12 / 18)
 
 
 def test_figures_are_drawn(grid):
@@ -127,10 +189,10 @@ def leave(out, scene, columns, **summary):
 def test_run_is_read(tmp_path):
     scene = Scene()
     steps = {
-        "step": [1, 2, 3, 4],
-        "load": ["press", "charge", "slide", "slide"],
-        "bone_x": [0, 0, 1e-4, 2e-4],
-        "all_slip": [False, False, False, True],
+        "step": [1, 2, 3, 4, 5],
+        "load": ["press", "charge", "slide", "slide", "slide"],
+        "bone_x": [0, 0, 1e-4, 2e-4, 4e-4],
+        "all_slip": [False, False, False, True, True],
     }
     ridges = {
         "step": [1, 2, 2, 4],
@@ -166,12 +228,12 @@ def test_missing_runs_are_named(tmp_path):
 
 # -- scenes, tables, page ------------------------------------------------------------------------------
 def test_sine_is_a_valid_scene():
-    """From 0 V over the peak and back to 0 V, sliding on to full slip each time."""
-    loads = scenes.sine(10e-6).loads()
-    voltages = [load.voltage or 0.0 for load in loads[1:]]
-    assert voltages[0] == voltages[-1] == 0
-    assert max(voltages) == pytest.approx(scenes.PEAK)
-    assert all(load.until_full_slip for load in loads[1:])
+    """From 0 V over the peak and back to 0 V, each reached before the finger slides on to full slip, ever farther."""
+    loads = scenes.sine(10e-6).loads()[1:]
+    voltages = [load.voltage for load in loads if load.voltage is not None]
+    assert voltages == pytest.approx([scenes.PEAK * np.sin(np.pi * k / 12) for k in range(1, 13)], abs=1e-9)
+    assert np.all(np.diff([load.bone_x for load in loads]) > 0)
+    assert [load.until_full_slip for load in loads] == [True] + [False, True] * 12
 
 
 def test_every_parameter_has_a_source():
@@ -196,4 +258,20 @@ def test_page(tmp_path):
     assert "**does not hold**: it is flat" in text
     assert "never shown" not in text
     assert "| equivalent air gap | 1.5e-6 | 2.5e-6 | m | Guo" in text
-    assert json.loads((tmp_path / "paper" / "paper.json").read_text(encoding="utf-8"))[1]["numbers"] == {"fall": 0.01}
+    data = json.loads((tmp_path / "paper" / "paper.json").read_text(encoding="utf-8"))
+    assert data["statements"][1]["numbers"] == {"fall": 0.01}
+
+
+def test_number_that_moved_is_named(tmp_path):
+    """At the contact size of the page; a statement that is new has not moved."""
+    (tmp_path / "paper").mkdir()
+
+    def said(fall):
+        return [Statement("8", "it falls", "so", {"fall": fall, "rise": 0.0}, HOLDS)]
+
+    assert page.moved(tmp_path, 1e-5, said(0.1)) == []
+    page.write(tmp_path, 1e-5, said(0.1), [], "", "")
+    assert page.moved(tmp_path, 1e-5, said(0.10005)) == []
+    assert page.moved(tmp_path, 1e-5, said(0.102)) == ["it falls: fall was 0.1, is 0.102"]
+    assert page.moved(tmp_path, 5e-6, said(0.102)) == []
+    assert page.moved(tmp_path, 1e-5, [Statement("9", "new", "so", {"fall": 3.0}, HOLDS)]) == []

@@ -85,11 +85,11 @@ def test_part_of_a_layer_keeps_the_rest(write):
 def test_history(write):
     path = write(
         '[[history]]\nname = "touch"\nbone_height = -1e-4\n'
-        '[[history]]\nname = "on"\nvoltage = 80\nbone_x = 1e-3\nuntil_full_slip = true\n'
+        '[[history]]\nname = "on"\nbone_x = 1e-3\nuntil_full_slip = true\n'
     )
     assert scenes.load(path).loads() == (
         Load(name="touch", bone_height=-1e-4),
-        Load(name="on", voltage=80.0, bone_x=1e-3, until_full_slip=True),
+        Load(name="on", bone_x=1e-3, until_full_slip=True),
     )
 
 
@@ -316,6 +316,12 @@ def test_files_that_cannot_be_read(write, tmp_path):
             '[[history]]\nname = "a"\nf_ext = 1\n[[history]]\nname = "b"\nuntil_full_slip = true',
             "history[1].name is 'b' and nothing else is given; it must come with at least one of "
             "history[1].f_ext, history[1].bone_height, history[1].voltage and history[1].bone_x",
+        ),
+        (
+            '[[history]]\nname = "a"\nf_ext = 1\n[[history]]\nname = "b"\nvoltage = 80\nbone_x = 1e-3\n'
+            "until_full_slip = true",
+            "history[1].voltage is 80 and history[1].until_full_slip is true, which may stop before that is reached; "
+            "history[1].voltage must come in a load of its own",
         ),
         (
             '[[history]]\nname = "a"\nvoltage = 200',

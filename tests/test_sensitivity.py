@@ -1,5 +1,8 @@
 """The open choices: every changed finger can be built, and what is drawn is what was run."""
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
 from benchmarks import sensitivity
@@ -27,6 +30,17 @@ def test_ridges_tip_is_as_curved_as_said():
     plain = curvature((1.0,))
     assert curvature((1.0, -0.125)) / plain == pytest.approx(0.5, rel=1e-3)
     assert curvature((1.0, 0.125)) / plain == pytest.approx(1.5, rel=1e-3)
+
+
+def test_values_of_a_run():
+    """Friction and SED at full slip, length in normal contact, and what sliding takes of it in per cent."""
+    run = SimpleNamespace(
+        steps={"mu_app": np.array([0.0, 0.5, 0.6]), "contact_length": np.array([2e-3, 1.9e-3, 1.5e-3])},
+        normal=0,
+        slip=2,
+        receptors={"ridge": np.array([-1, 0, 1]), "merkel_sed": np.arange(9.0).reshape(3, 3)},
+    )
+    assert sensitivity.values(run) == pytest.approx((0.6, 2.0, 25.0, 7.0), rel=1e-12)
 
 
 def test_page(tmp_path):

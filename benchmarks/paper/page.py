@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 from benchmarks.paper.statement import HOLDS, Statement
 
 _PUBLISHED = Path(__file__).parent / "experiment" / "published.csv"
+_NUMBERS = Path("paper", "paper.json")
 _HEADER = """# The paper, reproduced
 
 Made by `make paper`; do not edit. [Forsbach, Heß and Papangelo 2023](https://doi.org/10.3389/fmech.2022.1074393) by
@@ -58,5 +60,25 @@ def write(
     parts += ["## Published measurements", published()]
     parts += ["## Parameters", tables]
     (docs / "paper.md").write_text("\n\n".join(filter(None, parts)) + "\n", encoding="utf-8")
-    data = [asdict(s) for s in statements]
-    (docs / "paper" / "paper.json").write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    data = {"contact_size": size, "statements": [asdict(s) for s in statements]}
+    (docs / _NUMBERS).write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def moved(docs: Path, size: float, statements: Sequence[Statement]) -> list[str]:
+    """Return what of the page's numbers is not what it was when the page was last written, at the same contact size.
+
+    Runs of one scene differ by the solver's tolerance, and by which steps were cut: a thousandth is neither.
+    """
+    try:
+        page = json.loads((docs / _NUMBERS).read_text(encoding="utf-8"))
+    except OSError:
+        return []
+    if page["contact_size"] != size:
+        return []
+    before = {s["paper"]: s["numbers"] for s in page["statements"]}
+    return [
+        f"{s.paper}: {name} was {before[s.paper][name]:.6g}, is {value:.6g}"
+        for s in statements
+        for name, value in s.numbers.items()
+        if not math.isclose(before.get(s.paper, {}).get(name, value), value, rel_tol=1e-3, abs_tol=1e-12)
+    ]

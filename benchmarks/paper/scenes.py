@@ -13,6 +13,8 @@ SECTION = (120.0, 150.0)  # N/m, V of Fig. 2
 TRANSITION = 120.0  # N/m of Fig. 8
 MAP = 75.0  # N/m of Fig. 9
 PEAK = 200.0  # V, amplitude of Fig. 9's sine
+_SLIP = 2e-3  # m, by which the finger slips without voltage (at 1.4 mm)
+_BETWEEN = 0.8e-3  # m of sliding from one voltage to the next, half of it while the voltage changes
 PHASES = np.linspace(0, np.pi, 13)  # of one half period, of which the square of the voltage is a whole one
 
 
@@ -24,16 +26,20 @@ def grid(size: float) -> dict[tuple[float, float], Scene]:
 def sine(size: float) -> Scene:
     """Return Fig. 9B's scene: slid to full slip without voltage, then on while the voltage follows a sine.
 
-    At each of its values the finger slides on until every point slips again: the voltage changes slowly.
+    Between its values the voltage changes evenly while the finger slides; at each the finger slides on until every
+    point slips again: the voltage changes slowly.
     """
-    slip: dict[str, Any] = {"bone_x": 20e-3, "until_full_slip": True}
-    charges = [{"name": "sine", "voltage": float(PEAK * np.sin(phase))} | slip for phase in PHASES[1:-1]]
-    history = [
+    history: list[dict[str, Any]] = [
         {"name": "press", "f_ext": MAP},
-        {"name": "slide"} | slip,
-        *charges,
-        {"name": "sine", "voltage": 0.0} | slip,
+        {"name": "slide", "bone_x": _SLIP, "until_full_slip": True},
     ]
+    for k, phase in enumerate(PHASES[1:], start=1):
+        x = _SLIP + k * _BETWEEN
+        voltage = float(PEAK * np.sin(phase)) if k < len(PHASES) - 1 else 0.0
+        history += [
+            {"name": "change", "voltage": voltage, "bone_x": x - _BETWEEN / 2},
+            {"name": "sine", "bone_x": x, "until_full_slip": True},
+        ]
     return _scene(size, history=history)
 
 

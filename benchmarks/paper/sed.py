@@ -75,9 +75,9 @@ def _response(run: Run) -> tuple[Array, Array, Array, Array, Array]:
 
 
 def _ends(run: Run, k: int) -> bool:
-    """Whether a step is the last at its voltage, of those that slide."""
-    last = k + 1 == len(run.loads) or run.steps["voltage"][k + 1] != run.steps["voltage"][k]
-    return bool(last and run.loads[k] in ("slide", "sine"))
+    """Whether a step is the last of a load that slides to full slip."""
+    last = k + 1 == len(run.loads) or run.loads[k + 1] != run.loads[k]
+    return last and run.loads[k] in ("slide", "sine")
 
 
 def _chosen(run: Run) -> dict[str, int]:
@@ -187,8 +187,8 @@ def statements(run: Run) -> list[Statement]:
         Statement(
             "9A",
             "in normal contact voltage changes SED only in the stratum corneum",
-            f"mean |change| over mean SED: {100 * sc:.2g} % in it, {100 * ve:.2g} % in the viable epidermis, "
-            f"{100 * dermis:.2g} % in the dermis; at Merkel sites {100 * np.median(sites):.2g} % (median)",
+            f"mean change (without sign) over mean SED: {100 * sc:.2g} % in it, {100 * ve:.2g} % in the viable "
+            f"epidermis, {100 * dermis:.2g} % in the dermis; at Merkel sites {100 * np.median(sites):.2g} % (median)",
             {"sc": sc, "ve": ve, "dermis": dermis, "merkel": float(np.median(sites))},
             verdict(ve < 0.1 * sc and sites.max() < 0.05, ve < 0.5 * sc),
             "layers above share some of what the outer one feels",
@@ -256,7 +256,7 @@ def claim_statement(with_voltage: Run, rougher: Run) -> Statement:
     return Statement(
         "section 5",
         "SED with voltage at µ0 equals SED without voltage at µ0 = µ_app",
-        f"median |difference| {100 * np.median(np.abs(off)):.2g} %, largest {100 * off[worst]:.2g} % at "
+        f"median difference (without sign) {100 * np.median(np.abs(off)):.2g} %, largest {100 * off[worst]:.2g} % at "
         f"{number(with_voltage, ridges[worst])}; {int((np.abs(off) < 0.05).sum())} of {len(off)} sites within 5 %",
         {"median": float(np.median(np.abs(off))), "largest": float(off[worst])},
         verdict(bool((np.abs(off) < 0.05).all()), bool(np.median(np.abs(off)) < 0.05)),
