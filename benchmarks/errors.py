@@ -1,6 +1,6 @@
 """The discretisation error of the default scene: what meshes and penalty change, and what the results tend to.
 
-environment/run python3 benchmarks/errors.py [--jobs 2] [--only contact growth receptor penalty]
+environment/run python3 benchmarks/errors.py [--jobs 2] [--only contact growth receptor penalty check]
 
 The default scene to full slip, with one setting changed at a time. Runs are kept with those of benchmarks/traces.py;
 what has been run is written to docs/errors.md, docs/errors.png and, as the reference later work is compared with,
@@ -25,8 +25,10 @@ _LIMIT = 10800.0  # s of processor time for one run; the finest mesh takes far l
 CONTACT = (20e-6, 10e-6, 5e-6, 2.5e-6)
 AT = 10e-6  # m, contact size of the other studies
 GROWTH = (0.5, 0.25, 0.125)
-RECEPTOR = (40e-6, 20e-6, 10e-6)
+RECEPTOR = (40e-6, 20e-6, 10e-6, 5e-6, 2.5e-6)
 PENALTY = (0.5e12, 1.5e12, 5e12)
+SIZES = ("contact", "growth", "receptor")  # studies of the mesh
+FINE = {"contact": 5e-6, "growth": 0.125, "receptor": 10e-6}  # that the sum of the studies is checked with
 SITES = (-5, 0, 5)  # ridges whose Merkel sites are looked at: trailing, central and leading ones in contact
 QUANTITIES: Mapping[str, tuple[str, float]] = {  # name: what it is, and what its unit is worth
     "normal_contact_length": ("contact length, normal (mm)", 1e-3),
@@ -45,6 +47,14 @@ the scene of each run: [errors.json](errors.json).
 """
 
 
+_REFERENCE = """## What the results tend to
+
+The limit over the contact size, and what growth and the size at the Merkel sites add on the way to theirs, each at its
+default value first; error bars add up. *Predicted* is that sum without extrapolation for contact 5 µm, growth
+0.125 and 10 µm at the sites all at once, *found* the run with these.
+"""
+
+
 _LIMITS = """Limits are Richardson's extrapolation from the three finest meshes with Roache's error bar; where their
 changes do not shrink with one sign there is no order, the finest value stands, and the bar is three times the larger
 of the last two changes (`benchmarks/convergence.py`)."""
@@ -57,12 +67,13 @@ def study(name: str) -> dict[float, Scene]:
         "growth": {growth: {"mesh": {"contact": AT, "growth": growth}} for growth in GROWTH},
         "receptor": {size: {"mesh": {"contact": AT, "receptor": size}} for size in RECEPTOR},
         "penalty": {eps_n: {"mesh": {"contact": AT}, "contact": {"eps_n": eps_n}} for eps_n in PENALTY},
+        "check": {FINE["contact"]: {"mesh": FINE}},
     }
     return {value: from_data(data) for value, data in scenes[name].items()}
 
 
 STUDIES = {  # name: heading, the setting's unit
-    "contact": ("Contact size", 1e-6, "µm"),
+    "contact": ("Contact size, all else as by default", 1e-6, "µm"),
     "growth": (f"Growth of the elements, at a contact size of {AT * 1e6:g} µm", 1.0, ""),
     "receptor": (f"Size at the Merkel sites, at a contact size of {AT * 1e6:g} µm", 1e-6, "µm"),
     "penalty": (f"Penalty stiffness, at a contact size of {AT * 1e6:g} µm", 1e9, "MPa/mm"),
@@ -84,6 +95,55 @@ def values(scene: Scene, out: Path) -> dict[str, float] | None:
     return found | {name: float(run.summary[name]) for name in ("unknowns", "factorisations")}
 
 
+def _runs(name: str, out: Path) -> dict[float, dict[str, float] | None]:
+    return {value: values(scene, out) for value, scene in study(name).items()}
+
+
+def _mesh_studies(out: Path) -> dict[str, dict[float, dict[str, float]]]:
+    """Return the studies of the mesh; none of them before all were run."""
+    studies = {name: {v: run for v, run in _runs(name, out).items() if run is not None} for name in SIZES}
+    return studies if all(len(runs) == len(study(name)) for name, runs in studies.items()) else {}
+
+
+def reference(out: Path) -> dict[str, Limit]:
+    """Return what the quantities tend to as all of the mesh is refined; empty before all of it was run.
+
+    To first order the errors that contact size, growth and the size at the sites leave add up: the limit over one, and
+    what each other adds between its default and its limit.
+    """
+    found = {}
+    for quantity in QUANTITIES:
+        value = bar = 0.0
+        for name, runs in _mesh_studies(out).items():
+            end = limit([run[quantity] for run in runs.values()])
+            value += end.value - (0.0 if name == "contact" else runs[getattr(Scene().mesh, name)][quantity])
+            bar += end.bar
+        found[quantity] = Limit(value, bar, None)
+    return found if _mesh_studies(out) else {}
+
+
+def predicted(quantity: str, studies: Mapping[str, Mapping[float, Mapping[str, float]]]) -> float:
+    """Return what the studies of the mesh add up to for :data:`FINE`."""
+    default = {name: getattr(Scene().mesh, name) for name in SIZES}
+    changes = (runs[FINE[name]][quantity] - runs[default[name]][quantity] for name, runs in studies.items())
+    return studies["contact"][default["contact"]][quantity] + sum(changes)
+
+
+def _reference_table(out: Path) -> str:
+    studies, found, (fine,) = _mesh_studies(out), reference(out), _runs("check", out).values()
+    if not studies:
+        return ""
+    default = studies["contact"][Scene().mesh.contact]
+    lines = ["| | default | limit | default's error | predicted | found |", "|---|---|---|---|---|---|"]
+    for quantity, (words, unit) in QUANTITIES.items():
+        at, end = default[quantity] / unit, found[quantity]
+        cells = [f"{at:.5g}", f"{end.value / unit:.5g} ± {end.bar / unit:.1g}"]
+        cells += [f"{100 * (at * unit / end.value - 1):.2g} %", f"{predicted(quantity, studies) / unit:.5g}"]
+        cells += ["–" if fine is None else f"{fine[quantity] / unit:.5g}"]
+        lines.append(f"| {words} | " + " | ".join(cells) + " |")
+    return _REFERENCE + "\n" + "\n".join(lines)
+
+
 def _cells(name: str, runs: Mapping[float, dict[str, float] | None], unit: float) -> list[str]:
     return ["–" if run is None else f"{run[name] / unit:.5g}" for run in runs.values()]
 
@@ -96,8 +156,8 @@ def estimate(name: str, runs: Mapping[float, dict[str, float] | None]) -> Limit 
 
 def _table(name: str, out: Path) -> str:
     heading, size, size_unit = STUDIES[name]
-    runs = {value: values(scene, out) for value, scene in study(name).items()}
-    extrapolates = name == "contact"
+    runs = _runs(name, out)
+    extrapolates = name in SIZES
     head = ["", *(f"{value / size:g} {size_unit}".strip() for value in runs)]
     head += ["limit", "order"] if extrapolates else ["largest difference"]
     lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
@@ -120,7 +180,7 @@ def _table(name: str, out: Path) -> str:
 
 def draw(out: Path, path: Path) -> None:
     """Draw the distance from the limit over the contact size, where the limit is known."""
-    runs = {size: values(scene, out) for size, scene in study("contact").items()}
+    runs = _runs("contact", out)
     figure = Figure(figsize=(7.5, 3.8), layout="constrained")
     axes = figure.subplots(1, 2, sharey=True)
     groups = {
@@ -147,30 +207,29 @@ def draw(out: Path, path: Path) -> None:
 def write(out: Path, docs: Path) -> None:
     """Write page, picture and data from what has been run."""
     data: dict[str, Any] = {"made by": "benchmarks/errors.py", "unit": "SI", "studies": {}}
-    for name in STUDIES:
-        scenes = study(name)
-        runs = {value: values(scene, out) for value, scene in scenes.items()}
+    for name in (*STUDIES, "check"):
+        scenes, runs = study(name), _runs(name, out)
         data["studies"][name] = [
             {"value": value, "quantities": run, "scene": scenes[value].parameters()}
             for value, run in runs.items()
             if run
         ]
-        if name == "contact":
-            limits = {quantity: estimate(quantity, runs) for quantity in QUANTITIES}
-            data["limits"] = {q: vars(found) for q, found in limits.items() if found}
+    data["reference"] = {quantity: vars(found) for quantity, found in reference(out).items()}
     (docs / "errors.json").write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    parts = [_HEADER, _table("contact", out)]
-    if data["limits"]:
+    parts = [_HEADER, _reference_table(out), _table("contact", out), _LIMITS]
+    if estimate("slip_f_t", _runs("contact", out)):
         draw(out, docs / "errors.png")
-        parts += [_LIMITS, "![Distance from the limit over the contact size](errors.png)"]
+        parts.append("![Distance from the limit over the contact size](errors.png)")
     parts += [_table(name, out) for name in list(STUDIES)[1:]]
-    (docs / "errors.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+    (docs / "errors.md").write_text("\n\n".join(filter(None, parts)) + "\n", encoding="utf-8")
 
 
 def main(given: Sequence[str] | None = None) -> int:
     """Run what is missing of the studies asked for and write the page."""
     parser = arguments.parser(__doc__)
-    parser.add_argument("--only", nargs="*", choices=STUDIES, default=list(STUDIES), help="studies to run")
+    parser.add_argument(
+        "--only", nargs="*", choices=[*STUDIES, "check"], default=[*STUDIES, "check"], help="studies to run"
+    )
     args = parser.parse_args(given)
     scenes = {f"{name} {value:g}": scene for name in args.only for value, scene in study(name).items()}
     # The finest first: it takes longest.
