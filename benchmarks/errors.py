@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from benchmarks import arguments
@@ -179,28 +180,28 @@ def _table(name: str, out: Path) -> str:
 
 
 def draw(out: Path, path: Path) -> None:
-    """Draw the distance from the limit over the contact size, where the limit is known."""
-    runs = _runs("contact", out)
+    """Draw the distance from the limit: forces and lengths over the contact size, SED over the size at its sites."""
     figure = Figure(figsize=(7.5, 3.8), layout="constrained")
-    axes = figure.subplots(1, 2, sharey=True)
     groups = {
-        "force and contact": ("slip_f_t", "normal_contact_length", "slip_contact_length"),
-        "strain energy density at full slip": tuple(f"slip_sed_{j}" for j in SITES),
+        "contact": ("slip_f_t", "normal_contact_length", "slip_contact_length"),
+        "receptor": tuple(f"slip_sed_{j}" for j in SITES),
     }
-    for ax, (title, names) in zip(axes, groups.items(), strict=True):
+    for ax, (study_name, names) in zip(figure.subplots(1, 2), groups.items(), strict=True):
+        runs = _runs(study_name, out)
         for k, name in enumerate(names):
             found = estimate(name, runs)
             if found is None:
                 continue
-            errors = [abs(run[name] / found.value - 1) for run in runs.values() if run is not None]
+            errors = np.array([abs(run[name] / found.value - 1) for run in runs.values() if run is not None])
+            errors[errors == 0] = np.nan  # the finest run is the limit
             ax.loglog([1e6 * h for h in runs], errors, "osD"[k] + "-", color=f"C{k}", label=QUANTITIES[name][0])
             ax.axhline(found.bar / found.value, color=f"C{k}", ls=":", lw=1)
-        ax.set(title=title, xlabel="contact size (µm)")
+        ax.set(xlabel={"contact": "contact size (µm)", "receptor": "size at the Merkel sites (µm)"}[study_name])
         ax.set_xticks([1e6 * h for h in runs], [f"{1e6 * h:g}" for h in runs])
         ax.minorticks_off()
         if ax.has_data():
             ax.legend(fontsize=7)
-    axes[0].set_ylabel("distance from the limit, relative\n(dotted: the limit's error bar)")
+    figure.supylabel("distance from the limit, relative\n(dotted: the limit's error bar)", fontsize=9)
     figure.savefig(path, dpi=110)
 
 
@@ -219,7 +220,7 @@ def write(out: Path, docs: Path) -> None:
     parts = [_HEADER, _reference_table(out), _table("contact", out), _LIMITS]
     if estimate("slip_f_t", _runs("contact", out)):
         draw(out, docs / "errors.png")
-        parts.append("![Distance from the limit over the contact size](errors.png)")
+        parts.append("![Distance from the limit over the sizes](errors.png)")
     parts += [_table(name, out) for name in list(STUDIES)[1:]]
     (docs / "errors.md").write_text("\n\n".join(filter(None, parts)) + "\n", encoding="utf-8")
 
