@@ -93,7 +93,7 @@ def make(out: Path, docs: Path, size: float, measured: friction.Measured | None)
     book.add(
         "fig9a",
         f"Fig. 9A: strain energy density at {scenes.MAP:g} N/m; circles: Merkel sites",
-        (9, 9),
+        (9, 5.5),
         lambda figure: sed.figure_9a(figure, at(scenes.MAP, 0.0), at(scenes.MAP, 200.0)),
         lambda: sed.statements(at(scenes.MAP, 200.0)),
     )

@@ -37,7 +37,7 @@ def figure_2(figure: Figure, run: Run) -> None:
     x, p = arrays["normal_x"], arrays["normal_p"]
     touching = x[np.nan_to_num(p) > 0] / _MM
     axes[-1].set(xlabel="x on the screen (mm)", xlim=(touching.min() - 1, touching.max() + 1.5))
-    axes[0].legend(ncols=4, loc="upper center", bbox_to_anchor=(0.5, 1.6))
+    axes[0].legend(ncols=4, loc="upper center", bbox_to_anchor=(0.5, 1.42))
 
 
 def _draw(ax: Axes, a: Mapping[str, Array], scale: float) -> None:
