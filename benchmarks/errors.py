@@ -32,6 +32,7 @@ SIZES = ("contact", "growth", "receptor")  # studies of the mesh
 FINE = {"contact": 5e-6, "growth": 0.125, "receptor": 10e-6}  # that the sum of the studies is checked with
 SITES = (-5, 0, 5)  # ridges whose Merkel sites are looked at: trailing, central and leading ones in contact
 QUANTITIES: Mapping[str, tuple[str, float]] = {  # name: what it is, and what its unit is worth
+    "press_contact_length": ("contact length, uncharged (mm)", 1e-3),
     "normal_contact_length": ("contact length, normal (mm)", 1e-3),
     "normal_ridges_in_contact": ("ridges, normal", 1),
     "slip_f_t": ("f_T, full slip (N/m)", 1),
@@ -39,7 +40,7 @@ QUANTITIES: Mapping[str, tuple[str, float]] = {  # name: what it is, and what it
     "slip_contact_length": ("contact length, full slip (mm)", 1e-3),
     "slip_ridges_in_contact": ("ridges, full slip", 1),
 } | {f"{state}_sed_{j}": (f"SED at ridge {j}, {words} (J/m³)", 1.0) for state, words in
-     (("normal", "normal"), ("slip", "full slip")) for j in SITES}  # fmt: skip
+     (("press", "uncharged"), ("normal", "normal"), ("slip", "full slip")) for j in SITES}  # fmt: skip
 _HEADER = """# Discretisation error of the default scene
 
 Made by `environment/run python3 benchmarks/errors.py`; do not edit. The default scene (75 N/m, 200 V, slid to full
@@ -90,7 +91,8 @@ def values(scene: Scene, out: Path) -> dict[str, float] | None:
     if not run.summary["full_slip"]:
         return None
     found = {name: float(run.summary[name]) for name in QUANTITIES if name in run.summary}
-    for state, row in (("normal", run.normal), ("slip", run.slip)):
+    found["press_contact_length"] = float(run.steps["contact_length"][run.pressed])
+    for state, row in (("press", run.pressed), ("normal", run.normal), ("slip", run.slip)):
         sed = dict(zip(run.receptors["ridge"], run.receptors["merkel_sed"][row], strict=True))
         found |= {f"{state}_sed_{j}": float(sed[j]) for j in SITES}
     return found | {name: float(run.summary[name]) for name in ("unknowns", "factorisations")}

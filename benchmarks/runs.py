@@ -67,6 +67,11 @@ class Run:
         return {k: v.reshape(-1, count) if k != "ridge" else v[:count] for k, v in columns.items()}
 
     @property
+    def pressed(self) -> int:
+        """Row of normal contact before the voltage: the last step of the load ``press``."""
+        return int(np.flatnonzero(np.array(self.loads) == "press")[-1])
+
+    @property
     def normal(self) -> int:
         """Row of normal contact: the last step before the bone moves sideways."""
         return int(np.flatnonzero(np.abs(self.steps["bone_x"]) < 1e-12)[-1])

@@ -180,8 +180,7 @@ def statements(run: Run) -> list[Statement]:
     }
     layers = _changes(run)
     sc, ve, dermis = layers.values()
-    pressed = int(np.flatnonzero(np.array(run.loads) == "press")[-1])
-    sites = np.abs(r["merkel_sed"][normal][touching] / r["merkel_sed"][pressed][touching] - 1)
+    sites = np.abs(r["merkel_sed"][normal][touching] / r["merkel_sed"][run.pressed][touching] - 1)
     merkel, away = r["merkel_sed"][normal], ~np.isin(r["ridge"], run.on_ridges(normal, "p_c")[0])
     return [
         Statement(

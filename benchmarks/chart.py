@@ -1,0 +1,244 @@
+"""Error against work: one setting after the other, around the default scene.
+
+environment/run python3 benchmarks/chart.py [--jobs 2] [--draw]     also: make chart
+
+Each run is the default scene (press, charge, slide to full slip) with a setting of its own. Its error is the distance
+from the reference of benchmarks/errors.py; its work the factorisations up to a state times the unknowns. Writes
+docs/chart.md, docs/chart.png and docs/chart.json; runs are kept in results/traces, so that drawing anew takes seconds.
+"""
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from benchmarks import arguments, errors
+from benchmarks.convergence import Limit
+from benchmarks.paper.style import BLUE, GREEN, GREY, PURPLE, VERMILION, draw
+from benchmarks.runs import Run
+from fingerpad.scene import Scene, from_data
+from fingerpad.sweep import sweep
+
+_LIMIT = 10800.0  # s of processor time for one run
+DEFAULT = "default"
+TARGETS = (5e-2, 1e-2, 2e-3)  # errors that the table tells the cost of
+STATES = {"press": "normal contact", "normal": "charged contact", "slip": "full slip"}
+KINDS = {"f_t": "f_T and µ_app", "contact_length": "contact length", "sed_0": "SED at the central Merkel site"}
+QUANTITIES = [f"{state}_{kind}" for kind in KINDS for state in STATES if kind != "f_t" or state == "slip"]
+
+
+def _mesh(contact: float = errors.AT, **sizes: float) -> dict[str, Any]:
+    return {"mesh": {"contact": contact} | sizes}
+
+
+# A family is what is varied; all but the first are around a contact size of 10 um.
+FAMILIES: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
+    "contact size": {f"{size * 1e6:g} µm": _mesh(size) for size in errors.CONTACT if size != Scene().mesh.contact},
+    "growth": {f"growth {growth:g}": _mesh(growth=growth) for growth in errors.GROWTH if growth != Scene().mesh.growth},
+    "size at the sites": {
+        f"{size * 1e6:g} µm at the sites": _mesh(receptor=size)
+        for size in errors.RECEPTOR
+        if size != Scene().mesh.receptor
+    },
+    "all sizes": {
+        "40 µm, growth 0.5, 40 µm at the sites": _mesh(40e-6, growth=0.5, receptor=40e-6),
+        "20 µm, growth 0.5": _mesh(20e-6, growth=0.5),
+        "10 µm, growth 0.5, 10 µm at the sites": _mesh(growth=0.5, receptor=10e-6),
+        "5 µm, growth 0.125, 10 µm at the sites": {"mesh": errors.FINE},
+    },
+    "element": {name: _mesh() | {"numerics": {"element": name}} for name in ("P1", "P2 reduced", "P2-P1")}
+    | {"P1, 5 µm": _mesh(5e-6) | {"numerics": {"element": "P1"}}},
+    "formulation": {
+        "Nitsche": _mesh() | {"contact": {"formulation": "nitsche"}},
+        "augmented Lagrangian": _mesh() | {"contact": {"formulation": "augmented"}},
+    }
+    | {
+        f"penalty {eps_n / 1e9:g} MPa/mm": _mesh() | {"contact": {"eps_n": eps_n}}
+        for eps_n in errors.PENALTY
+        if eps_n != Scene().contact.eps_n
+    },
+    "solver": {f"{points} points a facet": _mesh() | {"numerics": {"quadrature_points": points}} for points in (3, 6)}
+    | {
+        "tolerance 1e-7": _mesh() | {"numerics": {"tolerance": 1e-7}},
+        "coupling tolerance 1e-3": _mesh() | {"numerics": {"coupling_tolerance": 1e-3}},
+    },
+}
+_LOOKS = {
+    "contact size": (BLUE, "o"),
+    "growth": (VERMILION, "^"),
+    "size at the sites": (GREEN, "s"),
+    "all sizes": ("black", "P"),
+    "element": (PURPLE, "D"),
+    "formulation": ("#E69F00", "v"),
+    "solver": (GREY, "X"),
+}
+
+
+@dataclass(frozen=True)
+class Point:
+    """A run in the chart."""
+
+    label: str
+    family: str
+    work: Mapping[str, float]
+    """Factorisations up to a state times unknowns, by state."""
+    errors: Mapping[str, float]
+    """Relative distance from the reference, by quantity."""
+
+
+def scenes() -> dict[tuple[str, str], Scene]:
+    """Return all scenes by family and label, the default one first."""
+    found = {("contact size", DEFAULT): Scene()}
+    for family, settings in FAMILIES.items():
+        found |= {(family, label): from_data(data) for label, data in settings.items()}
+    return found
+
+
+def collect(out: Path, reference: Mapping[str, Limit]) -> list[Point]:
+    """Return what has been run to full slip."""
+    points = []
+    for (family, label), scene in scenes().items():
+        values = errors.values(scene, out)
+        if values is None:
+            continue
+        run = Run(scene, out)
+        spent = np.cumsum(run.steps["factorisations"]) * run.summary["unknowns"]
+        rows = {"press": run.pressed, "normal": run.normal, "slip": run.slip}
+        points.append(
+            Point(
+                label,
+                family,
+                {state: float(spent[row]) for state, row in rows.items()},
+                {name: abs(values[name] / reference[name].value - 1) for name in QUANTITIES},
+            )
+        )
+    return points
+
+
+def state_of(quantity: str) -> str:
+    """Return the state that a quantity is of."""
+    return quantity.split("_", 1)[0]
+
+
+def front(points: Sequence[Point], quantity: str) -> list[Point]:
+    """Return Pareto's front from cheap to dear: no other run is both cheaper and nearer to the reference."""
+    state, found = state_of(quantity), list[Point]()
+    for point in sorted(points, key=lambda p: (p.work[state], p.errors[quantity])):
+        if not found or point.errors[quantity] < found[-1].errors[quantity]:
+            found.append(point)
+    return found
+
+
+def _panel(ax: Axes, points: Sequence[Point], quantity: str, reference: Limit) -> None:
+    state = state_of(quantity)
+    bar = reference.bar / abs(reference.value)
+    ax.axhspan(1e-6, bar, color="0.9", lw=0)
+    edge = front(points, quantity)
+    ax.step([p.work[state] for p in edge], [p.errors[quantity] for p in edge], "k-", where="post", lw=0.8)
+    for family, (colour, marker) in _LOOKS.items():
+        mine = [p for p in points if p.family == family and p.label != DEFAULT]
+        ax.plot([p.work[state] for p in mine], [p.errors[quantity] for p in mine], marker, color=colour, ms=5)
+    for p in points:
+        if p.label == DEFAULT:
+            ax.plot(p.work[state], p.errors[quantity], "*", color=BLUE, mec="black", mew=0.5, ms=13)
+    ax.set(xscale="log", yscale="log", title=f"{KINDS[quantity.split('_', 1)[1]]}, {STATES[state]}")
+
+
+def paint(figure: Figure, points: Sequence[Point], reference: Mapping[str, Limit]) -> None:
+    """Draw a panel for each quantity in each state; f_T is that of full slip, the free places hold the legend."""
+    axes = figure.subplots(len(KINDS), len(STATES))
+    for row, kind in enumerate(KINDS):
+        for column, state in enumerate(STATES):
+            ax, quantity = axes[row, column], f"{state}_{kind}"
+            if quantity not in QUANTITIES:
+                ax.axis("off")
+                continue
+            _panel(ax, points, quantity, reference[quantity])
+            smallest = min(p.errors[quantity] for p in points)
+            ax.set_ylim(max(0.5 * smallest, 1e-5), 2 * max(p.errors[quantity] for p in points))
+    for ax in axes[-1]:
+        ax.set_xlabel("factorisations × unknowns")
+    for ax in (axes[0, 2], axes[1, 0], axes[2, 0]):
+        ax.set_ylabel("relative error")
+    handles = [
+        axes[0, 0].plot([], [], marker, color=colour, label=family)[0] for family, (colour, marker) in _LOOKS.items()
+    ]
+    handles += axes[0, 0].plot([], [], "*", color=BLUE, mec="black", ms=12, label="default scene")
+    handles += axes[0, 0].plot([], [], "k-", lw=0.8, label="Pareto's front")
+    handles.append(axes[0, 0].fill_between([], [], color="0.9", label="below the reference's error bar"))
+    axes[0, 0].legend(handles=handles, loc="upper left", ncols=2, bbox_to_anchor=(0.0, 1.0))
+
+
+def _costs(points: Sequence[Point], reference: Mapping[str, Limit]) -> str:
+    """Return what errors cost: the cheapest run for each, and its work over the default's."""
+    base = next(p for p in points if p.label == DEFAULT)
+    lines = [
+        "| | reference's bar | " + " | ".join(f"{100 * t:g} %" for t in TARGETS) + " | default's error | on the front |"
+    ]
+    lines.append("|---" * (len(TARGETS) + 4) + "|")
+    for quantity in QUANTITIES:
+        state, kind = quantity.split("_", 1)
+        cells = [f"{100 * reference[quantity].bar / abs(reference[quantity].value):.2g} %"]
+        for target in TARGETS:
+            good = [p for p in points if p.errors[quantity] <= target]
+            best = min(good, key=lambda p: p.work[state], default=None)
+            cells.append("none" if best is None else f"{best.label}: {best.work[state] / base.work[state]:.2g}")
+        cells += [f"{100 * base.errors[quantity]:.2g} %", "yes" if base in front(points, quantity) else "no"]
+        lines.append(f"| {KINDS[kind]}, {STATES[state]} | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+_HEADER = """# What accuracy costs
+
+Made by `make chart`; do not edit. The default scene with one setting after the other changed, around a contact size of
+10 µm unless said otherwise. An error is the relative distance from the limit of [errors.md](errors.md), whose error bar
+is grey: what lies in the grey is not resolved. Work is the number of factorisations up to the state times the number of
+unknowns. The reference has the default's penalty, so that what a formulation or another penalty changes of the contact
+length counts as error here. The data: [chart.json](chart.json).
+"""
+_TABLE = """The cheapest run for an error, and its work over that of the default scene:"""
+
+
+def write(points: Sequence[Point], total: int, reference: Mapping[str, Limit], docs: Path) -> None:
+    """Write page, picture and data."""
+    draw(docs / "chart.png", (12, 10), lambda figure: paint(figure, points, reference))
+    names = {quantity: ", ".join(p.label for p in front(points, quantity)) for quantity in QUANTITIES}
+    fronts = "\n".join(f"- {KINDS[q.split('_', 1)[1]]}, {STATES[state_of(q)]}: {labels}" for q, labels in names.items())
+    parts = [
+        _HEADER,
+        f"{len(points)} of {total} runs.",
+        "![Relative error over work](chart.png)",
+        _TABLE,
+        _costs(points, reference),
+        f"Pareto's fronts, from cheap to dear:\n\n{fronts}",
+    ]
+    (docs / "chart.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+    data = {"reference": {q: vars(reference[q]) for q in QUANTITIES}, "points": [asdict(p) for p in points]}
+    (docs / "chart.json").write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def main(given: Sequence[str] | None = None) -> int:
+    """Run what is missing and write the page."""
+    parser = arguments.parser(__doc__)
+    parser.add_argument("--draw", action="store_true", help="run nothing, draw what is there")
+    args = parser.parse_args(given)
+    wanted = scenes()
+    if not args.draw:
+        sweep({f"{family}: {label}": scene for (family, label), scene in wanted.items()}, args.out, args.jobs, _LIMIT)
+    reference = errors.reference(args.out)
+    if not reference:
+        parser.error("the reference is missing; run benchmarks/errors.py first")
+    points = collect(args.out, reference)
+    write(points, len(wanted), reference, args.docs)
+    print(f"{len(points)} of {len(wanted)} runs; {args.docs / 'chart.md'}")
+    return 0 if len(points) == len(wanted) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
