@@ -21,6 +21,7 @@ from variational.quantities import Observer, RidgeLoads, SurfaceState
 from variational.solver import Solver
 from variational.stability import Stability, StabilityCheck
 from variational.surface import Surface
+from variational.transfer import Carried, give
 
 Array = NDArray[np.float64]
 _SLIDE_ON = 0.2e-3  # m, further sliding that must not change f_t at full slip
@@ -132,6 +133,27 @@ class Simulation:
                 self.continuation.run(_target(load))
                 self._check_stability()
             self.on_load()
+
+    def adopt(self, carried: Carried, name: str, slide: float = 0.0) -> Attempt:
+        """Solve again for a state that was reached on another mesh of the same finger.
+
+        Args:
+            carried: the state.
+            name: what it is called in a failure.
+            slide: see :func:`variational.transfer.give`.
+
+        Raises:
+            StepFailed: no equilibrium was found from there, or it is none (forces out of balance, skin where it was not
+                expected to touch).
+        """
+        give(carried, self.coupling, slide)
+        self._load = name
+        attempt = self.continuation.adopt(name)
+        self.energy = EnergyBook(self.problem, *self._state())  # what was dissipated on the way is not known
+        loads = self.observer.ridge_loads(self.continuation.surface_state)
+        self._check_balance(loads)
+        self._check_zone(loads)
+        return attempt
 
     def _slides_on(self, load: Load) -> bool:
         """Slide a little further: full slip is steady, since the screen looks the same everywhere."""
