@@ -7,11 +7,13 @@ A knob is a set of element sizes, or the step size, that is halved at once. With
           E = \sum_k \frac{|q - q_k|}{1 - 2^{-p_k}}
 
 (the two-level estimate of Richardson's extrapolation; Roache 1994, doi 10.1115/1.2910291). E adds magnitudes: signs
-that cancel on one mesh need not on the next. One halving tells no order; p = 1 is then taken, the order of a contact's
-edge on a mesh that does not know where it is, which doubles the difference. Once a knob has been halved again, the
-order is observed, and is believed between 1 and 2. A difference that came out accidentally small, or with the other
-sign, is not believed either: it counts as at least a quarter of the one before it for each halving between the two,
-which is second order.
+that cancel on one mesh need not on the next. On very coarse meshes the knobs are not independent, since smaller facets
+and slower growth both refine what is behind the contact, and E counts twice what either would mend.
+
+One halving tells no order; p = 1 is then taken, the order of a contact's edge on a mesh that does not know where it
+is, which doubles the difference. Once a knob has been halved again, the order is observed, and is believed between 1
+and 2. A difference that came out accidentally small, or with the other sign, is not believed either: it counts as at
+least a quarter of the one before it for each halving between the two, which is second order.
 
 (A dual-weighted residual would need the adjoint of an active set and of two scales, and says nothing of a state in
 which a ridge has jumped. A finer mesh sees all that, and one re-solved state costs some ten factorisations.)

@@ -8,9 +8,9 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad import accuracy
+from fingerpad import run as running
 from fingerpad.accuracy import Search, Solve, State, plus_minus
 from fingerpad.interrupt import Interrupted
-from fingerpad.run import run
 from fingerpad.scene import SceneError, from_data
 from fingerpad.sweep import key
 from variational.continuation import StepFailed
@@ -171,6 +171,25 @@ def test_plus_minus(value, error, text):
     assert plus_minus(value, error) == text
 
 
+# -- from which mesh ---------------------------------------------------------------------------------------
+@pytest.mark.parametrize(("asked", "tried"), [({"mu_app": 0.01}, [20e-6, 10e-6]), ({}, [20e-6])])
+def test_starts_again_finer_where_the_path_is_lost(monkeypatch, tmp_path, asked, tried):
+    """20 um loses the path here and 10 um does not; who asks for an estimate alone has chosen the mesh."""
+    sizes = []
+
+    def once(scene, folder, comm, failed_starts):
+        sizes.append(scene.mesh.contact)
+        lost = scene.mesh.contact != 10e-6
+        end = {"failure": "no equilibrium", "unknowns": 1, "factorisations": 2, "wall_seconds": 3.0} if lost else {}
+        return end | {"failed_starts": list(failed_starts)}
+
+    monkeypatch.setattr(running, "_run", once)
+    scene = from_data({"accuracy": asked, "mesh": {"contact": 20e-6}})
+    summary = running.run(scene, tmp_path, MPI.COMM_SELF)
+    assert sizes == tried
+    assert len(summary["failed_starts"]) == len(tried) - 1
+
+
 # -- a small finger ----------------------------------------------------------------------------------------
 SMALL = {
     "f_ext": 1.0,
@@ -184,7 +203,7 @@ SMALL = {
 @pytest.mark.slow
 def test_small_finger_comes_with_its_error(tmp_path: Path):
     """From scene to summary: estimated from three re-solved meshes, within what was asked for, and as JSON on disk."""
-    run(from_data(SMALL), tmp_path, MPI.COMM_WORLD)
+    running.run(from_data(SMALL), tmp_path, MPI.COMM_WORLD)
     summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
     assert "failure" not in summary
     found = summary["accuracy"]
