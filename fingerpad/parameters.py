@@ -67,6 +67,24 @@ class Load(Part):
                 )
 
 
+class Accuracy(Part):
+    """Discretisation errors that are asked for, relative; without any, errors are estimated and nothing is refined.
+
+    See :mod:`fingerpad.estimate` and :mod:`fingerpad.accuracy`. Friction is that of full slip, lengths and energy
+    densities are those of normal contact and of full slip.
+    """
+
+    mu_app: Tolerance | None = None
+    f_t: Tolerance | None = None
+    contact_length: Tolerance | None = None
+    sed: Tolerance | None = None
+    """At the Merkel sites of the ridges that can touch, over the largest of them."""
+
+    def tolerances(self) -> dict[str, float]:
+        """Return what is asked for, by quantity."""
+        return {name: value for name in type(self).model_fields if (value := getattr(self, name)) is not None}
+
+
 class Skin(Part):
     """Ogden solid (Eqs. 1 and 2)."""
 

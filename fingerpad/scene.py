@@ -10,7 +10,18 @@ from typing import Annotated, Any
 
 from pydantic import Field, ValidationError, model_validator
 
-from fingerpad.parameters import Contact, Electric, Load, Materials, NonNegative, Numerics, Part, Positive, Roughness
+from fingerpad.parameters import (
+    Accuracy,
+    Contact,
+    Electric,
+    Load,
+    Materials,
+    NonNegative,
+    Numerics,
+    Part,
+    Positive,
+    Roughness,
+)
 from fingerpad.sentences import first_error, qualify, show
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
@@ -44,6 +55,17 @@ class Scene(Part):
     roughness: Roughness = Roughness()
     contact: Contact = Contact()
     numerics: Numerics = Numerics()
+    accuracy: Accuracy | None = None
+    """Relative errors within which results are wanted; sizes in ``mesh`` are then those to start from."""
+
+    @model_validator(mode="after")
+    def _can_be_carried(self) -> "Scene":
+        if self.accuracy is not None and self.numerics.element == "P2-P1":
+            raise ValueError(
+                "accuracy is given and numerics.element is 'P2-P1', whose pressure cannot be carried to another mesh; "
+                "take 'P2'"
+            )
+        return self
 
     @model_validator(mode="after")
     def _one_history(self) -> "Scene":
@@ -95,6 +117,7 @@ class Scene(Part):
     def parameters(self) -> dict[str, Any]:
         """Return every parameter in use, ready for JSON; as a scene it gives the same run again."""
         unused: dict[str, Any] = {name: True for name in (("history",) if self.history is None else _DEFAULT_HISTORY)}
+        unused |= {"accuracy": True} if self.accuracy is None else {}
         return self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
 
 
@@ -102,6 +125,7 @@ class Scene(Part):
 # at 46 N/m, 17 at 73 N/m); friction rolls the finger onto its leading side (ridge 10 touches at 1 before full slip).
 _FORCE, _WIDENS = 75.0, 0.27
 _FRICTION, _ROLLS = 0.25, 0.3
+_START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}  # of scenes that ask for accuracy
 _DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 
 
@@ -137,7 +161,7 @@ def from_data(data: Mapping[str, Any]) -> Scene:
     """
     try:
         # As JSON, because there a list is a tuple and a table is a model even under strict rules.
-        return Scene.model_validate_json(json.dumps(_wide_enough(data), default=str), strict=True)
+        return Scene.model_validate_json(json.dumps(_coarse_start(_wide_enough(data)), default=str), strict=True)
     except ValidationError as error:
         raise SceneError(first_error(error, Scene)) from None
 
@@ -154,6 +178,14 @@ def _wide_enough(data: Mapping[str, Any]) -> Mapping[str, Any]:
     if wider == 1.0:
         return data
     return {**data, "mesh": {**mesh, "touching_half_arc": MeshSize().touching_half_arc * wider}}
+
+
+def _coarse_start(data: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Start from a coarse mesh, in sizes that the scene does not give, if it asks for an accuracy."""
+    mesh, accuracy = data.get("mesh", {}), data.get("accuracy")
+    if not (isinstance(mesh, dict) and isinstance(accuracy, dict) and accuracy):
+        return data
+    return {**data, "mesh": _START | mesh}
 
 
 def _largest(values: Iterable[Any]) -> float:

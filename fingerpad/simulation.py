@@ -21,6 +21,7 @@ from variational.quantities import Observer, RidgeLoads, SurfaceState
 from variational.solver import Solver
 from variational.stability import Stability, StabilityCheck
 from variational.surface import Surface
+from variational.transfer import Carried, give
 
 Array = NDArray[np.float64]
 _SLIDE_ON = 0.2e-3  # m, further sliding that must not change f_t at full slip
@@ -74,7 +75,12 @@ class Simulation:
     """
 
     def __init__(
-        self, scene: Scene, comm: MPI.Comm, on_step: Callable[[Step, float], None], on_load: Callable[[], None]
+        self,
+        scene: Scene,
+        comm: MPI.Comm,
+        on_step: Callable[[Step, float], None],
+        on_load: Callable[[], None],
+        step_scale: float = 1.0,
     ) -> None:
         """Mesh the finger and set the solver up.
 
@@ -83,6 +89,7 @@ class Simulation:
             comm: communicator of the mesh.
             on_step: called on every rank after each accepted step with the part of the whole history that is done.
             on_load: called on every rank when a load has been reached.
+            step_scale: factor on the largest steps of the loads.
         """
         self.scene, self.on_step, self.on_load = scene, on_step, on_load
         self.profiles = Profiles(scene.geometry)
@@ -105,7 +112,7 @@ class Simulation:
             numerics.coupling_cap,
             by_gap=contact.length == "gap",
         )
-        self.continuation = Continuation(self.coupling, self._accepted)
+        self.continuation = Continuation(self.coupling, self._accepted, step_scale=step_scale)
         self.energy = EnergyBook(self.problem, *self._state())
         self.unknowns = self.solver.layout.global_size
         self.full_slip = False
@@ -132,6 +139,30 @@ class Simulation:
                 self.continuation.run(_target(load))
                 self._check_stability()
             self.on_load()
+
+    def adopt(self, carried: Carried, name: str, direction: int = 0) -> None:
+        """Solve again for a state that was reached on another mesh of the same finger.
+
+        Args:
+            carried: the state.
+            name: what it is called in a failure.
+            direction: 1 or -1 for a state of full slip, the way the bone slides; zero for another.
+
+        Raises:
+            StepFailed: no equilibrium was found from there, or it is none (forces out of balance, skin where it was not
+                expected to touch), or full slip is no longer full or not steady.
+        """
+        give(carried, self.coupling, direction * _SLIDE_ON)
+        self._load = name
+        self.continuation.adopt(name)
+        self.energy = EnergyBook(self.problem, *self._state())  # what was dissipated on the way is not known
+        loads = self.observer.ridge_loads(self.continuation.surface_state)
+        self._check_balance(loads)
+        self._check_zone(loads)
+        if direction and not self._slides_on(Load(name=name, bone_x=self.solver.control.x + direction)):
+            raise StepFailed(
+                f"{name}, solved again with a contact size of {self.scene.mesh.contact:g} m, is not steady"
+            )
 
     def _slides_on(self, load: Load) -> bool:
         """Slide a little further: full slip is steady, since the screen looks the same everywhere."""

@@ -241,6 +241,29 @@ class Continuation:
             f"{load}, {self._now.voltage:.4g} V, bone x {c.x:.4g} m: {failure}"
         )
 
+    # -- a state from elsewhere ------------------------------------------------------------------------
+    def adopt(self, name: str) -> Attempt:
+        """Solve at the present loads from fields and history that were put in from outside, and accept the state.
+
+        Args:
+            name: what the state is called in a failure.
+
+        Raises:
+            StepFailed: no equilibrium was found from there.
+        """
+        self._now = self._snapshot()
+        attempt = Attempt()
+        for creep in (False, True):
+            try:
+                self._try((replace(self._now.control), self._now.voltage), attempt, creep)
+                self._accept()
+                return attempt
+            except NotConverged as failure:
+                self._restore()
+                attempt.cutbacks.append(str(failure))
+                last = failure
+        raise StepFailed(self._describe(Target(name), 0.0, last)) from last
+
     # -- one step --------------------------------------------------------------------------------------
     def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool) -> None:
         counts = self.solver.counts

@@ -1,0 +1,355 @@
+r"""Results with their discretisation error, and refined until that is within what a scene asks for.
+
+The whole path of the loads is run once, on the mesh that the scene gives (a coarse one where it asks for an accuracy
+and says nothing else). Two of its states are then carried to finer meshes and solved for again
+(:mod:`variational.transfer`): normal contact, the last state before the bone moves, and full slip. Halving one knob
+at a time gives each its share of the error (:mod:`fingerpad.estimate`):
+
+* ``contact``: size of the facets that can touch,
+* ``bulk``: growth of the elements, their size on the junctions, and the coarsest,
+* ``receptor``: size at the Merkel sites; left out where only other quantities are asked for,
+* ``steps``: of the loads, which matters where friction keeps a history, to normal contact; from a second path, up to
+  there, on the first mesh. Full slip knows no path.
+
+Knobs whose share is too large are halved, as often as their order asks for, the states solved again, and those knobs'
+shares estimated anew. It ends when the estimate, which is always one of a real refinement, is within what is allowed,
+or says that it is not. A state in which another number of ridges touches is noted; it shows as a large share.
+
+Not estimated: what a state of normal contact owes to its friction history having been that of the first mesh, and the
+penalty, which is part of the model here.
+"""
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from fingerpad.estimate import Knob, errors, halvings
+from fingerpad.interrupt import Interrupted
+from fingerpad.scene import Load, Scene
+from fingerpad.simulation import Simulation, Step
+from geometry.parameters import MeshSize
+from variational.continuation import StepFailed
+from variational.receptors import Receptors
+from variational.transfer import Carried, carry
+
+STILL = 1e-12  # m, below which the bone has not moved sideways
+_SIZES = {"contact": ("contact",), "bulk": ("growth", "interface", "coarsest"), "receptor": ("receptor",)}
+_ROUNDS = 4  # of refinement
+_WORDS = {"normal": "normal contact", "slip": "full slip"}
+
+
+@dataclass(frozen=True)
+class State:
+    """A state that can be solved again, the same on every rank."""
+
+    carried: Carried
+    direction: int
+    """The way the bone slides at full slip, zero in normal contact."""
+    row: dict[str, float]
+    """Its resultants, by the names of a run's steps."""
+    sed: dict[int, float]
+    """Strain energy density (J/m^3) at the Merkel sites of the ridges that can touch."""
+
+
+@dataclass(frozen=True)
+class Solve:
+    """States on one mesh, and what they cost."""
+
+    states: dict[str, State]
+    """By ``normal`` and ``slip``."""
+    mesh: MeshSize
+    unknowns: int
+    factorisations: int
+    processor_seconds: float
+    """Of this rank."""
+
+    def values(self) -> dict[str, float]:
+        """Return the quantities of interest, by state and name."""
+        found: dict[str, float] = {}
+        for name, state in self.states.items():
+            wanted = ("contact_length",) if name == "normal" else ("f_t", "mu_app", "contact_length")
+            found |= {f"{name}_{quantity}": state.row[quantity] for quantity in wanted}
+            found |= {f"{name}_sed_{j}": value for j, value in state.sed.items()}
+        return found
+
+
+class Keeper:
+    """Keeps the two states of a path as it goes."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        """Find the Merkel sites of the ridges that can touch."""
+        self._simulation = simulation
+        self._start = time.process_time()
+        ridges, profiles = simulation.problem.surface.names, simulation.profiles
+        sites = profiles.merkel_sites()[[profiles.ridges.index(j) for j in ridges]]
+        self._sites = Receptors(simulation.problem, sites)
+        self.states: dict[str, State] = {}
+
+    def see(self, step: Step) -> None:
+        """Take note of an accepted step; collective."""
+        if abs(step.row["bone_x"]) < STILL:
+            self.keep("normal")
+        elif step.row["all_slip"] and "slip" not in self.states:
+            self.keep("slip")
+
+    def keep(self, name: str) -> None:
+        """Keep the present state; collective."""
+        s = self._simulation
+        loads = s.observer.ridge_loads(s.continuation.surface_state)
+        f_ext, f_t = float(s.solver.reaction[1]), -float(s.solver.reaction[0])
+        row = {
+            "f_t": f_t,
+            "mu_app": f_t / f_ext,
+            "f_electrostatic": float(loads.f_attraction.sum()),
+            "f_contact": float(loads.f_contact.sum()),
+            "bone_height": float(s.solver.bone[1]),
+            "ridges_in_contact": int((loads.length > 0).sum()),
+            "contact_length": float(loads.length.sum()),
+        }
+        sed = {j: float(density) for j, density in zip(s.problem.surface.names, self._sites.sed(), strict=True)}
+        direction = 0 if name == "normal" else 1 if f_t >= 0 else -1
+        self.states[name] = State(carry(s.coupling, s.continuation.surface_state), direction, row, sed)
+
+    def solve(self) -> Solve:
+        """Return what was kept."""
+        s, seconds = self._simulation, time.process_time() - self._start
+        if not s.full_slip:
+            self.states.pop("slip", None)
+        return Solve(self.states, s.scene.mesh, s.unknowns, s.solver.counts.factorisations, seconds)
+
+
+def solve_again(scene: Scene, states: Mapping[str, State], comm: MPI.Comm) -> Solve:
+    """Solve for states of a scene's finger on the scene's mesh; collective.
+
+    Raises:
+        StepFailed: see :meth:`fingerpad.simulation.Simulation.adopt`.
+    """
+    simulation = Simulation(scene, comm, lambda step, done: None, lambda: None)
+    keeper = Keeper(simulation)
+    for name, state in states.items():
+        simulation.adopt(state.carried, _WORDS[name], state.direction)
+        keeper.keep(name)
+    simulation.full_slip |= "slip" in states
+    return keeper.solve()
+
+
+class Search:
+    """Estimates errors from a path's states and refines.
+
+    Attributes:
+        base: the states whose errors are estimated.
+        halved: how often each knob has been halved for them.
+        knobs: what halving each once more changed.
+        solves: all that was solved, the path first.
+        notes: what a user should know.
+        failure: why an accuracy was not reached, else empty.
+    """
+
+    def __init__(
+        self, scene: Scene, path: Solve, comm: MPI.Comm, say: Callable[[str], None], pause: Callable[[], None]
+    ) -> None:
+        """Start from a path.
+
+        Args:
+            scene: with an ``accuracy``.
+            path: its states.
+            comm: communicator of the meshes.
+            say: prints a line.
+            pause: called between solves; may raise to stop.
+
+        Raises:
+            StepFailed: the path has no state in which what is asked for is known.
+        """
+        assert scene.accuracy is not None
+        self.scene, self.comm, self.say, self.pause = scene, comm, say, pause
+        self.asked = scene.accuracy.tolerances()
+        self.base, self._path = path, path
+        self.solves, self.failure = [path], ""
+        self.notes: list[str] = []
+        sized = [key for key in _SIZES if key != "receptor" or not self.asked or "sed" in self.asked]
+        self.knobs = {key: Knob() for key in sized}
+        if scene.friction > 0 and "normal" in path.states:
+            self.knobs["steps"] = Knob()
+        self.halved = dict.fromkeys(self.knobs, 0)
+        self._cache = {self._key(self.halved): path}
+        for name in {"mu_app", "f_t"} & set(self.asked) if "slip" not in path.states else ():
+            raise StepFailed(
+                f"accuracy.{name} is {self.asked[name]:g}, which full slip decides, and that was not reached"
+            )
+        if not path.states:
+            raise StepFailed("accuracy is given and the history has neither normal contact nor full slip")
+
+    def run(self) -> None:
+        """Estimate, and refine until what is asked for is met or cannot be.
+
+        Raises:
+            Interrupted: ``pause`` was asked to.
+        """
+        todo = dict.fromkeys(self.knobs, 1)
+        for round_ in range(_ROUNDS + 1):
+            try:
+                for key in todo:
+                    self._see(key)
+                todo = halvings(self.knobs, self.allowed())
+                self._tell()
+                if not todo:
+                    return
+                if round_ == _ROUNDS:
+                    break
+                halved = {key: n + todo.get(key, 0) for key, n in self.halved.items()}
+                self.base, self.halved = self._at(halved), halved
+            except Interrupted:
+                raise
+            except StepFailed as error:
+                self.failure = f"the accuracy asked for could not be established: {error}"
+                return
+        self.failure = f"the estimate is not within the accuracy asked for after {_ROUNDS} refinements"
+
+    def allowed(self) -> dict[str, float]:
+        """Return the largest error allowed of each quantity that is asked for, in its unit."""
+        found = {}
+        for name, value in self.base.values().items():
+            state, _, quantity = name.partition("_")
+            largest = max(self.base.states[state].sed.values(), default=0.0)
+            if "sed" in self.asked and quantity.startswith("sed_"):
+                found[name] = self.asked["sed"] * largest
+            elif quantity in self.asked:
+                found[name] = self.asked[quantity] * abs(value)
+        return found
+
+    def estimates(self) -> dict[str, float]:
+        """Return the estimated error of each quantity, in its unit; none before every knob was halved."""
+        if not all(knob.changes for knob in self.knobs.values()):
+            return {}
+        return errors(self.knobs, list(self.base.values()))
+
+    def _see(self, key: str) -> None:
+        """Halve a knob and take note of what it changes."""
+        n = self.halved[key]
+        if key == "steps":  # on the first mesh
+            coarse, finer = self._with_steps(n), self._with_steps(n + 1)
+        else:
+            coarse, finer = self.base, self._at(self.halved | {key: n + 1})
+        self.knobs[key].see(n, coarse.values(), finer.values())
+        for name, state in finer.states.items():
+            before, now = (s.row["ridges_in_contact"] for s in (coarse.states[name], state))
+            if before != now:
+                self.notes.append(f"halving {key}: {now} ridges in contact at {_WORDS[name]} instead of {before}")
+
+    def _key(self, halved: Mapping[str, int]) -> tuple[int, ...]:
+        return tuple(halved[key] for key in self.knobs)
+
+    def _mesh(self, halved: Mapping[str, int]) -> MeshSize:
+        first = self.scene.mesh
+        sizes = {size: getattr(first, size) / 2**n for key, n in halved.items() for size in _SIZES.get(key, ())}
+        return first.model_copy(update=sizes)
+
+    def _at(self, halved: Mapping[str, int]) -> Solve:
+        """Return the states with knobs halved so often."""
+        found = self._cache.get(self._key(halved))
+        if found is not None:
+            return found
+        states = dict(self.base.states)
+        if halved.get("steps", 0) != self.halved.get("steps", 0):
+            states["normal"] = self._with_steps(halved["steps"]).states["normal"]
+        mesh = self._mesh(halved)
+        self.pause()
+        found = self._cache[self._key(halved)] = solve_again(
+            self.scene.model_copy(update={"mesh": mesh}), states, self.comm
+        )
+        self._note(found)
+        return found
+
+    def _with_steps(self, n: int) -> Solve:
+        """Return normal contact on the first mesh from a path whose steps are halved n times."""
+        key = self._key(dict.fromkeys(self.knobs, 0) | {"steps": n})
+        if key not in self._cache:
+            loads = loads_to_normal_contact(self.scene)
+            scene = self.scene.model_copy(update={"history": loads, "mesh": self._path.mesh})
+            self.pause()
+            keeper: Keeper | None = None
+
+            def on_step(step: Step, done: float) -> None:
+                assert keeper is not None
+                keeper.see(step)
+
+            simulation = Simulation(scene, self.comm, on_step, lambda: None, step_scale=0.5**n)
+            keeper = Keeper(simulation)
+            simulation.run()
+            self._cache[key] = keeper.solve()
+            self._note(self._cache[key])
+        return self._cache[key]
+
+    def _note(self, solve: Solve) -> None:
+        self.solves.append(solve)
+        m = solve.mesh
+        self.say(
+            f"again: contact {m.contact * 1e6:.4g} µm, growth {m.growth:.3g}, junctions {m.interface * 1e6:.4g} µm, "
+            f"receptors {m.receptor * 1e6:.4g} µm: {solve.unknowns} unknowns, {solve.factorisations} factorisations"
+        )
+
+    def _tell(self) -> None:
+        values, found = self.base.values(), self.estimates()
+        allowed = self.allowed()
+        for name, error in found.items():
+            limit = f", {allowed[name]:.2g} allowed" if name in allowed else ""
+            if "_sed_" not in name:
+                self.say(f"{name} {plus_minus(values[name], error)}{limit}")
+
+    def summary(self) -> dict[str, Any]:
+        """Return what is to be said of it in a run's summary; collective."""
+        values, found, allowed = self.base.values(), self.estimates(), self.allowed()
+        quantities = {
+            name: {
+                "value": values[name],
+                "error": error,
+                "allowed": allowed.get(name),
+                "shares": {k: knob.share(name) for k, knob in self.knobs.items() if name in knob.changes[-1][1]},
+                "orders": {k: knob.order(name) for k, knob in self.knobs.items() if name in knob.changes[-1][1]},
+            }
+            for name, error in found.items()
+        }
+        seconds = [float(np.sum(self.comm.allgather(solve.processor_seconds))) for solve in self.solves]
+        rows = {f"{s}_{name}": value for s, state in self.base.states.items() for name, value in state.row.items()}
+        return (
+            rows
+            | {f"{name}_error": q["error"] for name, q in quantities.items() if "_sed_" not in name}
+            | {
+                "accuracy": {
+                    "reached": not self.failure,
+                    "mesh": self.base.mesh.model_dump(),
+                    "step_scale": 0.5 ** self.halved.get("steps", 0),
+                    "quantities": quantities,
+                    "notes": self.notes,
+                    "solves": [
+                        {
+                            "mesh": solve.mesh.model_dump(),
+                            "unknowns": solve.unknowns,
+                            "factorisations": solve.factorisations,
+                            "processor_seconds": spent,
+                        }
+                        for solve, spent in zip(self.solves, seconds, strict=True)
+                    ],
+                    "factorisations": sum(solve.factorisations for solve in self.solves),
+                    "unknowns_times_factorisations": sum(s.unknowns * s.factorisations for s in self.solves),
+                    "processor_seconds": sum(seconds),
+                }
+            }
+        )
+
+
+def loads_to_normal_contact(scene: Scene) -> tuple[Load, ...]:
+    """Return the loads before the bone first moves sideways."""
+    loads = scene.loads()
+    moving = next((k for k, load in enumerate(loads) if load.bone_x), len(loads))
+    return loads[:moving]
+
+
+def plus_minus(value: float, error: float) -> str:
+    """Return a value with its error, which is given to two digits: ``0.4750 ± 0.0041``."""
+    digits = int(max(0, 1 - np.floor(np.log10(error)))) if error > 0 else 6
+    return f"{value:.{digits}f} ± {error:.{digits}f}"

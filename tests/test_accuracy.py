@@ -1,0 +1,216 @@
+"""Accuracy asked for: the search on errors that are known, and a small finger from scene to summary."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from fingerpad import accuracy
+from fingerpad import run as running
+from fingerpad.accuracy import Search, Solve, State, plus_minus
+from fingerpad.interrupt import Interrupted
+from fingerpad.scene import SceneError, from_data
+from fingerpad.sweep import key
+from variational.continuation import StepFailed
+from variational.solver import Control
+from variational.transfer import Carried
+
+NOTHING = Carried(*(np.zeros(0) for _ in range(2)), {}, {}, {}, np.zeros(2), Control(), 0.0)
+EXACT = 0.5
+
+
+# -- the search, on a finger whose errors are known -----------------------------------------------------------
+def mu_app(mesh) -> float:
+    """An error of first order in the contact size and second in the growth, nothing from receptors."""
+    return EXACT * (1 + 0.08 * mesh.contact / 20e-6 - 0.02 * (mesh.growth / 0.5) ** 2)
+
+
+def known(scene, states, comm) -> Solve:
+    row = {
+        "f_t": 75 * mu_app(scene.mesh),
+        "mu_app": mu_app(scene.mesh),
+        "contact_length": 1e-3,
+        "ridges_in_contact": 17,
+    }
+    sed = {0: 1e3 * (1 + scene.mesh.receptor / 200e-6), 1: 10.0}
+    return Solve({"slip": State(NOTHING, 1, row, sed)}, scene.mesh, 1000, 10, 1.0)
+
+
+def search(monkeypatch, asked, solve=known, pause=lambda: None) -> Search:
+    scene = from_data({"accuracy": asked})
+    monkeypatch.setattr(accuracy, "solve_again", solve)
+    found = Search(scene, known(scene, {}, MPI.COMM_SELF), MPI.COMM_SELF, lambda text: None, pause)
+    found.run()
+    return found
+
+
+@pytest.mark.parametrize("tolerance", [0.05, 0.01, 0.002])
+def test_true_error_is_within_what_is_asked_for(monkeypatch, tolerance):
+    found = search(monkeypatch, {"mu_app": tolerance})
+    assert not found.failure
+    assert found.estimates()["slip_mu_app"] <= tolerance * mu_app(found.base.mesh)
+    assert abs(mu_app(found.base.mesh) / EXACT - 1) <= tolerance
+
+
+def test_estimate_is_of_the_true_errors_size(monkeypatch):
+    """Magnitudes of two errors of other signs add up, and one halving takes second order for first: up to 3 / 2."""
+    found = search(monkeypatch, {"mu_app": 0.01})
+    mesh = found.base.mesh
+    parts = EXACT * (0.08 * mesh.contact / 20e-6 + 0.02 * (mesh.growth / 0.5) ** 2)
+    assert parts * (1 - 1e-9) <= found.estimates()["slip_mu_app"] <= 1.5 * parts
+
+
+def test_only_what_costs_accuracy_is_refined(monkeypatch):
+    """0.1 is asked for; the contact's share, 0.08, is more than half of it, the growth's, estimated at 0.03, is not."""
+    found = search(monkeypatch, {"mu_app": 0.1})
+    assert found.halved == {"contact": 1, "bulk": 0}
+
+
+def test_receptors_are_halved_where_energy_density_is_asked_for(monkeypatch):
+    """What is allowed is a part of the largest site's; the second site's own twentieth is never asked for."""
+    found = search(monkeypatch, {"sed": 0.05})
+    assert found.halved["receptor"] > 0
+    assert found.halved["contact"] == 0
+    assert found.allowed()["slip_sed_1"] == found.allowed()["slip_sed_0"]
+
+
+def test_estimate_alone_refines_nothing(monkeypatch):
+    found = search(monkeypatch, {})
+    assert set(found.halved.values()) == {0}
+    assert found.estimates()["slip_mu_app"] > 0
+
+
+def test_says_when_the_accuracy_is_out_of_reach(monkeypatch):
+    """An error that no refinement lowers."""
+
+    def stubborn(scene, states, comm):
+        solve = known(scene, states, comm)
+        sign = 1 if round(np.log2(20e-6 / scene.mesh.contact)) % 2 else -1
+        solve.states["slip"].row["mu_app"] = EXACT * (1 + 0.1 * sign)
+        return solve
+
+    found = search(monkeypatch, {"mu_app": 0.01}, stubborn)
+    assert "not within the accuracy asked for after" in found.failure
+    assert found.summary()["accuracy"]["reached"] is False
+
+
+def test_says_when_a_state_is_lost(monkeypatch):
+    def lost(scene, states, comm):
+        raise StepFailed("full slip found no equilibrium")
+
+    found = search(monkeypatch, {"mu_app": 0.01}, lost)
+    assert found.failure == "the accuracy asked for could not be established: full slip found no equilibrium"
+    assert found.summary()["accuracy"]["quantities"] == {}
+
+
+def test_stops_when_it_is_asked_to(monkeypatch):
+    """Asked to stop is no accuracy out of reach."""
+
+    def pause():
+        raise Interrupted("stopped")
+
+    with pytest.raises(Interrupted):
+        search(monkeypatch, {"mu_app": 0.01}, pause=pause)
+
+
+def test_says_where_a_ridge_comes_or_goes(monkeypatch):
+    def fewer(scene, states, comm):
+        solve = known(scene, states, comm)
+        solve.states["slip"].row["ridges_in_contact"] = 16 if scene.mesh.contact < 20e-6 else 17
+        return solve
+
+    notes = search(monkeypatch, {"mu_app": 0.2}, fewer).notes
+    assert notes == ["halving contact: 16 ridges in contact at full slip instead of 17"]
+
+
+def test_friction_without_full_slip_is_refused():
+    scene = from_data({"accuracy": {"mu_app": 0.01}})
+    path = Solve({"normal": known(scene, {}, None).states["slip"]}, scene.mesh, 1000, 10, 1.0)
+    with pytest.raises(StepFailed, match="accuracy.mu_app is 0.01, which full slip decides"):
+        Search(scene, path, MPI.COMM_SELF, lambda text: None, lambda: None)
+
+
+# -- scenes ------------------------------------------------------------------------------------------------
+def test_scene_without_accuracy_keeps_its_key():
+    """What sweeps have run is found again."""
+    assert "accuracy" not in from_data({}).parameters()
+    assert key(from_data({"accuracy": {}})) != key(from_data({}))
+
+
+def test_scene_that_asks_starts_coarse_where_it_gives_no_size():
+    mesh = from_data({"accuracy": {"mu_app": 0.01}, "mesh": {"growth": 0.3}}).mesh
+    assert (mesh.contact, mesh.growth) == (20e-6, 0.3)
+    assert from_data({"accuracy": {}}).mesh == from_data({}).mesh
+
+
+def test_parameters_in_use_give_the_same_scene():
+    scene = from_data({"accuracy": {"mu_app": 0.01}})
+    assert from_data(scene.parameters()) == scene
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"accuracy": {"mu_app": 1.5}}, "accuracy.mu_app is 1.5; it must be less than 1"),
+        ({"accuracy": {"f_n": 0.1}}, "accuracy.f_n is not a key of accuracy"),
+        ({"accuracy": {}, "numerics": {"element": "P2-P1"}}, "cannot be carried to another mesh"),
+    ],
+)
+def test_impossible_accuracy_is_refused(given, words):
+    with pytest.raises(SceneError, match=words):
+        from_data(given)
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [(0.47512, 0.0041, "0.4751 ± 0.0041"), (39.226, 12.0, "39 ± 12"), (1.0, 0.0, "1.000000 ± 0.000000")],
+)
+def test_plus_minus(value, error, text):
+    assert plus_minus(value, error) == text
+
+
+# -- from which mesh ---------------------------------------------------------------------------------------
+@pytest.mark.parametrize(("asked", "tried"), [({"mu_app": 0.01}, [20e-6, 10e-6]), ({}, [20e-6])])
+def test_starts_again_finer_where_the_path_is_lost(monkeypatch, tmp_path, asked, tried):
+    """20 um loses the path here and 10 um does not; who asks for an estimate alone has chosen the mesh."""
+    sizes = []
+
+    def once(scene, folder, comm, failed_starts):
+        sizes.append(scene.mesh.contact)
+        lost = scene.mesh.contact != 10e-6
+        end = {"failure": "no equilibrium", "unknowns": 1, "factorisations": 2, "wall_seconds": 3.0} if lost else {}
+        return end | {"failed_starts": list(failed_starts)}
+
+    monkeypatch.setattr(running, "_run", once)
+    scene = from_data({"accuracy": asked, "mesh": {"contact": 20e-6}})
+    summary = running.run(scene, tmp_path, MPI.COMM_SELF)
+    assert sizes == tried
+    assert len(summary["failed_starts"]) == len(tried) - 1
+
+
+# -- a small finger ----------------------------------------------------------------------------------------
+SMALL = {
+    "f_ext": 1.0,
+    "voltage": 100.0,
+    "geometry": {"ridge_count": 9},
+    "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
+    "accuracy": {"mu_app": 0.5},
+}
+
+
+@pytest.mark.slow
+def test_small_finger_comes_with_its_error(tmp_path: Path):
+    """From scene to summary: estimated from three re-solved meshes, within what was asked for, and as JSON on disk."""
+    running.run(from_data(SMALL), tmp_path, MPI.COMM_WORLD)
+    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+    assert "failure" not in summary
+    found = summary["accuracy"]
+    assert found["reached"]
+    assert 0 < summary["slip_mu_app_error"] <= 0.5 * summary["slip_mu_app"]
+    assert set(found["quantities"]["normal_contact_length"]["shares"]) == {"contact", "bulk", "steps"}
+    assert set(found["quantities"]["slip_mu_app"]["shares"]) == {"contact", "bulk"}
+    again = found["solves"][1]
+    assert again["factorisations"] < found["solves"][0]["factorisations"] / 2
+    assert summary["slip_f_t"] == pytest.approx(0.25 * summary["slip_f_contact"], rel=1e-6)

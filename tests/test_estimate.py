@@ -1,0 +1,78 @@
+"""The error estimate on errors that are known: what it finds, and what it does not believe."""
+
+import pytest
+
+from fingerpad.estimate import Knob, errors, halvings
+
+
+def law(order: float, c: float = 0.1):
+    """Return q over how often the size was halved: 1 + c h^order."""
+    return lambda n: {"q": 1 + c * 2 ** (-order * n)}
+
+
+def knob(q, *at: int) -> Knob:
+    found = Knob()
+    for n in at:
+        found.see(n, q(n), q(n + 1))
+    return found
+
+
+@pytest.mark.parametrize("at", [(0,), (0, 1), (0, 2)])
+def test_first_order_is_found_exactly(at):
+    """Roundoff of a difference of ones."""
+    assert knob(law(1.0), *at).share("q") == pytest.approx(0.1 / 2 ** at[-1], rel=1e-12)
+
+
+@pytest.mark.parametrize("order", [1.0, 1.5, 2.0])
+@pytest.mark.parametrize("at", [(0, 1), (0, 2), (1, 2)])
+def test_observed_order_gives_the_error(order, at):
+    """Once a knob was halved twice its order is known. Roundoff of a difference of ones."""
+    assert knob(law(order), *at).share("q") == pytest.approx(0.1 * 2 ** (-order * at[-1]), rel=1e-10)
+
+
+def test_one_halving_of_second_order_overestimates_by_half():
+    """With no order known first is taken: 2 |q - q_k| for an error of 4/3 |q - q_k|."""
+    assert knob(law(2.0), 0).share("q") == pytest.approx(1.5 * 0.1, rel=1e-12)
+
+
+def test_accidentally_small_change_is_not_believed():
+    """A change of nothing at all counts as the quarter of the one before it that second order leaves."""
+    found = Knob()
+    found.see(0, {"q": 1.1}, {"q": 1.0})
+    found.see(1, {"q": 1.0}, {"q": 1.0})
+    assert found.share("q") == pytest.approx(0.1 / 4 / (1 - 2**-2), rel=1e-12)
+
+
+def test_growing_change_counts_as_first_order():
+    found = Knob()
+    found.see(0, {"q": 1.0}, {"q": 1.01})
+    found.see(1, {"q": 1.01}, {"q": 0.96})
+    assert found.share("q") == pytest.approx(2 * 0.05, rel=1e-12)
+
+
+def test_errors_of_knobs_add_up_whatever_their_signs():
+    """Two knobs of first order whose errors cancel on this mesh."""
+    knobs = {"a": knob(law(1.0, 0.1), 0), "b": knob(law(1.0, -0.1), 0)}
+    assert errors(knobs, ["q"])["q"] == pytest.approx(0.2, rel=1e-12)
+
+
+def test_a_knob_that_does_not_act_on_a_quantity_is_left_out():
+    """The steps of normal contact say nothing of full slip."""
+    knobs = {"a": knob(law(1.0), 0), "steps": Knob([(0, {"other": 1.0})])}
+    assert errors(knobs, ["q"])["q"] == pytest.approx(0.1, rel=1e-12)
+
+
+def test_nothing_is_halved_within_the_tolerance():
+    assert halvings({"a": knob(law(1.0), 0)}, {"q": 0.101}) == {}
+
+
+@pytest.mark.parametrize(("allowed", "count"), [(0.099, 1), (0.05, 1), (0.049, 2), (0.001, 2)])
+def test_halvings_follow_from_the_order(allowed, count):
+    """An error of 0.1 of first order needs two halvings below 0.05; more than two at a time are not made."""
+    assert halvings({"a": knob(law(1.0), 0)}, {"q": allowed}) == {"a": count}
+
+
+def test_only_the_knob_that_spends_too_much_is_halved():
+    """0.1 and 0.01 where 0.06 are allowed, 0.03 each."""
+    knobs = {"a": knob(law(1.0, 0.1), 0), "b": knob(law(1.0, 0.01), 0)}
+    assert halvings(knobs, {"q": 0.06}) == {"a": 2}

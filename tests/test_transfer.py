@@ -1,0 +1,130 @@
+"""States carried from mesh to mesh: what returns exactly, and that full slip is the path's; on any number of ranks."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from geometry.benchmarks import block, ridge
+from geometry.mesh import load
+from tests.test_contact import MU_F, make
+from variational.continuation import Continuation, StepFailed, Target
+from variational.coupling import Coupling
+from variational.quantities import Observer
+from variational.roughness.bam import BearingArea
+from variational.transfer import carry, give, interpolate
+
+pytestmark = pytest.mark.mpi
+H_0, FORCE, VOLTAGE = 0.514e-6, 4.4, 150.0
+COARSE, FINE = 30e-6, 15e-6
+SLIDE = 0.2e-3
+
+
+def prepare(body) -> Continuation:
+    coupling = Coupling(solver := make(body, MU_F, held=False), Observer(solver.problem), BearingArea(H_0))
+    return Continuation(coupling, lambda *_: None)
+
+
+@pytest.fixture(scope="module")
+def bodies():
+    return {size: load(MPI.COMM_WORLD, partial(ridge, size)) for size in (COARSE, FINE)}
+
+
+@pytest.fixture(scope="module")
+def reached(bodies):
+    """Both meshes' ridge pressed, charged and slid to full slip: states of normal contact and full slip, and f_T."""
+    found = {}
+    for size, body in bodies.items():
+        path = prepare(body)
+        path.run(Target("press", f_ext=FORCE))
+        path.run(Target("charge", voltage=VOLTAGE))
+        normal = carry(path.coupling, path.surface_state)
+        path.run(Target("slide", bone_x=1e-3, until_full_slip=True))
+        slip = carry(path.coupling, path.surface_state)
+        found[size] = (normal, slip, -path.solver.reaction[0], path.observer.ridge_loads(path.surface_state).length[0])
+    return found
+
+
+def test_quadratic_displacement_is_carried_exactly(bodies):
+    """P2 holds it, in its triangles and beyond them, where the fine polygon is wider. Tolerance: roundoff."""
+
+    def u(x):
+        return np.stack([1 + x[0] * x[1] * 1e6, 2 - 3e6 * x[1] ** 2 + 1e3 * x[0]])
+
+    coarse = prepare(bodies[COARSE])
+    coarse.solver.problem.u.interpolate(u)
+    points = bodies[FINE].mesh.geometry.x
+    found, outside = interpolate(carry(coarse.coupling, coarse.surface_state), points[:, :2])
+    np.testing.assert_allclose(found.T, u(points.T), rtol=1e-11)
+    assert MPI.COMM_WORLD.allreduce(outside, op=MPI.MAX) > 1e-3, "no point of the fine mesh is beyond the coarse one"
+
+
+def test_history_returns_on_its_own_mesh(bodies, reached):
+    """The anchors' elastic slip, sorted along the chord and read back. Tolerance: roundoff of 1 um in 1 mm."""
+    normal = reached[COARSE][0]
+    path = prepare(bodies[COARSE])
+    give(normal, path.coupling)
+    back = carry(path.coupling, path.observer.state())
+    assert np.abs(normal.skin[0].elastic_slip).max() > 1e-8
+    np.testing.assert_allclose(back.skin[0].elastic_slip, normal.skin[0].elastic_slip, atol=1e-15)
+
+
+def test_normal_contact_returns_on_its_own_mesh(bodies, reached):
+    """Solved again it is what it was, with the friction on its history.
+
+    Tolerance: both meet 1e-9 N/m, and the air gaps 1e-6 of themselves, over a bone that gives 1e-5 m a N/m.
+    """
+    normal = reached[COARSE][0]
+    path = prepare(bodies[COARSE])
+    give(normal, path.coupling)
+    path.adopt("normal contact")
+    np.testing.assert_allclose(path.solver.bone, normal.bone, atol=1e-11)
+
+
+def test_full_slip_from_a_coarse_mesh_is_that_of_the_path(bodies, reached):
+    """The key claim: solved again from 30 um, the state at 15 um is that of the whole path at 15 um.
+
+    Tolerance: two loops over the scales that end at 1e-6 of d_eq, whose gain is below one half here; the meshes' own
+    f_T differ by far more, which is asserted.
+    """
+    path = prepare(bodies[FINE])
+    give(reached[COARSE][1], path.coupling, SLIDE)
+    path.adopt("full slip")
+    f_t, length = -path.solver.reaction[0], path.observer.ridge_loads(path.surface_state).length[0]
+    assert path.slip == (1.0, True)
+    assert f_t == pytest.approx(reached[FINE][2], rel=2e-6)
+    assert length == pytest.approx(reached[FINE][3], rel=2e-6)
+    assert abs(reached[COARSE][2] / reached[FINE][2] - 1) > 1e-4
+
+
+def test_full_slip_stays_when_it_slides_on(bodies, reached):
+    """Adopted full slip is steady over a further 0.2 mm. Tolerance: 1e-6, the run's own criterion."""
+    path = prepare(bodies[FINE])
+    give(reached[COARSE][1], path.coupling, SLIDE)
+    path.adopt("full slip")
+    before = path.solver.reaction[0]
+    path.run(Target("slide", bone_x=path.solver.control.x + SLIDE))
+    assert path.slip == (1.0, True)
+    assert path.solver.reaction[0] == pytest.approx(before, rel=1e-6)
+
+
+def test_failure_names_the_state(bodies, reached):
+    """A voltage at which nothing was solved: the ridge cannot be had from there, and the sentence says which."""
+    path = prepare(bodies[FINE])
+    give(replace(reached[COARSE][1], voltage=float("nan")), path.coupling, SLIDE)
+    with pytest.raises(StepFailed, match="full slip.*found no equilibrium"):
+        path.adopt("full slip")
+
+
+def test_another_body_is_refused(reached):
+    other = prepare(load(MPI.COMM_WORLD, partial(block, 2e-3, 2e-3, 0.25e-3)))
+    with pytest.raises(ValueError, match="of another body"):
+        give(reached[COARSE][1], other.coupling)
+
+
+def test_other_ridges_are_refused(bodies, reached):
+    state = reached[COARSE][1]
+    with pytest.raises(ValueError, match="ridges 0 to 1 that can touch and the mesh 0 to 0"):
+        give(replace(state, d_eq=state.d_eq | {1: 1e-6}), prepare(bodies[FINE]).coupling)
