@@ -4,6 +4,7 @@
         [--contact-length M --ridges N | --run DIR] [--f-ext 75] [--voltage 200] [--out results]
 
     rung 1   ridges as charged cylinders, for a contact length that is known (:mod:`fingerpad.closed_form`)
+    rung 2   a smooth finger with one ridge's law as its contact (:mod:`fingerpad.smooth`); tables in DIR/ridge_tables
     rung 3   the whole cross-section with every ridge (:mod:`fingerpad.run`), left in DIR/full
 
 Where each rung is good enough: ``docs/ladder.md``.
@@ -33,6 +34,13 @@ def full(scene: Scene, folder: Path) -> Answer:
 
     clock = Stopwatch()
     return from_summary(run(scene, folder, MPI.COMM_WORLD), clock.seconds())
+
+
+def smooth(scene: Scene, folder: Path) -> Answer:
+    """Return rung 2's answer, leaving the ridge's tables in a folder; collective."""
+    from fingerpad.smooth import solve
+
+    return solve(scene, folder)
 
 
 def from_summary(summary: Mapping[str, Any], seconds: float | None = None) -> Answer:
@@ -70,7 +78,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Climb the rungs asked for; return the exit code."""
     parser = argparse.ArgumentParser(prog="python3 -m fingerpad.ladder", description="Compare models of a scene.")
     add_arguments(parser)
-    parser.add_argument("--rung", type=int, nargs="+", choices=(1, 3), default=[1], help="rungs to climb")
+    parser.add_argument("--rung", type=int, nargs="+", choices=(1, 2, 3), default=[1, 2], help="rungs to climb")
     parser.add_argument("--contact-length", type=positive(float), metavar="M", help="for rung 1, at the voltage given")
     parser.add_argument("--ridges", type=positive(int), metavar="N", help="on so many ridges")
     parser.add_argument("--run", type=Path, metavar="DIR", help="for rung 1: contact lengths of this full run")
@@ -78,6 +86,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     petsc4py.init([sys.argv[0], *petsc])
     climb: dict[int, Callable[[], Answer]] = {
         1: lambda: closed_form.solve(scene, _footprint(scene, args)),
+        2: lambda: smooth(scene, args.out / "ridge_tables"),
         3: lambda: full(scene, args.out / "full"),
     }
     try:
