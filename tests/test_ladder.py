@@ -1,9 +1,11 @@
 """The ladder's rungs: one set of keys, forces in balance, sources named, and what they cannot answer refused."""
 
 import json
+from pathlib import Path
 
 import pytest
 
+from benchmarks import ladder as page
 from fingerpad import closed_form, ladder
 from fingerpad.report import _NAMED
 from fingerpad.rungs import NAMES
@@ -147,3 +149,22 @@ def test_command_prints_keys_and_notes(capsys):
 def test_command_refuses_half_a_footprint(capsys):
     assert ladder.main(["--rung", "1", "--ridges", "3"]) == 2
     assert "give both or none" in capsys.readouterr().err
+
+
+# -- the page ----------------------------------------------------------------------------------------------
+def test_lengths_in_the_program_are_the_runs():
+    """Those that rung 1 interpolates are the full runs' of docs/ladder.json, to the four digits they are kept with."""
+    known = json.loads((Path(page.__file__).parents[1] / "docs" / "ladder.json").read_text(encoding="utf-8"))
+    for state in ("normal", "slip"):
+        for k, f in enumerate(closed_form._FORCES):
+            full = known[page.name(f, 0.0)]["3"]["summary"]
+            assert closed_form._LENGTHS[state][k] == pytest.approx(full[f"{state}_contact_length"], abs=0.5e-7)
+            assert closed_form._RIDGES[state][k] == full[f"{state}_ridges_in_contact"]
+
+
+def test_errors_are_against_the_full_model():
+    """A rung that is not there, or a full run that is not, has none."""
+    found = {"1": {"summary": {"slip_mu_app": 0.5}}, "3": {"summary": {"slip_mu_app": 0.4}}}
+    assert page.error(found, 1, "slip_mu_app") == pytest.approx(0.25, rel=1e-12)
+    assert page.error(found, 2, "slip_mu_app") is None
+    assert page.error({"1": found["1"]}, 1, "slip_mu_app") is None
