@@ -98,7 +98,7 @@ class Simulation:
         ridges = {j: tags.ridge(j) for j in body.ridges()}
         surface = Surface(body.mesh, body.facet_tags, ridges, numerics.quadrature_points)
         interface = Interface(contact.law(), scene.friction, scene.h_0)
-        self.problem = Problem(body.mesh, body.cell_tags, surface, _solids(scene), interface, numerics.element)
+        self.problem = Problem(body.mesh, body.cell_tags, surface, solids(scene), interface, numerics.element)
         force = max((load.f_ext for load in scene.loads() if load.f_ext), default=1.0)
         rim = body.facet_tags.find(tags.BONE_RIM)
         self.solver = Solver(self.problem, rim, force, numerics.tolerance)
@@ -281,7 +281,8 @@ def _target(load: Load) -> Target:
     return Target(load.name, load.f_ext, load.bone_height, load.voltage, load.bone_x, load.until_full_slip)
 
 
-def _solids(scene: Scene) -> dict[int, Ogden | SaintVenant]:
+def solids(scene: Scene) -> dict[int, Ogden | SaintVenant]:
+    """Return the material of each layer's tag."""
     m = scene.materials
     skins = {
         tags.SUBCUTIS: m.subcutis,
@@ -290,6 +291,6 @@ def _solids(scene: Scene) -> dict[int, Ogden | SaintVenant]:
         tags.STRATUM_CORNEUM: m.stratum_corneum,
     }
     stiff = {tags.NAIL: m.nail, tags.NAIL_BED: m.nail_bed}
-    solids: dict[int, Ogden | SaintVenant] = {tag: SaintVenant(s.young, s.poisson) for tag, s in stiff.items()}
-    solids |= {tag: Ogden(s.shear_modulus, s.alpha, s.poisson, m.exponent) for tag, s in skins.items()}
-    return solids
+    found: dict[int, Ogden | SaintVenant] = {tag: SaintVenant(s.young, s.poisson) for tag, s in stiff.items()}
+    found |= {tag: Ogden(s.shear_modulus, s.alpha, s.poisson, m.exponent) for tag, s in skins.items()}
+    return found

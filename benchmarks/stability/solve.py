@@ -31,6 +31,7 @@ from geometry import strip, tags
 from geometry.mesh import TaggedMesh, load
 from geometry.parameters import Fingertip, MeshSize
 from variational import compat, jit
+from variational.carried import carried
 from variational.continuation import Attempt, Continuation, StepFailed, Target
 from variational.coupling import Coupling
 from variational.failure import NotConverged
@@ -44,14 +45,6 @@ from variational.surface import Surface
 _H_0 = 0.514e-6  # m
 _SKIN = {tags.STRATUM_CORNEUM: 86.76e3, tags.VIABLE_EPIDERMIS: 61.75e3, tags.DERMIS: 2.55e3}  # Pa
 _ALPHA = -14.53
-
-
-class CarriedSolver(Solver):
-    """Prescribes, in place of fixed values, the bone's translation in x."""
-
-    def _prescribed(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        self._fixed_values[:] = self.control.x
-        return super()._prescribed()
 
 
 class PlainCoupling(Coupling):
@@ -105,8 +98,7 @@ def make_solver(case: Case, body: TaggedMesh, problem: Problem) -> Solver:
     scale = case.force * case.ridges
     if case.sides == "free":
         return Solver(problem, rim, scale)
-    on_rim, on_sides = (fem.locate_dofs_topological(problem.V, 1, facets) for facets in (rim, sides))
-    return CarriedSolver(problem, rim, scale, fixed=[(2 * np.setdiff1d(on_sides, on_rim), 0.0)])
+    return carried(problem, rim, sides, scale)
 
 
 def targets(case: Case) -> list[Target]:

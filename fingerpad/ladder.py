@@ -1,0 +1,110 @@
+"""A ladder of models of one scene, the cheapest first: the same keys, side by side, with what each of them cost.
+
+    environment/run python3 -m fingerpad.ladder [--scene scene.toml] [--rung 1 2 3]
+        [--contact-length M --ridges N | --run DIR] [--f-ext 75] [--voltage 200] [--out results]
+
+    rung 1   ridges as charged cylinders, for a contact length that is known (:mod:`fingerpad.closed_form`)
+    rung 2   a smooth finger with one ridge's law as its contact (:mod:`fingerpad.smooth`); tables in DIR/ridge_tables
+    rung 3   the whole cross-section with every ridge (:mod:`fingerpad.run`), left in DIR/full
+
+Where each rung is good enough: ``docs/ladder.md``.
+"""
+
+import argparse
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import petsc4py
+
+from fingerpad import closed_form
+from fingerpad.command import add_arguments, command_line, positive
+from fingerpad.rungs import NAMES, STATES, Answer, Cost, Stopwatch
+from fingerpad.scene import Scene, SceneError
+
+_UNITS = {"f_t": "N/m", "f_electrostatic": "N/m", "f_contact": "N/m", "bone_height": "m", "contact_length": "m"}
+
+
+def full(scene: Scene, folder: Path) -> Answer:
+    """Return rung 3's answer, leaving the run in a folder; collective."""
+    from mpi4py import MPI
+
+    from fingerpad.run import run
+
+    clock = Stopwatch()
+    return from_summary(run(scene, folder, MPI.COMM_WORLD), clock.seconds())
+
+
+def smooth(scene: Scene, folder: Path) -> Answer:
+    """Return rung 2's answer, leaving the ridge's tables in a folder; collective."""
+    from fingerpad.smooth import solve
+
+    return solve(scene, folder)
+
+
+def from_summary(summary: Mapping[str, Any], seconds: float | None = None) -> Answer:
+    """Return rung 3's answer from a run's summary; without its processor time (s), its wall time stands for it."""
+    keys = [f"{state}_{name}" for state in STATES for name in NAMES]
+    found = {key: summary[key] for key in ("full_slip", *keys) if summary.get(key) is not None}
+    took = summary["wall_seconds"] if seconds is None else seconds
+    notes = (summary["failure"],) if "failure" in summary else ()
+    return Answer(3, found, Cost(took, summary["factorisations"], summary["unknowns"]), notes)
+
+
+def table(answers: Sequence[Answer]) -> str:
+    """Return the answers side by side, and their notes."""
+    rows = [["", *(f"rung {answer.rung}" for answer in answers)]]
+    for state in STATES:
+        for name in NAMES:
+            unit = f" ({_UNITS[name]})" if name in _UNITS else ""
+            rows.append([f"{state} {name}{unit}", *(_show(a.summary.get(f"{state}_{name}")) for a in answers)])
+    rows.append(["processor time (s)", *(f"{a.cost.seconds:.2f}" for a in answers)])
+    rows.append(["factorisations", *(str(a.cost.factorisations) for a in answers)])
+    rows.append(["unknowns", *(str(a.cost.unknowns) for a in answers)])
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
+    notes = [f"rung {answer.rung}: {note}" for answer in answers for note in answer.notes]
+    return "\n".join(lines + notes)
+
+
+def _show(value: float | int | None) -> str:
+    if value is None:
+        return "–"
+    return str(value) if isinstance(value, int) else f"{value:.5g}"
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Climb the rungs asked for; return the exit code."""
+    parser = argparse.ArgumentParser(prog="python3 -m fingerpad.ladder", description="Compare models of a scene.")
+    add_arguments(parser)
+    parser.add_argument("--rung", type=int, nargs="+", choices=(1, 2, 3), default=[1, 2], help="rungs to climb")
+    parser.add_argument("--contact-length", type=positive(float), metavar="M", help="for rung 1, at the voltage given")
+    parser.add_argument("--ridges", type=positive(int), metavar="N", help="on so many ridges")
+    parser.add_argument("--run", type=Path, metavar="DIR", help="for rung 1: contact lengths of this full run")
+    scene, args, petsc = command_line(parser, argv)
+    petsc4py.init([sys.argv[0], *petsc])
+    climb: dict[int, Callable[[], Answer]] = {
+        1: lambda: closed_form.solve(scene, _footprint(scene, args)),
+        2: lambda: smooth(scene, args.out / "ridge_tables"),
+        3: lambda: full(scene, args.out / "full"),
+    }
+    try:
+        answers = [climb[rung]() for rung in sorted(set(args.rung))]
+    except SceneError as error:
+        print(f"fingerpad: {error}", file=sys.stderr)
+        return 2
+    print(table(answers))
+    return 0
+
+
+def _footprint(scene: Scene, args: argparse.Namespace) -> closed_form.Footprint | None:
+    if args.run is not None:
+        return closed_form.from_run(scene, args.run)
+    if (args.contact_length is None) != (args.ridges is None):
+        raise SceneError("one of --contact-length and --ridges is given without the other; give both or none")
+    return None if args.contact_length is None else closed_form.given(args.contact_length, args.ridges)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,110 @@
+"""A charged cylinder against Hertz, Maugis and the closure's scalar equation.
+
+Roots are found to 1e-14 of the pressure; where no other tolerance is named, 1e-9 is what that leaves of forces and
+lengths, well above roundoff.
+"""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from benchmarks.verification import dugdale, two_scales
+from benchmarks.verification.microscale import H_0
+from variational.cylinder import Cylinder, NoEquilibriumError, hertz_modulus
+from variational.roughness.bam import BearingArea
+from variational.roughness.closure import AirGap
+
+EPS_0, RADIUS, MODULUS, VOLTAGE = 8.854e-12, 118e-6, 330e3, 200.0
+
+
+class Held:
+    """A microscale with one air gap."""
+
+    def __init__(self, d_eq: float) -> None:
+        self.d_eq = d_eq
+
+    def __call__(self, p_c):
+        return AirGap(np.full_like(np.asarray(p_c, dtype=float), self.d_eq), np.zeros_like(p_c))
+
+    def state(self, p_c, voltage):
+        return ""
+
+
+def ridge(closure=None) -> Cylinder:
+    return Cylinder(RADIUS, MODULUS, H_0, closure or BearingArea(H_0))
+
+
+@pytest.mark.parametrize("f", [0.01, 1.0, 10.0])
+def test_uncharged_cylinder_is_hertz(f):
+    """f = pi E* a^2 / 4R, and hertz_modulus is its inverse."""
+    state = ridge().under_load(f, 0.0)
+    assert state.length == pytest.approx(2 * np.sqrt(4 * RADIUS * f / (np.pi * MODULUS)), rel=1e-9)
+    assert state.p_c == pytest.approx(f / state.length, rel=1e-9)
+    assert state.f_attraction == 0
+    assert hertz_modulus(RADIUS, f, state.length) == pytest.approx(MODULUS, rel=1e-9)
+
+
+@pytest.mark.parametrize("f", [0.01, 1.0, 10.0])
+def test_charged_cylinder_is_maugis(f):
+    """At one air gap, force and attracted length are those of a constant attraction of its strength and range."""
+    d_eq = 1.7e-6
+    state = ridge(Held(d_eq)).under_load(f, VOLTAGE)
+    sigma, a = EPS_0 * VOLTAGE**2 / 2 / (H_0 + d_eq) ** 2, state.length / 2
+    m = dugdale.ratio(a, RADIUS, MODULUS, sigma, H_0 + 2 * d_eq)
+    assert state.attracted == pytest.approx(2 * m * a, rel=1e-9)
+    assert dugdale.force(a, RADIUS, MODULUS, sigma, H_0 + 2 * d_eq) == pytest.approx(f, rel=1e-9)
+    assert state.f_attraction == pytest.approx(sigma * state.attracted, rel=1e-9)
+
+
+def test_range_keeps_the_work_of_adhesion():
+    """The attraction from contact to infinity does the work sigma (h_0 + 2 d_eq); quadrature's tolerance is 1e-8."""
+    d_eq = 1.7e-6
+    scaled, _ = quad(lambda y: 1 / (H_0 / 1e-6 + max(y, d_eq / 1e-6)) ** 2, 0, np.inf, limit=200, epsrel=1e-10)
+    assert scaled * 1e-6 == pytest.approx((H_0 + 2 * d_eq) / ((H_0 + d_eq) / 1e-6) ** 2, rel=1e-7)
+
+
+@pytest.mark.parametrize("voltage", [0.0, 100.0, 200.0])
+def test_length_and_load_agree(voltage):
+    """The length that a force leads to bears that force in the same state."""
+    loaded = ridge().under_load(4.0, voltage)
+    borne = ridge().over_length(loaded.length, 4.0, voltage)
+    assert borne.p_c == pytest.approx(loaded.p_c, rel=1e-9)
+    assert borne.attracted == pytest.approx(loaded.attracted, rel=1e-9)
+
+
+@pytest.mark.parametrize("voltage", [50.0, 100.0, 200.0])
+@pytest.mark.parametrize("p_ext", [10e3, 50e3])
+def test_wide_contact_is_the_closure_table(p_ext, voltage):
+    """Of a contact ten metres wide the ends do not matter: p_c = p_ext + sigma(d_eq(p_c)).
+
+    Tolerance: the attraction reaches (delta R / a^2)^(2/3) = 4e-8 of the width beyond the ends; the gain of the loop
+    over the scales makes that some times larger.
+    """
+    state = ridge().over_length(10.0, 10 * p_ext, voltage)
+    d_eq, p_c, _ = two_scales.scalar(p_ext, voltage)
+    assert state.d_eq == pytest.approx(d_eq, rel=1e-6)
+    assert state.p_c == pytest.approx(p_c, rel=1e-6)
+
+
+def test_voltage_widens_the_contact():
+    lengths = [ridge().under_load(4.0, voltage).length for voltage in (0.0, 100.0, 200.0)]
+    assert lengths[0] < 1.02 * lengths[0] < lengths[1] < 1.02 * lengths[1] < lengths[2]
+
+
+def test_branch_in_contact_is_taken_and_the_others_are_named():
+    """Near 0.05 kPa and 200 V a flat ridge has three states; the one in contact has the smallest air gap.
+
+    Tolerance as for the wide contact.
+    """
+    closure = BearingArea(H_0, p_floor=1.0)
+    state = ridge(closure).over_length(10.0, 500.0, VOLTAGE)
+    assert state.d_eq == pytest.approx(closure.air_gap_at_external(50.0, VOLTAGE), rel=1e-6)
+    assert len(state.others) == 2
+    assert max(state.others) < closure.contact_pressure(closure.pull_off_fold(VOLTAGE)) < state.p_c
+
+
+def test_what_nothing_bears_is_refused():
+    with pytest.raises(NoEquilibriumError, match="bears 1 N/m on a ridge at 0 V"):
+        ridge().over_length(1e-8, 1.0, 0.0)
+    with pytest.raises(NoEquilibriumError, match="force on a ridge is 0 N/m; it must be greater than 0"):
+        ridge().under_load(0.0, VOLTAGE)

@@ -1,0 +1,170 @@
+"""The ladder's rungs: one set of keys, forces in balance, sources named, and what they cannot answer refused."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from benchmarks import ladder as page
+from fingerpad import closed_form, ladder
+from fingerpad.report import _NAMED
+from fingerpad.rungs import NAMES
+from fingerpad.scene import SceneError, from_data
+
+
+def scene(**data):
+    return from_data(data)
+
+
+def test_keys_are_those_of_the_full_summary():
+    assert set(NAMES) == set(_NAMED)
+
+
+# -- rung 1 ------------------------------------------------------------------------------------------------
+@pytest.fixture(scope="module")
+def default():
+    return closed_form.solve(scene())
+
+
+@pytest.mark.parametrize("state", ["normal", "slip"])
+def test_forces_balance(default, state):
+    """The screen bears the load and the attraction: one subtraction, to roundoff of the scalar root."""
+    s = default.summary
+    assert s[f"{state}_f_contact"] - s[f"{state}_f_electrostatic"] == pytest.approx(75.0, rel=1e-9)
+
+
+def test_friction_is_the_cone(default):
+    """By definition, to roundoff."""
+    assert default.summary["slip_f_t"] == pytest.approx(0.25 * default.summary["slip_f_contact"], rel=1e-12)
+    assert default.summary["slip_mu_app"] == pytest.approx(default.summary["slip_f_t"] / 75.0, rel=1e-12)
+
+
+def test_default_scene_is_near_the_full_model(default):
+    """The full run has mu_app 0.5230 and 1.580 mm at 10 um (docs/traces.md); rung 1 is 1.2 and 0.1 % off."""
+    assert default.summary["slip_mu_app"] == pytest.approx(0.5230, rel=0.02)
+    assert default.summary["slip_contact_length"] == pytest.approx(1.580e-3, rel=0.02)
+
+
+def test_what_it_cannot_know_is_absent(default):
+    assert default.missing() == ["normal_bone_height", "slip_bone_height"]
+    assert any("bone's height" in note for note in default.notes)
+
+
+def test_uncharged_length_is_the_runs(default):
+    """At a force of the runs nothing is interpolated; they are kept with four digits."""
+    s = closed_form.solve(scene(f_ext=50.0, voltage=0.0)).summary
+    assert s["normal_contact_length"] == pytest.approx(1.0116e-3, rel=1e-9)
+    assert s["slip_contact_length"] == pytest.approx(0.9843e-3, rel=1e-9)
+    assert s["slip_mu_app"] == pytest.approx(0.25, rel=1e-12)
+    assert (s["normal_ridges_in_contact"], s["slip_ridges_in_contact"]) == (15, 14)
+
+
+def test_length_that_is_given_is_kept():
+    answer = closed_form.solve(scene(), closed_form.given(1.5e-3, 16))
+    assert answer.summary["slip_contact_length"] == pytest.approx(1.5e-3, rel=1e-12)
+    assert "as given" in answer.notes[0]
+
+
+def test_force_beyond_the_runs_is_said():
+    assert "extrapolated" in closed_form.solve(scene(f_ext=2.0)).notes[0]
+
+
+def test_state_past_the_end_of_the_closure_is_said():
+    """A tenth of the length bears ten times the pressure, beyond zero separation."""
+    notes = closed_form.solve(scene(voltage=0.0), closed_form.given(0.15e-3, 16)).notes
+    assert any("beyond zero separation" in note for note in notes)
+
+
+@pytest.mark.parametrize(
+    ("data", "sentence"),
+    [
+        ({"geometry": {"width": 19e-3}}, "geometry is not that of the default finger"),
+        ({"materials": {"dermis": {"shear_modulus": 3e3}}}, "materials is not that of the default finger"),
+        ({"history": [{"name": "press", "f_ext": 5.0}]}, "history is given; rung 1"),
+    ],
+)
+def test_scene_it_does_not_know_is_refused(data, sentence):
+    with pytest.raises(SceneError, match=sentence):
+        closed_form.solve(scene(**data))
+
+
+def test_other_finger_with_its_length_is_answered():
+    other = scene(geometry={"width": 19e-3})
+    assert closed_form.solve(other, closed_form.given(1.5e-3, 16)).summary["slip_mu_app"] > 0.4
+
+
+def test_ridge_without_a_round_tip_is_refused():
+    with pytest.raises(SceneError, match="no round tip"):
+        closed_form.solve(scene(geometry={"ridge_profile": [1.0, -0.5]}), closed_form.given(1.5e-3, 16))
+
+
+# -- lengths of a run --------------------------------------------------------------------------------------
+def keep(folder, **values):
+    names = {f"{state}_{name}": 1.0 for state in ("normal", "slip") for name in NAMES}
+    lengths = {"normal_contact_length": 1.7e-3, "slip_contact_length": 1.6e-3}
+    ridges = {"normal_ridges_in_contact": 17, "slip_ridges_in_contact": 16}
+    cost = {"wall_seconds": 9.0, "factorisations": 3, "unknowns": 5, "full_slip": True}
+    summary = {"f_ext": 75.0, "voltage": 200.0} | names | lengths | ridges | cost | values
+    (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    return summary
+
+
+def test_length_of_a_run(tmp_path):
+    keep(tmp_path)
+    s = closed_form.solve(scene(), closed_form.from_run(scene(), tmp_path)).summary
+    assert s["normal_contact_length"] == pytest.approx(1.7e-3, rel=1e-12)
+    assert s["slip_contact_length"] == pytest.approx(1.6e-3, rel=1e-12)
+    assert s["slip_ridges_in_contact"] == 16
+
+
+@pytest.mark.parametrize(
+    ("values", "sentence"),
+    [({"voltage": 50.0}, "is one at voltage 50 V"), ({"slip_contact_length": None}, "did not reach full slip")],
+)
+def test_run_of_no_use_is_refused(tmp_path, values, sentence):
+    keep(tmp_path, **values)
+    with pytest.raises(SceneError, match=sentence):
+        closed_form.from_run(scene(), tmp_path)
+
+
+def test_missing_run_is_refused(tmp_path):
+    with pytest.raises(SceneError, match="cannot be read"):
+        closed_form.from_run(scene(), tmp_path)
+
+
+def test_full_summary_is_an_answer(tmp_path):
+    answer = ladder.from_summary(keep(tmp_path))
+    assert answer.missing() == []
+    assert (answer.cost.seconds, answer.cost.factorisations, answer.cost.unknowns) == (9.0, 3, 5)
+
+
+# -- the command -------------------------------------------------------------------------------------------
+def test_command_prints_keys_and_notes(capsys):
+    assert ladder.main(["--rung", "1", "--f-ext", "50", "--voltage", "0"]) == 0
+    printed = capsys.readouterr().out
+    assert ["slip", "mu_app", "0.25"] in [line.split() for line in printed.splitlines()]
+    assert "rung 1: uncharged contact length interpolated" in printed
+
+
+def test_command_refuses_half_a_footprint(capsys):
+    assert ladder.main(["--rung", "1", "--ridges", "3"]) == 2
+    assert "give both or none" in capsys.readouterr().err
+
+
+# -- the page ----------------------------------------------------------------------------------------------
+def test_lengths_in_the_program_are_the_runs():
+    """Those that rung 1 interpolates are the full runs' of docs/ladder.json, to the four digits they are kept with."""
+    known = json.loads((Path(page.__file__).parents[1] / "docs" / "ladder.json").read_text(encoding="utf-8"))
+    for state in ("normal", "slip"):
+        for k, f in enumerate(closed_form._FORCES):
+            full = known[page.name(f, 0.0)]["3"]["summary"]
+            assert closed_form._LENGTHS[state][k] == pytest.approx(full[f"{state}_contact_length"], abs=0.5e-7)
+            assert closed_form._RIDGES[state][k] == full[f"{state}_ridges_in_contact"]
+
+
+def test_errors_are_against_the_full_model():
+    """A rung that is not there, or a full run that is not, has none."""
+    found = {"1": {"summary": {"slip_mu_app": 0.5}}, "3": {"summary": {"slip_mu_app": 0.4}}}
+    assert page.error(found, 1, "slip_mu_app") == pytest.approx(0.25, rel=1e-12)
+    assert page.error(found, 2, "slip_mu_app") is None
+    assert page.error({"1": found["1"]}, 1, "slip_mu_app") is None

@@ -1,0 +1,88 @@
+"""Rung 2 on a finger of few ridges, lightly pressed: what it answers, and that it is in balance."""
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from fingerpad import ridge_cell, smooth
+from fingerpad.scene import SceneError, from_data
+from geometry.parameters import Fingertip
+from geometry.profiles import Profiles
+
+SCENE = {
+    "f_ext": 2.1445,
+    "voltage": 0.0,
+    "geometry": {"ridge_count": 21},
+    "mesh": {"contact": 10e-6, "touching_half_arc": 2e-3},
+}
+
+
+@pytest.fixture(scope="module")
+def answer(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("tables")
+    return smooth.solve(from_data(SCENE), folder), folder
+
+
+def test_everything_is_known(answer):
+    assert answer[0].missing() == []
+    assert answer[0].summary["full_slip"] is True
+
+
+@pytest.mark.parametrize("state", ["normal", "slip"])
+def test_the_law_bears_the_load(answer, state):
+    """Contact less attraction, read from the tables, against the force prescribed: the solver's 1e-9 and roundoff."""
+    s = answer[0].summary
+    assert s[f"{state}_f_contact"] - s[f"{state}_f_electrostatic"] == pytest.approx(2.1445, rel=1e-6)
+    assert s[f"{state}_bone_height"] < -10e-6
+
+
+def test_contact_is_that_of_the_full_model(answer):
+    """A full run at 10 um passes 2.1445 N/m on 0.1129 mm, the bone at -82.42 um.
+
+    Tolerance: an edge ridge on a facet of 10 um more or less; ridges beyond the tenth, which the run has.
+    """
+    s = answer[0].summary
+    assert s["normal_contact_length"] == pytest.approx(0.1129e-3, rel=0.1)
+    assert s["normal_bone_height"] == pytest.approx(-82.42e-6, rel=0.03)
+
+
+def test_one_table_is_kept(answer):
+    """Without voltage the scene's table and the uncharged one are one."""
+    assert len(list(answer[1].glob("*.json"))) == 1
+
+
+def test_table_that_ends_too_soon_is_said(answer, monkeypatch):
+    """A table to a fiftieth of the force: the finger stops where it ends, with one sentence."""
+    folder, tables = answer[1], ridge_cell.tables
+
+    def short(scene, folder):
+        found = tables(scene, folder)
+        for table in (found.normal, found.slip):
+            keep = np.arange(len(table.y)) >= np.argmax(table.contact < 0.04)
+            for name, values in vars(table).items():
+                object.__setattr__(table, name, values[keep])
+        return found
+
+    monkeypatch.setattr(ridge_cell, "tables", short)
+    with pytest.raises(SceneError, match="its table ends at"):
+        smooth.solve(from_data(SCENE), folder)
+
+
+def test_history_is_refused(tmp_path):
+    with pytest.raises(SceneError, match="history is given; rung 2"):
+        smooth.solve(from_data({"history": [{"name": "press", "f_ext": 5.0}]}), tmp_path, MPI.COMM_WORLD)
+
+
+def test_smooth_outline_is_the_mean_line():
+    """Lowered to the screen it lies half an amplitude inside the tips, as far from the bone as before.
+
+    Tolerance: the ellipse whose axes are shorter by as much is the offset curve to second order of 50 um over 14 mm.
+    """
+    finger = Fingertip()
+    ridged, flat = Profiles(finger), Profiles(smooth.smoothed(finger))
+    assert ridge_cell.mean_depth(finger) == pytest.approx(50e-6, rel=1e-9)
+    s = np.linspace(-4e-3, 4e-3, 9)
+    mean_line = ridged.point(s, 50e-6) - [0, 50e-6]
+    nearest = [np.hypot(*(flat.point(np.linspace(-5e-3, 5e-3, 20001), 0.0) - p).T).min() for p in mean_line]
+    assert max(nearest) < 0.5e-6
+    assert finger.bone_centre - smooth.smoothed(finger).bone_centre == pytest.approx(50e-6, rel=1e-9)
