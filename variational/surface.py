@@ -171,6 +171,9 @@ class Surface:
             slope_x, slope_y = (Polynomial(self._to_powers @ z[k]).deriv() for z in (x, y))
             roots = opening.roots()
             inside = np.sort(roots[np.abs(np.imag(roots)) < 1e-12].real)
+            # Of a gap that is nearly straight the companion matrix loses digits; one step of Newton's finds them.
+            slope = opening.deriv()(inside)
+            inside -= np.divide(opening(inside), slope, out=np.zeros_like(inside), where=slope != 0)
             cuts = np.concatenate([[0.0], inside[(inside > 0) & (inside < 1)], [1.0]])
             for a, b in zip(cuts, cuts[1:], strict=False):
                 if opening((a + b) / 2) < 0:
