@@ -52,7 +52,7 @@ FAMILIES: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
         "10 µm, growth 0.5, 10 µm at the sites": _mesh(growth=0.5, receptor=10e-6),
         "5 µm, growth 0.125, 10 µm at the sites": {"mesh": errors.FINE},
     },
-    "element": {name: _mesh() | {"numerics": {"element": name}} for name in ("P1", "P2 reduced", "P2-P1")}
+    "element": {name: _mesh() | {"numerics": {"element": name}} for name in ("P1", "P2 reduced", "P2-P1", "P3")}
     | {"P1, 5 µm": _mesh(5e-6) | {"numerics": {"element": "P1"}}},
     "formulation": {
         "Nitsche": _mesh() | {"contact": {"formulation": "nitsche"}},

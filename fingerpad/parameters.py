@@ -241,7 +241,7 @@ _FORMULATION_KEYS = {
 class Numerics(Part):
     """Discretisation and tolerances."""
 
-    element: Literal["P1", "P2", "P2 reduced", "P2-P1"] = "P2"
+    element: Literal["P1", "P2", "P2 reduced", "P2-P1", "P3"] = "P2"
     """Displacement, and pressure where there is one; see :mod:`variational.element`."""
     quadrature_points: Annotated[int, Field(strict=True, ge=2, le=8)] = 4
     """Gauss points on a surface facet."""

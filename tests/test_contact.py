@@ -29,11 +29,12 @@ P_EL = 8.854e-12 * VOLTAGE**2 / 2 / (H_0 + D_EQ) ** 2
 TOLERANCE = 1e-9  # N/m, imbalance of the nodal forces at which the solves here end
 
 
-def make(body, mu_f=0.0, eps_n=EPS_N, eps_t=EPS_T, held=True) -> Solver:
+def make(body, mu_f=0.0, eps_n=EPS_N, eps_t=EPS_T, held=True, element="P2") -> Solver:
     """Return a solver for a body; with ``held`` its sides do not move sideways."""
     surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
     skin = {tags.STRATUM_CORNEUM: Ogden(G_0, ALPHA, NU)}
-    problem = Problem(body.mesh, body.cell_tags, surface, skin, Interface(Penalty(eps_n, eps_t), mu_f, H_0))
+    interface = Interface(Penalty(eps_n, eps_t), mu_f, H_0)
+    problem = Problem(body.mesh, body.cell_tags, surface, skin, interface, element)
     problem.set_air_gaps(np.array([D_EQ]))
     sides = fem.locate_dofs_topological(problem.V, 1, body.facet_tags.find(tags.SIDES))
     fixed = [(2 * sides, 0.0)] if held else []

@@ -185,8 +185,8 @@ def test_formulation(given, law):
         ),
         ("contact.length", "area", "contact.length is 'area'; it must be 'pressure' or 'gap'"),
         (
-            "numerics.element", "P3",
-            "numerics.element is 'P3'; it must be 'P1', 'P2', 'P2 reduced' or 'P2-P1'",
+            "numerics.element", "P4",
+            "numerics.element is 'P4'; it must be 'P1', 'P2', 'P2 reduced', 'P2-P1' or 'P3'",
         ),
         ("numerics.coupling_cap", 1.5, "numerics.coupling_cap is 1.5; it must be a whole number"),
         ("numerics.quadrature_points", 9, "numerics.quadrature_points is 9; it must be at most 8"),

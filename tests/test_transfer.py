@@ -22,8 +22,10 @@ COARSE, FINE = 30e-6, 15e-6
 SLIDE = 0.2e-3
 
 
-def prepare(body) -> Continuation:
-    coupling = Coupling(solver := make(body, MU_F, held=False), Observer(solver.problem), BearingArea(H_0))
+def prepare(body, element="P2") -> Continuation:
+    coupling = Coupling(
+        solver := make(body, MU_F, held=False, element=element), Observer(solver.problem), BearingArea(H_0)
+    )
     return Continuation(coupling, lambda *_: None)
 
 
@@ -47,13 +49,14 @@ def reached(bodies):
     return found
 
 
-def test_quadratic_displacement_is_carried_exactly(bodies):
-    """P2 holds it, in its triangles and beyond them, where the fine polygon is wider. Tolerance: roundoff."""
+@pytest.mark.parametrize(("element", "cubic"), [("P2", 0.0), ("P3", 1e9)])
+def test_polynomial_displacement_is_carried_exactly(bodies, element, cubic):
+    """What an element holds, in its triangles and beyond them, where the fine polygon is wider. Tolerance: roundoff."""
 
     def u(x):
-        return np.stack([1 + x[0] * x[1] * 1e6, 2 - 3e6 * x[1] ** 2 + 1e3 * x[0]])
+        return np.stack([1 + x[0] * x[1] * 1e6 + cubic * x[0] ** 2 * x[1], 2 - 3e6 * x[1] ** 2 + 1e3 * x[0]])
 
-    coarse = prepare(bodies[COARSE])
+    coarse = prepare(bodies[COARSE], element)
     coarse.solver.problem.u.interpolate(u)
     points = bodies[FINE].mesh.geometry.x
     found, outside = interpolate(carry(coarse.coupling, coarse.surface_state), points[:, :2])

@@ -7,6 +7,8 @@ element locks. By name:
 ``"P1"``, ``"P2"``
     Displacement alone: the condition at one point of a triangle with three nodes, at three of one with six. The
     first locks; the second only loses an order.
+``"P3"``
+    The same with ten nodes and six points.
 ``"P2 reduced"``
     Selective reduced integration: the volumetric part at the centroid alone, the rest at three points. In small
     strain it is the same as a constant pressure on each triangle (Malkus and Hughes 1978,
@@ -53,7 +55,13 @@ class Element:
         return 1 if self.reduced else self.quadrature_degree
 
 
-ELEMENTS = {"P1": Element(1), "P2": Element(2), "P2 reduced": Element(2, reduced=True), "P2-P1": Element(2, mixed=True)}
+ELEMENTS = {
+    "P1": Element(1),
+    "P2": Element(2),
+    "P2 reduced": Element(2, reduced=True),
+    "P2-P1": Element(2, mixed=True),
+    "P3": Element(3),
+}
 
 
 def at_centroid(F, centroids: fem.Function):

@@ -168,7 +168,7 @@ def interpolate(carried: Carried, points: Array) -> tuple[Array, float]:
     best = least.argmax(axis=1)
     row = np.arange(len(points))
     cell, X = near[row, best], local[row, best]
-    degree = {3: 1, 6: 2}[carried.u.shape[1]]
+    degree = {3: 1, 6: 2, 10: 3}[carried.u.shape[1]]
     element = basix.create_element(
         basix.ElementFamily.P, basix.CellType.triangle, degree, basix.LagrangeVariant.gll_warped
     )

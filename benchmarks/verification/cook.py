@@ -116,7 +116,7 @@ def small_strain(small: bool) -> Outcome:
 
     def draw(figure: Figure) -> None:
         ax = figure.subplots()
-        for k, (element, marker) in enumerate(zip(ELEMENTS, ("o-", "s-", "^-", "D-"), strict=True)):
+        for k, (element, marker) in enumerate(zip(ELEMENTS, ("o-", "s-", "^-", "D-", "v-"), strict=True)):
             if element in rises:
                 ax.semilogx(meshes, rises[element], marker, mfc="none", color=f"C{k}", label=f"{element}, ours")
         ax.semilogx(QUADRILATERALS, SMALL_STRAIN, "k+--", label="OpenGeoSys, B-bar quadrilaterals")

@@ -10,11 +10,10 @@ differentiated by UFL from the package's laws (Roache 2002, doi 10.1115/1.143609
 converges to it with the order p + 1 in L2 and p in H1; the pressure of the mixed pair with the order 2 in L2. The
 interface is resolved by the mesh. The kink is that of continuous tractions in linear elasticity, so that t is small:
 dead loads on the interface of the order of the moduli make it wrinkle, the more modes the finer the mesh. Stretches
-reach from 0.78 to 1.28. P3 is none of the package's elements, but its problem and solver take it as the others.
+reach from 0.78 to 1.28.
 """
 
 from functools import partial
-from unittest import mock
 
 import dolfinx
 import numpy as np
@@ -28,7 +27,6 @@ from benchmarks.verification.case import Case, Outcome, Row
 from geometry import tags
 from geometry.benchmarks import block
 from variational import compat, jit, stress
-from variational import element as elements
 from variational.problem import Ogden, Problem
 
 Array = NDArray[np.float64]
@@ -80,8 +78,7 @@ def solve(element: str, divisions: int) -> Problem:
     """Solve on a grid of squares halved into triangles, from the exact solution interpolated."""
     build = partial(block, SIZE, SIZE, SIZE / divisions, gap=SIZE)
     made = body(build, lambda x: np.where(x[:, 1] < INTERFACE, SC, DERMIS))
-    with mock.patch.dict(elements.ELEMENTS, {"P3": elements.Element(3)}):
-        problem = free_problem(made, SOLIDS, element)
+    problem = free_problem(made, SOLIDS, element)
     boundary = [made.facet_tags.find(tag) for tag in (tags.ridge(0), tags.BONE_RIM, tags.SIDES)]
     # Glued to a bone that stays where it is: u = 0 all around.
     solver = FreeSolver(problem, np.concatenate(boundary), 1.0, 1e-10)
