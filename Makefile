@@ -2,13 +2,14 @@
 # make test   all tests, then those marked mpi on two ranks
 # make verify every number with a known answer, some minutes; docs/verification.md
 # make paper  every figure and table of the paper, beside what it says; docs/paper.md, an hour or two
+# make chart  error over work, one numerical setting after the other; docs/chart.md, hours
 #
 # With SUITE=sid in Debian unstable, that is with a newer dolfinx: make test SUITE=sid
 # All need nothing but Debian 12, root, apt and PyPI: environment/run finds or makes what they run in.
 
 run := environment/run
 
-.PHONY: help demo test verify paper
+.PHONY: help demo test verify paper chart
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -25,3 +26,7 @@ verify:
 
 paper:
 	$(run) python3 benchmarks/reproduce.py
+
+chart:
+	$(run) python3 benchmarks/errors.py
+	$(run) python3 benchmarks/chart.py

@@ -15,7 +15,8 @@ _HEADER = """# The paper, reproduced
 
 Made by `make paper`; do not edit. [Forsbach, Heß and Papangelo 2023](https://doi.org/10.3389/fmech.2022.1074393) by
 our model with default options, contact size {size:g} µm. What the paper says is text; its figures' data are not
-published, so nothing here was fitted to them. The numbers unrounded: [paper.json](paper/paper.json).
+published, so nothing here was fitted to them. The numbers unrounded: [paper.json](paper/paper.json). What the mesh
+leaves of error in such numbers is in [errors.md](errors.md); it is largest in the energy densities at the Merkel sites.
 """
 
 
