@@ -19,6 +19,7 @@ from matplotlib.figure import Figure
 from benchmarks import arguments
 from benchmarks.convergence import Limit, limit
 from benchmarks.runs import Run
+from fingerpad.accuracy import plus_minus
 from fingerpad.scene import Scene, from_data
 from fingerpad.sweep import sweep
 
@@ -52,8 +53,9 @@ the scene of each run: [errors.json](errors.json).
 _REFERENCE = """## What the results tend to
 
 The limit over the contact size, and what growth and the size at the Merkel sites add on the way to theirs, each at its
-default value first; error bars add up. *Predicted* is that sum without extrapolation for contact 5 µm, growth
-0.125 and 10 µm at the sites all at once, *found* the run with these.
+default value first. *Predicted* is that sum without extrapolation for contact 5 µm, growth 0.125 and 10 µm at the sites
+all at once, *found* the run with these. Error bars are the sum of the studies' and of the difference between the two:
+growth and the size at the sites refine the same elements, so that they do not simply add up there.
 """
 
 
@@ -112,17 +114,21 @@ def reference(out: Path) -> dict[str, Limit]:
     """Return what the quantities tend to as all of the mesh is refined; empty before all of it was run.
 
     To first order the errors that contact size, growth and the size at the sites leave add up: the limit over one, and
-    what each other adds between its default and its limit.
+    what each other adds between its default and its limit. By how much they do not is seen on the mesh :data:`FINE`,
+    and part of the error bar.
     """
+    studies, (fine,) = _mesh_studies(out), _runs("check", out).values()
+    if not studies or fine is None:
+        return {}
     found = {}
     for quantity in QUANTITIES:
-        value = bar = 0.0
-        for name, runs in _mesh_studies(out).items():
+        value, bar = 0.0, abs(predicted(quantity, studies) - fine[quantity])
+        for name, runs in studies.items():
             end = limit([run[quantity] for run in runs.values()])
             value += end.value - (0.0 if name == "contact" else runs[getattr(Scene().mesh, name)][quantity])
             bar += end.bar
         found[quantity] = Limit(value, bar, None)
-    return found if _mesh_studies(out) else {}
+    return found
 
 
 def predicted(quantity: str, studies: Mapping[str, Mapping[float, Mapping[str, float]]]) -> float:
@@ -132,17 +138,21 @@ def predicted(quantity: str, studies: Mapping[str, Mapping[float, Mapping[str, f
     return studies["contact"][default["contact"]][quantity] + sum(changes)
 
 
+def _bar(found: Limit, unit: float) -> str:
+    return plus_minus(found.value / unit, found.bar / unit) if found.bar else f"{found.value / unit:.5g}"
+
+
 def _reference_table(out: Path) -> str:
     studies, found, (fine,) = _mesh_studies(out), reference(out), _runs("check", out).values()
-    if not studies:
+    if not found or fine is None:
         return ""
     default = studies["contact"][Scene().mesh.contact]
     lines = ["| | default | limit | default's error | predicted | found |", "|---|---|---|---|---|---|"]
     for quantity, (words, unit) in QUANTITIES.items():
         at, end = default[quantity] / unit, found[quantity]
-        cells = [f"{at:.5g}", f"{end.value / unit:.5g} ± {end.bar / unit:.1g}"]
+        cells = [f"{at:.5g}", _bar(end, unit)]
         cells += [f"{100 * (at * unit / end.value - 1):.2g} %", f"{predicted(quantity, studies) / unit:.5g}"]
-        cells += ["–" if fine is None else f"{fine[quantity] / unit:.5g}"]
+        cells += [f"{fine[quantity] / unit:.5g}"]
         lines.append(f"| {words} | " + " | ".join(cells) + " |")
     return _REFERENCE + "\n" + "\n".join(lines)
 
@@ -173,7 +183,7 @@ def _table(name: str, out: Path) -> str:
         elif found is None:
             cells += ["–", "–"]
         else:
-            cells += [f"{found.value / unit:.5g} ± {found.bar / unit:.1g}"]
+            cells.append(_bar(found, unit))
             cells += ["–" if found.order is None else f"{found.order:.1f}"]
         lines.append(f"| {words} | " + " | ".join(cells) + " |")
     for count in ("unknowns", "factorisations"):

@@ -43,8 +43,7 @@ Made by `environment/run python3 benchmarks/ladder.py`; do not edit. Numbers unr
 | 2 | smooth layered finger, one ridge's law as its contact (`fingerpad/smooth.py`, `variational/ridge_law.py`) | the same and the bone's height, for any finger | {two} |
 | 3 | every ridge (`fingerpad/run.py`) | all, receptors too | {three} |
 
-Errors are against the full model at a contact size of 10 µm, whose own are in [errors.md](errors.md): some 0.2 % of µ_app
-and 1.3 % of the contact length at 75 N/m and 200 V. What rung 3 takes is wall time of runs that shared the machine; the
+Errors are against the full model at a contact size of 10 µm, whose own are in [errors.md](errors.md). What rung 3 takes is wall time of runs that shared the machine; the
 tables of rung 2's ridge take some seconds more, once a voltage and friction coefficient.
 
 Rung 1's uncharged lengths come from the full runs at 0 V themselves, so its columns at 0 V say nothing but how they

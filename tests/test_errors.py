@@ -35,12 +35,25 @@ def test_page_of_all_runs(runs, tmp_path):
     errors.write(tmp_path, tmp_path)
     text = (tmp_path / "errors.md").read_text(encoding="utf-8")
     row = next(line for line in text.splitlines() if line.startswith("| SED at ridge 0, full slip"))
-    assert row.split("|")[2:] == [" 2.06 ", " 2 ± 0.03 ", " 3 % ", " 2.035 ", " 2.035 ", ""]
+    assert row.split("|")[2:] == [" 2.06 ", " 2.000 ± 0.025 ", " 3 % ", " 2.035 ", " 2.035 ", ""]
     assert (tmp_path / "errors.png").exists()
 
 
-def test_no_reference_before_all_was_run(runs, tmp_path):
-    runs.append(errors.study("growth")[0.5])
+def test_what_does_not_add_up_is_in_the_bar(runs, monkeypatch, tmp_path):
+    """The fine mesh is 0.1 off the sum of the studies."""
+    plain, fine = errors.reference(tmp_path), next(iter(errors.study("check").values()))
+    found = errors.values
+    monkeypatch.setattr(
+        errors, "values", lambda scene, out: {k: v + 0.1 * (scene == fine) for k, v in found(scene, out).items()}
+    )
+    for name, each in errors.reference(tmp_path).items():
+        assert each.value == plain[name].value
+        assert each.bar == pytest.approx(plain[name].bar + 0.1, rel=1e-12)
+
+
+@pytest.mark.parametrize("study", ["growth", "check"])
+def test_no_reference_before_all_was_run(runs, tmp_path, study):
+    runs.append(next(iter(errors.study(study).values())))
     assert errors.reference(tmp_path) == {}
     errors.write(tmp_path, tmp_path)
     assert "What the results tend to" not in (tmp_path / "errors.md").read_text(encoding="utf-8")
