@@ -55,7 +55,8 @@ class Report:
         self.log = logging.getLogger("fingerpad")
         if comm.rank == 0:
             folder.mkdir(parents=True, exist_ok=True)
-            (folder / "summary.json").unlink(missing_ok=True)
+            for name in ("summary.json", "receptors.csv"):
+                (folder / name).unlink(missing_ok=True)
         comm.barrier()
         self._progress = Progress(
             TextColumn("{task.description}"),
@@ -88,7 +89,10 @@ class Report:
         self._fields = Fields(simulation.problem, self.folder)
         profiles = simulation.profiles
         sites = np.concatenate([profiles.merkel_sites(), profiles.meissner_sites()])
-        self._sites = Receptors(simulation.problem, sites)
+        self._sites = Receptors(simulation.problem, sites) if simulation.plan.receptors else None
+        for omission in simulation.plan.omitted:
+            self.say(f"{omission}")
+            self.log.info("%s", omission)
         self.say(f"{simulation.unknowns} unknowns, {len(simulation.problem.surface.names)} ridges that can touch")
         self.say(_HEADER)
         self.say(_UNITS)
@@ -102,7 +106,7 @@ class Report:
         surface = self._simulation.problem.surface
         stacked = np.stack([getattr(step.surface, name) for name in _PROFILE])
         gathered, ridge = surface.gather(stacked), surface.gather(surface.ridge[None, :, None].astype(float))
-        sed = self._sites.sed()
+        sed = self._sites.sed() if self._sites else None
         if self.comm.rank == 0:
             assert gathered is not None and ridge is not None
             self._profiles.append(
@@ -112,7 +116,7 @@ class Report:
             for k, j in enumerate(surface.names):
                 if step.ridges.length[k] > 0:
                     self._table("ridges", self._ridge_row(step, k, j))
-            for ridge_row in self._receptor_rows(step.row["step"], sed):
+            for ridge_row in self._receptor_rows(step.row["step"], sed) if sed is not None else ():
                 self._table("receptors", ridge_row)
             for sweep, change in enumerate(step.attempt.changes):
                 self._table("coupling", {"step": step.row["step"], "sweep": sweep + 1, "change": change})
@@ -180,7 +184,7 @@ class Report:
             self._written = self.rows[-1]["step"]
             self._fields.write(float(self._written))
             self._log_checks()
-            merkel = self._sites.positions()[: len(self._simulation.profiles.ridges)]
+            merkel = self._sites.positions()[: len(self._simulation.profiles.ridges)] if self._sites else None
             kept = gather_mesh(self._simulation.problem), merkel
             self._kept[self.rows[-1]["load"]] = kept
         self.seconds += time.perf_counter() - start
@@ -225,7 +229,7 @@ class Report:
             result[f"{prefix}_stable"] = None if check is None else check.stable
             result[f"{prefix}_lambda_min"] = None if check is None else check.frozen.lambda_min
             result[f"{prefix}_gain"] = None if check is None else check.gain
-        result |= ended | {"parameters": self.scene.parameters()}
+        result |= ended | {"omitted": self._simulation.plan.table(), "parameters": self.scene.parameters()}
         if self.comm.rank == 0:
             partial = self.folder / "summary.json.part"
             partial.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
@@ -254,7 +258,8 @@ class Report:
             row = [row for row in self.rows if row["load"] == load][-1]
             title = f"After {load}: {pictures.conditions(row['f_ext'], row['voltage'], mu_0)}"
             name = load.replace(" ", "_")
-            np.savez_compressed(self.folder / f"finger_{name}.npz", merkel=sites, **vars(snapshot))
+            shown = {} if sites is None else {"merkel": sites}
+            np.savez_compressed(self.folder / f"finger_{name}.npz", **shown, **vars(snapshot))
             pictures.finger(self.folder / f"finger_{name}.png", snapshot, sites, title)
         sliding = [row for row in self.rows if abs(row["bone_x"]) >= _STILL]
         if normal is None or not sliding:

@@ -10,7 +10,18 @@ from typing import Annotated, Any
 
 from pydantic import Field, ValidationError, model_validator
 
-from fingerpad.parameters import Contact, Electric, Load, Materials, NonNegative, Numerics, Part, Positive, Roughness
+from fingerpad.parameters import (
+    Contact,
+    Electric,
+    Load,
+    Materials,
+    NonNegative,
+    Numerics,
+    Output,
+    Part,
+    Positive,
+    Roughness,
+)
 from fingerpad.sentences import first_error, qualify, show
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
@@ -44,6 +55,7 @@ class Scene(Part):
     roughness: Roughness = Roughness()
     contact: Contact = Contact()
     numerics: Numerics = Numerics()
+    output: Output = Output()
 
     @model_validator(mode="after")
     def _one_history(self) -> "Scene":
@@ -95,6 +107,8 @@ class Scene(Part):
     def parameters(self) -> dict[str, Any]:
         """Return every parameter in use, ready for JSON; as a scene it gives the same run again."""
         unused: dict[str, Any] = {name: True for name in (("history",) if self.history is None else _DEFAULT_HISTORY)}
+        if self.output == Output():  # not a word of it, so that runs made before it was a key are found
+            unused["output"] = True
         return self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -9,11 +10,13 @@ from dolfinx import fem
 from mpi4py import MPI
 from numpy.typing import NDArray
 
+from fingerpad.needs import plan
 from fingerpad.scene import Load, Scene
 from geometry import fingertip, mesh, tags
 from geometry.profiles import Profiles
 from variational.continuation import Attempt, Continuation, StepFailed, Target
 from variational.coupling import Coupling
+from variational.electroadhesion import ELECTROSTATIC
 from variational.energy import EnergyBook
 from variational.failure import NotConverged
 from variational.problem import Interface, Ogden, Problem, SaintVenant
@@ -35,6 +38,7 @@ class Step:
     row: dict[str, Any]
     ridges: RidgeLoads
     d_eq: Array
+    """Equivalent air gaps (m), NaN where no load of the scene has a voltage."""
     states: list[str]
     """What is to be known of each ridge's place on the closure, mostly nothing."""
     attempt: Attempt
@@ -68,6 +72,7 @@ class Simulation:
     """A scene's finger and the path of its loads.
 
     Attributes:
+        plan: the parts of the model that the scene needs.
         checks: stability of the state at the end of each load, at first full slip and after each jump, by step.
         full_slip: whether full slip was reached, and held over a further 0.2 mm.
         unknowns: number of unknowns.
@@ -86,17 +91,20 @@ class Simulation:
         """
         self.scene, self.on_step, self.on_load = scene, on_step, on_load
         self.profiles = Profiles(scene.geometry)
-        self.body = mesh.load(comm, lambda: fingertip.build(scene.geometry, scene.mesh), tags.LAYERS.values())
+        self.plan = plan(scene)
+        build = partial(fingertip.build, scene.geometry, scene.mesh, self.plan.receptors)
+        self.body = mesh.load(comm, build, tags.LAYERS.values())
         body, contact, numerics = self.body, scene.contact, scene.numerics
         ridges = {j: tags.ridge(j) for j in body.ridges()}
         surface = Surface(body.mesh, body.facet_tags, ridges, numerics.quadrature_points)
-        interface = Interface(contact.law(), scene.friction, scene.h_0)
+        attraction = ELECTROSTATIC if self.plan.voltage else None
+        interface = Interface(contact.law(), scene.friction, scene.h_0, attraction)
         self.problem = Problem(body.mesh, body.cell_tags, surface, _solids(scene), interface, numerics.element)
         force = max((load.f_ext for load in scene.loads() if load.f_ext), default=1.0)
         rim = body.facet_tags.find(tags.BONE_RIM)
         self.solver = Solver(self.problem, rim, force, numerics.tolerance)
         self.observer = Observer(self.problem)
-        self.closure = scene.roughness.bearing_area(scene.h_0)
+        self.closure = scene.roughness.bearing_area(scene.h_0) if self.plan.voltage else None
         self.coupling = Coupling(
             self.solver,
             self.observer,
@@ -165,7 +173,7 @@ class Simulation:
         loads = self.observer.ridge_loads(state)
         if _jumped(attempt):
             self._check_stability()
-        states = [self.closure.state(float(p), self._voltage) for p in loads.p_c]
+        states = [self.closure.state(float(p), self._voltage) if self.closure else "" for p in loads.p_c]
         step = Step(self._row(target, loads, attempt), loads, self.coupling.d_eq, states, attempt, state)
         whole = len(self.scene.loads())
         self.on_step(step, min((self._loads_done + (0.0 if target.name == "touch" else part)) / whole, 1.0))

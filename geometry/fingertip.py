@@ -36,8 +36,13 @@ def check(finger: Fingertip, size: MeshSize) -> Profiles:
     return profiles
 
 
-def build(finger: Fingertip, size: MeshSize) -> float:
+def build(finger: Fingertip, size: MeshSize, receptors: bool = True) -> float:
     """Mesh the fingertip in the current gmsh session, with physical groups from :mod:`geometry.tags`.
+
+    Args:
+        finger: what is meshed.
+        size: of its elements.
+        receptors: whether elements are small at the receptor sites.
 
     Returns:
         The length of gmsh's unit in m.
@@ -48,7 +53,7 @@ def build(finger: Fingertip, size: MeshSize) -> float:
     profiles = check(finger, size)
     curves = _curves(profiles, touching_ridges(finger, size))
     _surfaces(curves)
-    _sizes(profiles, size, curves)
+    _sizes(profiles, size, curves, receptors)
     gmsh.model.mesh.generate(2)
     return 1 / _MM
 
@@ -181,7 +186,7 @@ def _surfaces(c: _Curves) -> None:
             gmsh.model.addPhysicalGroup(1, curves, tags.ridge(j), f"ridge {j}")
 
 
-def _sizes(p: Profiles, size: MeshSize, c: _Curves) -> None:
+def _sizes(p: Profiles, size: MeshSize, c: _Curves, receptors: bool) -> None:
     """Set the element size: smallest of several cones, each growing from what needs fine elements."""
     f = p.finger
     touching = touching_ridges(f, size)
@@ -201,8 +206,10 @@ def _sizes(p: Profiles, size: MeshSize, c: _Curves) -> None:
     across = np.linspace(-half, half, 1 + int(np.ceil(2 * half / max(size.contact / 2, 2e-6))))
     s = (np.array(touching)[:, None] * f.ridge_wavelength + across).ravel()
     tips = _mesh_points(p.point(s, p.skin(s)))
-    sites = _mesh_points(p.merkel_sites()[[p.ridges.index(j) for j in touching]])
-    cones = [cone(size.contact, PointsList=tips), cone(size.receptor, PointsList=sites)]
+    cones = [cone(size.contact, PointsList=tips)]
+    if receptors:
+        sites = _mesh_points(p.merkel_sites()[[p.ridges.index(j) for j in touching]])
+        cones.append(cone(size.receptor, PointsList=sites))
     cones.append(cone(size.interface, CurvesList=c.wavy))
     cap = fields.add("MathEval")
     fields.setString(cap, "F", str(size.coarsest * _MM))

@@ -77,9 +77,9 @@ class EnergyBook:
         """Start from an equilibrium; arguments as in :meth:`step`.
 
         Raises:
-            ValueError: the attraction is not the electrostatic one, whose potential the book knows.
+            ValueError: there is an attraction, and not the electrostatic one, whose potential the book knows.
         """
-        if problem.interface.attraction != ELECTROSTATIC:
+        if problem.interface.attraction not in (None, ELECTROSTATIC):
             raise ValueError("the energy balance knows the potential of the electrostatic attraction only")
         self._problem = problem
         self._last = self._state(surface, bone, reaction, d_eq)
@@ -119,7 +119,9 @@ class EnergyBook:
         a, b = self._last, self._state(surface, bone, reaction, d_eq)
         self._last = b
         # The potential at the shapes (rows) and air gaps (columns) before and after.
-        phi = np.array([[self._potential(shape.surface, gap.d_eq) for gap in (a, b)] for shape in (a, b)])
+        phi = np.zeros((2, 2))
+        if self._problem.interface.attraction:
+            phi[:] = [[self._potential(shape.surface, gap.d_eq) for gap in (a, b)] for shape in (a, b)]
         return Balance(
             stored=b.stored,
             change=b.stored - a.stored,

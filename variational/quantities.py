@@ -91,12 +91,12 @@ class Observer:
         # The law gives plus or minus mu_f p_n where it slips; the factor covers roundoff alone.
         forth = loaded & (state.t_t >= mu_f * state.p_n * (1 - CONE_ROUNDOFF))
         back = loaded & (-state.t_t >= mu_f * state.p_n * (1 - CONE_ROUNDOFF))
-        count = np.array([loaded.sum(), forth.sum(), back.sum()])
+        count = np.array([loaded.sum(), forth.sum(), back.sum(), (forth | back).sum()])
         total = np.empty_like(count)
         self.problem.mesh.comm.Allreduce(count, total)
         if total[0] == 0:
             return 0.0, False
-        return float((total[1] + total[2]) / total[0]), bool(total[0] in (total[1], total[2]))
+        return float(total[3] / total[0]), bool(total[0] in (total[1], total[2]))
 
     def penetration(self, state: SurfaceState) -> float:
         """Return how deep the skin is in the screen where it bears pressure (m), the largest of all ranks' points."""

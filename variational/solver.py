@@ -198,8 +198,9 @@ class Solver:
         suspects = {
             "displacement": x.array_r,
             "air gaps": self.problem.d_eq.x.array,
-            "history": self.problem.anchor.x.array,
         }
+        if self.problem.anchor is not None:
+            suspects["history"] = self.problem.anchor.x.array
         for name, values in suspects.items():
             if not self.layout.comm.allreduce(bool(np.isfinite(values).all()), op=MPI.LAND):
                 self._not_a_number = name
@@ -312,7 +313,8 @@ class Solver:
         start = self.x.array_r.copy()
         self._inverted, self._not_a_number = False, ""
         reason = self._run(shifted=False)
-        if reason <= 0 and not creep:  # the other guess for the points on the cone, which is then kept
+        friction = self.problem.anchor is not None
+        if reason <= 0 and not creep and friction:  # the other guess for the points on the cone, which is then kept
             self.x.array_w[:] = start
             self.problem.guess.value = SLIPS if self.problem.guess.value == STICKS else STICKS
             self._stale = True
