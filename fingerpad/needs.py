@@ -4,7 +4,7 @@ What cannot change any number asked for is left out, and each omission comes wit
 approximation but what the finite elements make of it: the numbers stay those of the whole model.
 """
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 from fingerpad.scene import Scene
 
@@ -31,11 +31,23 @@ class Plan:
     """Tangential tractions and their history."""
     receptors: bool
     """Receptor sites, and elements small enough for them."""
+    both_halves: bool
+    """The finger on both sides of x = 0."""
     omitted: tuple[Omission, ...]
 
     def table(self) -> list[dict[str, str]]:
         """Return the omissions, ready for JSON."""
         return [asdict(omission) for omission in self.omitted]
+
+    def with_both_halves(self) -> "Plan":
+        """Return the plan for the whole finger."""
+        return replace(self, both_halves=True, omitted=tuple(o for o in self.omitted if o != _HALF))
+
+
+_HALF = Omission(
+    "the half at x < 0, but in tables and pictures (displacement.bp, stress.bp and sed.bp hold the other)",
+    "no load moves the bone sideways, and the finger is its own mirror image",
+)
 
 
 def plan(scene: Scene) -> Plan:
@@ -49,4 +61,7 @@ def plan(scene: Scene) -> Plan:
         omitted.append(Omission("friction and its history", "the friction coefficient is 0"))
     if not receptors:
         omitted.append(Omission("receptor sites and their fine elements", "output.receptors is false"))
-    return Plan(voltage, friction, receptors, tuple(omitted))
+    both_halves = any(load.bone_x for load in scene.loads())
+    if not both_halves:
+        omitted.append(_HALF)
+    return Plan(voltage, friction, receptors, both_halves, tuple(omitted))

@@ -13,9 +13,10 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from fingerpad import pictures
+from fingerpad import mirror, pictures
 from fingerpad.scene import Scene
 from fingerpad.simulation import Simulation, Step
+from fingerpad.zone import Woken
 from variational.output import Fields, Snapshot, gather_mesh
 from variational.receptors import Receptors
 from variational.solver import memory_mb
@@ -46,12 +47,14 @@ class Report:
         self.scene, self.folder, self.comm = scene, folder, comm
         self.rows: list[dict[str, Any]] = []
         self.seconds = 0.0
-        self._start, self._setup = time.perf_counter(), 0.0
+        self._start = self._begun = time.perf_counter()
+        self._setup = 0.0
         self._simulation: Simulation | None = None
         self._profiles: list[dict[str, Any]] = []
         self._kept: dict[str, tuple[Snapshot | None, Any]] = {}
         self._tables: dict[str, tuple[TextIO, Any]] = {}
         self._written = self._checks = 0
+        self._woken: list[dict[str, Any]] = []
         self.log = logging.getLogger("fingerpad")
         if comm.rank == 0:
             folder.mkdir(parents=True, exist_ok=True)
@@ -85,17 +88,48 @@ class Report:
     def open(self, simulation: Simulation) -> None:
         """Meet the simulation, once it is set up."""
         self._simulation = simulation
-        self._setup = time.perf_counter() - self._start
+        self._setup += time.perf_counter() - self._begun
         self._fields = Fields(simulation.problem, self.folder)
         profiles = simulation.profiles
         sites = np.concatenate([profiles.merkel_sites(), profiles.meissner_sites()])
+        if not simulation.plan.both_halves:  # where their mirror images are
+            sites[:, 0] = np.abs(sites[:, 0])
         self._sites = Receptors(simulation.problem, sites) if simulation.plan.receptors else None
         for omission in simulation.plan.omitted:
             self.say(f"{omission}")
             self.log.info("%s", omission)
-        self.say(f"{simulation.unknowns} unknowns, {len(simulation.problem.surface.names)} ridges that can touch")
+        self.say(f"{simulation.unknowns} unknowns, {len(simulation.ridges)} ridges that can touch")
         self.say(_HEADER)
         self.say(_UNITS)
+
+    def restart(self, wake: Woken) -> None:
+        """Forget every step: the loads are gone through again, with what was left out."""
+        assert self._simulation is not None
+        counts, half_arc = self._simulation.solver.counts, wake.scene.mesh.touching_half_arc
+        last: dict[str, Any] = self.rows[-1] if self.rows else {"step": 0, "load": "start"}
+        halves = " and both halves of the finger" if wake.needed.both_halves else ""
+        text = f"step {last['step']} ({last['load']}): {wake}; all loads again with "
+        text += f"mesh.touching_half_arc {half_arc:g} m{halves}"
+        self.say(f"fingerpad: {text}")
+        self.log.warning(text)
+        self._woken.append(
+            {
+                "step": last["step"],
+                "load": last["load"],
+                "reason": str(wake),
+                "touching_half_arc": half_arc,
+                "both_halves": wake.needed.both_halves,
+                "newton_iterations": counts.newton,
+                "factorisations": counts.factorisations,
+            }
+        )
+        self._fields.close()
+        for file, _ in self._tables.values():
+            file.close()
+        for kept in (self.rows, self._profiles, self._kept, self._tables):
+            kept.clear()
+        self._written = self._checks = 0
+        self._begun = time.perf_counter()
 
     # -- steps -----------------------------------------------------------------------------------------
     def step(self, step: Step, done: float) -> None:
@@ -109,11 +143,12 @@ class Report:
         sed = self._sites.sed() if self._sites else None
         if self.comm.rank == 0:
             assert gathered is not None and ridge is not None
-            self._profiles.append(
-                {"ridge": ridge[0, :, 0].astype(int), "values": gathered, "d_eq": step.d_eq, "row": step.row}
-            )
+            values, where = gathered, ridge[0, :, 0].astype(int)
+            if not self._simulation.plan.both_halves:
+                values, where = mirror.profile(_PROFILE, gathered, where)
+            self._profiles.append({"ridge": where, "values": values, "d_eq": step.d_eq, "row": step.row})
             self._table("steps", step.row)
-            for k, j in enumerate(surface.names):
+            for k, j in enumerate(self._names):
                 if step.ridges.length[k] > 0:
                     self._table("ridges", self._ridge_row(step, k, j))
             for ridge_row in self._receptor_rows(step.row["step"], sed) if sed is not None else ():
@@ -144,7 +179,7 @@ class Report:
     @property
     def _names(self) -> list[int]:
         assert self._simulation is not None
-        return self._simulation.problem.surface.names
+        return self._simulation.ridges
 
     def _ridge_row(self, step: Step, k: int, j: int) -> dict[str, Any]:
         values = step.ridges
@@ -184,10 +219,19 @@ class Report:
             self._written = self.rows[-1]["step"]
             self._fields.write(float(self._written))
             self._log_checks()
-            merkel = self._sites.positions()[: len(self._simulation.profiles.ridges)] if self._sites else None
-            kept = gather_mesh(self._simulation.problem), merkel
-            self._kept[self.rows[-1]["load"]] = kept
+            self._kept[self.rows[-1]["load"]] = self._picture()
         self.seconds += time.perf_counter() - start
+
+    def _picture(self) -> tuple[Snapshot | None, Any]:
+        """Return the present state of the whole finger, and where the Merkel sites are if they are wanted."""
+        assert self._simulation is not None
+        snapshot, ridges = gather_mesh(self._simulation.problem), np.array(self._simulation.profiles.ridges)
+        merkel = self._sites.positions()[: len(ridges)] if self._sites else None
+        if not self._simulation.plan.both_halves:
+            snapshot = mirror.snapshot(snapshot) if snapshot else None
+            if merkel is not None:
+                merkel[ridges < 0, 0] *= -1
+        return snapshot, merkel
 
     def _log_checks(self) -> None:
         assert self._simulation is not None
@@ -229,7 +273,8 @@ class Report:
             result[f"{prefix}_stable"] = None if check is None else check.stable
             result[f"{prefix}_lambda_min"] = None if check is None else check.frozen.lambda_min
             result[f"{prefix}_gain"] = None if check is None else check.gain
-        result |= ended | {"omitted": self._simulation.plan.table(), "parameters": self.scene.parameters()}
+        result |= ended | {"omitted": self._simulation.plan.table(), "woken": self._woken}
+        result["parameters"] = self.scene.parameters()
         if self.comm.rank == 0:
             partial = self.folder / "summary.json.part"
             partial.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")

@@ -7,15 +7,20 @@ from mpi4py import MPI
 
 from fingerpad.advice import advice
 from fingerpad.interrupt import Interrupt, Interrupted
+from fingerpad.needs import plan
 from fingerpad.report import Report
 from fingerpad.scene import Scene
 from fingerpad.simulation import Simulation, Step
+from fingerpad.zone import Woken
 from variational import jit
 from variational.continuation import StepFailed
 
 
 def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
     """Reach every load of a scene, reporting into ``folder``.
+
+    Where what was left out turns out to matter, all loads are gone through again with it: ridges that come near the
+    screen and could not touch, the other half of a finger that may not stay symmetric.
 
     Returns:
         The summary, the same on every rank; with a key ``failure`` if a load could not be reached, in which
@@ -31,16 +36,22 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
                 report.step(step, done)
                 interrupt.stop_if_asked(step.row["step"])
 
-            simulation = Simulation(scene, comm, on_step, report.load_reached)
-            report.open(simulation)
-            try:
-                simulation.run()
-            except StepFailed as error:
-                ended = {"failure": "; ".join(filter(None, (str(error), advice(error))))}
-                if isinstance(error, Interrupted):
-                    ended["interrupted"] = True
-                report.say(f"fingerpad: {ended['failure']}")
-                report.log.error(ended["failure"])
+            present, needed, again = scene, plan(scene), True
+            while again:
+                simulation = Simulation(present, needed, comm, on_step, report.load_reached)
+                report.open(simulation)
+                again = False
+                try:
+                    simulation.run()
+                except Woken as wake:
+                    present, needed, again = wake.scene, wake.needed, True
+                    report.restart(wake)
+                except StepFailed as error:
+                    ended = {"failure": "; ".join(filter(None, (str(error), advice(error))))}
+                    if isinstance(error, Interrupted):
+                        ended["interrupted"] = True
+                    report.say(f"fingerpad: {ended['failure']}")
+                    report.log.error(ended["failure"])
         report.load_reached()
         report.draw()
         summary = report.summary(ended)

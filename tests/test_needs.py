@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad import needs, simulation
+from fingerpad import needs
+from fingerpad import run as run_module
 from fingerpad.needs import plan
 from fingerpad.run import run
 from fingerpad.scene import Scene, from_data
@@ -152,7 +153,7 @@ def summary_of(data, folder, monkeypatch=None, **parts) -> dict:
     """Run a scene, with parts of the model that the plan would leave out if ``parts`` say so."""
     scene = from_data({"mesh": MESH} | data)
     if monkeypatch is not None:
-        monkeypatch.setattr(simulation, "plan", lambda scene: replace(needs.plan(scene), **parts))
+        monkeypatch.setattr(run_module, "plan", lambda scene: replace(needs.plan(scene), **parts))
     summary = run(scene, folder, MPI.COMM_WORLD)
     assert "failure" not in summary
     return summary
