@@ -29,6 +29,7 @@ from mpi4py import MPI
 
 from fingerpad.estimate import Knob, errors, halvings
 from fingerpad.interrupt import Interrupted
+from fingerpad.needs import plan
 from fingerpad.scene import Load, Scene
 from fingerpad.simulation import Simulation, Step
 from geometry.parameters import MeshSize
@@ -128,7 +129,7 @@ def solve_again(scene: Scene, states: Mapping[str, State], comm: MPI.Comm) -> So
     Raises:
         StepFailed: see :meth:`fingerpad.simulation.Simulation.adopt`.
     """
-    simulation = Simulation(scene, comm, lambda step, done: None, lambda: None)
+    simulation = Simulation(scene, plan(scene), comm, lambda step, done: None, lambda: None)
     keeper = Keeper(simulation)
     for name, state in states.items():
         simulation.adopt(state.carried, _WORDS[name], state.direction)
@@ -277,7 +278,7 @@ class Search:
                 assert keeper is not None
                 keeper.see(step)
 
-            simulation = Simulation(scene, self.comm, on_step, lambda: None, step_scale=0.5**n)
+            simulation = Simulation(scene, plan(self.scene), self.comm, on_step, lambda: None, step_scale=0.5**n)
             keeper = Keeper(simulation)
             simulation.run()
             self._cache[key] = keeper.solve()

@@ -238,6 +238,13 @@ _FORMULATION_KEYS = {
 }
 
 
+class Output(Part):
+    """What a run is asked for; what is not wanted is not computed."""
+
+    receptors: Annotated[bool, Field(strict=True)] = True
+    """Strain energy density at the Merkel and Meissner sites, with elements of ``mesh.receptor`` at them."""
+
+
 class Numerics(Part):
     """Discretisation and tolerances."""
 

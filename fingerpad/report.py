@@ -13,9 +13,10 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from fingerpad import pictures
+from fingerpad import mirror, pictures
 from fingerpad.scene import Scene
 from fingerpad.simulation import Simulation, Step
+from fingerpad.zone import Woken
 from variational.output import Fields, Snapshot, gather_mesh
 from variational.receptors import Receptors
 from variational.solver import memory_mb
@@ -46,16 +47,19 @@ class Report:
         self.scene, self.folder, self.comm = scene, folder, comm
         self.rows: list[dict[str, Any]] = []
         self.seconds = 0.0
-        self._start, self._setup = time.perf_counter(), 0.0
+        self._start = self._begun = time.perf_counter()
+        self._setup = 0.0
         self._simulation: Simulation | None = None
         self._profiles: list[dict[str, Any]] = []
         self._kept: dict[str, tuple[Snapshot | None, Any]] = {}
         self._tables: dict[str, tuple[TextIO, Any]] = {}
         self._written = self._checks = 0
+        self._woken: list[dict[str, Any]] = []
         self.log = logging.getLogger("fingerpad")
         if comm.rank == 0:
             folder.mkdir(parents=True, exist_ok=True)
-            (folder / "summary.json").unlink(missing_ok=True)
+            for name in ("summary.json", "receptors.csv"):
+                (folder / name).unlink(missing_ok=True)
         comm.barrier()
         self._progress = Progress(
             TextColumn("{task.description}"),
@@ -84,14 +88,48 @@ class Report:
     def open(self, simulation: Simulation) -> None:
         """Meet the simulation, once it is set up."""
         self._simulation = simulation
-        self._setup = time.perf_counter() - self._start
+        self._setup += time.perf_counter() - self._begun
         self._fields = Fields(simulation.problem, self.folder)
         profiles = simulation.profiles
         sites = np.concatenate([profiles.merkel_sites(), profiles.meissner_sites()])
-        self._sites = Receptors(simulation.problem, sites)
-        self.say(f"{simulation.unknowns} unknowns, {len(simulation.problem.surface.names)} ridges that can touch")
+        if not simulation.plan.both_halves:  # where their mirror images are
+            sites[:, 0] = np.abs(sites[:, 0])
+        self._sites = Receptors(simulation.problem, sites) if simulation.plan.receptors else None
+        for omission in simulation.plan.omitted:
+            self.say(f"{omission}")
+            self.log.info("%s", omission)
+        self.say(f"{simulation.unknowns} unknowns, {len(simulation.ridges)} ridges that can touch")
         self.say(_HEADER)
         self.say(_UNITS)
+
+    def restart(self, wake: Woken) -> None:
+        """Forget every step: the loads are gone through again, with what was left out."""
+        assert self._simulation is not None
+        counts, half_arc = self._simulation.solver.counts, wake.scene.mesh.touching_half_arc
+        last: dict[str, Any] = self.rows[-1] if self.rows else {"step": 0, "load": "start"}
+        halves = " and both halves of the finger" if wake.needed.both_halves else ""
+        text = f"step {last['step']} ({last['load']}): {wake}; all loads again with "
+        text += f"mesh.touching_half_arc {half_arc:g} m{halves}"
+        self.say(f"fingerpad: {text}")
+        self.log.warning(text)
+        self._woken.append(
+            {
+                "step": last["step"],
+                "load": last["load"],
+                "reason": str(wake),
+                "touching_half_arc": half_arc,
+                "both_halves": wake.needed.both_halves,
+                "newton_iterations": counts.newton,
+                "factorisations": counts.factorisations,
+            }
+        )
+        self._fields.close()
+        for file, _ in self._tables.values():
+            file.close()
+        for kept in (self.rows, self._profiles, self._kept, self._tables):
+            kept.clear()
+        self._written = self._checks = 0
+        self._begun = time.perf_counter()
 
     # -- steps -----------------------------------------------------------------------------------------
     def step(self, step: Step, done: float) -> None:
@@ -102,17 +140,18 @@ class Report:
         surface = self._simulation.problem.surface
         stacked = np.stack([getattr(step.surface, name) for name in _PROFILE])
         gathered, ridge = surface.gather(stacked), surface.gather(surface.ridge[None, :, None].astype(float))
-        sed = self._sites.sed()
+        sed = self._sites.sed() if self._sites else None
         if self.comm.rank == 0:
             assert gathered is not None and ridge is not None
-            self._profiles.append(
-                {"ridge": ridge[0, :, 0].astype(int), "values": gathered, "d_eq": step.d_eq, "row": step.row}
-            )
+            values, where = gathered, ridge[0, :, 0].astype(int)
+            if not self._simulation.plan.both_halves:
+                values, where = mirror.profile(_PROFILE, gathered, where)
+            self._profiles.append({"ridge": where, "values": values, "d_eq": step.d_eq, "row": step.row})
             self._table("steps", step.row)
-            for k, j in enumerate(surface.names):
+            for k, j in enumerate(self._names):
                 if step.ridges.length[k] > 0:
                     self._table("ridges", self._ridge_row(step, k, j))
-            for ridge_row in self._receptor_rows(step.row["step"], sed):
+            for ridge_row in self._receptor_rows(step.row["step"], sed) if sed is not None else ():
                 self._table("receptors", ridge_row)
             for sweep, change in enumerate(step.attempt.changes):
                 self._table("coupling", {"step": step.row["step"], "sweep": sweep + 1, "change": change})
@@ -140,7 +179,7 @@ class Report:
     @property
     def _names(self) -> list[int]:
         assert self._simulation is not None
-        return self._simulation.problem.surface.names
+        return self._simulation.ridges
 
     def _ridge_row(self, step: Step, k: int, j: int) -> dict[str, Any]:
         values = step.ridges
@@ -180,10 +219,19 @@ class Report:
             self._written = self.rows[-1]["step"]
             self._fields.write(float(self._written))
             self._log_checks()
-            merkel = self._sites.positions()[: len(self._simulation.profiles.ridges)]
-            kept = gather_mesh(self._simulation.problem), merkel
-            self._kept[self.rows[-1]["load"]] = kept
+            self._kept[self.rows[-1]["load"]] = self._picture()
         self.seconds += time.perf_counter() - start
+
+    def _picture(self) -> tuple[Snapshot | None, Any]:
+        """Return the present state of the whole finger, and where the Merkel sites are if they are wanted."""
+        assert self._simulation is not None
+        snapshot, ridges = gather_mesh(self._simulation.problem), np.array(self._simulation.profiles.ridges)
+        merkel = self._sites.positions()[: len(ridges)] if self._sites else None
+        if not self._simulation.plan.both_halves:
+            snapshot = mirror.snapshot(snapshot) if snapshot else None
+            if merkel is not None:
+                merkel[ridges < 0, 0] *= -1
+        return snapshot, merkel
 
     def _log_checks(self) -> None:
         assert self._simulation is not None
@@ -225,7 +273,8 @@ class Report:
             result[f"{prefix}_stable"] = None if check is None else check.stable
             result[f"{prefix}_lambda_min"] = None if check is None else check.frozen.lambda_min
             result[f"{prefix}_gain"] = None if check is None else check.gain
-        result |= ended | {"parameters": self.scene.parameters()}
+        result |= ended | {"omitted": self._simulation.plan.table(), "woken": self._woken}
+        result["parameters"] = self.scene.parameters()
         if self.comm.rank == 0:
             partial = self.folder / "summary.json.part"
             partial.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
@@ -254,7 +303,8 @@ class Report:
             row = [row for row in self.rows if row["load"] == load][-1]
             title = f"After {load}: {pictures.conditions(row['f_ext'], row['voltage'], mu_0)}"
             name = load.replace(" ", "_")
-            np.savez_compressed(self.folder / f"finger_{name}.npz", merkel=sites, **vars(snapshot))
+            shown = {} if sites is None else {"merkel": sites}
+            np.savez_compressed(self.folder / f"finger_{name}.npz", **shown, **vars(snapshot))
             pictures.finger(self.folder / f"finger_{name}.png", snapshot, sites, title)
         sliding = [row for row in self.rows if abs(row["bone_x"]) >= _STILL]
         if normal is None or not sliding:

@@ -9,9 +9,11 @@ from mpi4py import MPI
 from fingerpad.accuracy import Keeper, Search, plus_minus
 from fingerpad.advice import advice
 from fingerpad.interrupt import Interrupt, Interrupted
+from fingerpad.needs import plan
 from fingerpad.report import Report
 from fingerpad.scene import Scene
 from fingerpad.simulation import Simulation, Step
+from fingerpad.zone import Woken
 from variational import jit
 from variational.continuation import StepFailed
 
@@ -22,6 +24,9 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
     """Reach every load of a scene, reporting into ``folder``; refine where it asks for an accuracy.
 
     A scene that asks for an accuracy starts coarse. Where the path cannot be followed so, it starts again finer.
+
+    Where what was left out turns out to matter, all loads are gone through again with it: ridges that come near the
+    screen and could not touch, the other half of a finger that may not stay symmetric.
 
     Returns:
         The summary, the same on every rank; with a key ``failure`` if a load or an accuracy could not be reached, in
@@ -55,20 +60,26 @@ def _run(scene: Scene, folder: Path, comm: MPI.Comm, failed_starts: list[dict[st
                     keeper.see(step)
                 interrupt.stop_if_asked(step.row["step"])
 
-            simulation = Simulation(scene, comm, on_step, report.load_reached)
-            report.open(simulation)
-            keeper = Keeper(simulation) if scene.accuracy is not None else None
+            present, needed, again = scene, plan(scene), True
             search: Search | None = None
-            try:
-                simulation.run()
-                if keeper is not None:
-                    pause = partial(interrupt.stop_if_asked, simulation.continuation.steps)
-                    search = Search(scene, keeper.solve(), comm, report.say, pause)
-                    search.run()
-            except StepFailed as error:
-                ended = {"failure": "; ".join(filter(None, (str(error), advice(error))))}
-                if isinstance(error, Interrupted):
-                    ended["interrupted"] = True
+            while again:
+                simulation = Simulation(present, needed, comm, on_step, report.load_reached)
+                report.open(simulation)
+                keeper = Keeper(simulation) if scene.accuracy is not None else None
+                again = False
+                try:
+                    simulation.run()
+                    if keeper is not None:
+                        pause = partial(interrupt.stop_if_asked, simulation.continuation.steps)
+                        search = Search(present, keeper.solve(), comm, report.say, pause)
+                        search.run()
+                except Woken as wake:
+                    present, needed, again = wake.scene, wake.needed, True
+                    report.restart(wake)
+                except StepFailed as error:
+                    ended = {"failure": "; ".join(filter(None, (str(error), advice(error))))}
+                    if isinstance(error, Interrupted):
+                        ended["interrupted"] = True
             if search is not None:
                 ended = search.summary() | ({"failure": search.failure} if search.failure else {}) | ended
             if failed_starts:

@@ -18,6 +18,7 @@ from fingerpad.parameters import (
     Materials,
     NonNegative,
     Numerics,
+    Output,
     Part,
     Positive,
     Roughness,
@@ -66,6 +67,8 @@ class Scene(Part):
                 "take 'P2'"
             )
         return self
+
+    output: Output = Output()
 
     @model_validator(mode="after")
     def _one_history(self) -> "Scene":
@@ -118,6 +121,8 @@ class Scene(Part):
         """Return every parameter in use, ready for JSON; as a scene it gives the same run again."""
         unused: dict[str, Any] = {name: True for name in (("history",) if self.history is None else _DEFAULT_HISTORY)}
         unused |= {"accuracy": True} if self.accuracy is None else {}
+        if self.output == Output():  # not a word of it, so that runs made before it was a key are found
+            unused["output"] = True
         return self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
 
 

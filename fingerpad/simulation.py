@@ -2,18 +2,22 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
-from dolfinx import fem
 from mpi4py import MPI
 from numpy.typing import NDArray
 
+from fingerpad import mirror
+from fingerpad.needs import Plan
 from fingerpad.scene import Load, Scene
+from fingerpad.zone import Woken, Zone, ZoneExceeded
 from geometry import fingertip, mesh, tags
 from geometry.profiles import Profiles
 from variational.continuation import Attempt, Continuation, StepFailed, Target
 from variational.coupling import Coupling
+from variational.electroadhesion import ELECTROSTATIC
 from variational.energy import EnergyBook
 from variational.failure import NotConverged
 from variational.problem import Interface, Ogden, Problem, SaintVenant
@@ -36,6 +40,7 @@ class Step:
     row: dict[str, Any]
     ridges: RidgeLoads
     d_eq: Array
+    """Equivalent air gaps (m), NaN where no load of the scene has a voltage."""
     states: list[str]
     """What is to be known of each ridge's place on the closure, mostly nothing."""
     attempt: Attempt
@@ -69,6 +74,8 @@ class Simulation:
     """A scene's finger and the path of its loads.
 
     Attributes:
+        ridges: numbers of the ridges that can touch, of the whole finger.
+        plan: the parts of the model that the scene needs.
         checks: stability of the state at the end of each load, at first full slip and after each jump, by step.
         full_slip: whether full slip was reached, and held over a further 0.2 mm.
         unknowns: number of unknowns.
@@ -77,6 +84,7 @@ class Simulation:
     def __init__(
         self,
         scene: Scene,
+        needed: Plan,
         comm: MPI.Comm,
         on_step: Callable[[Step, float], None],
         on_load: Callable[[], None],
@@ -86,6 +94,7 @@ class Simulation:
 
         Args:
             scene: a checked scene.
+            needed: the parts of the model that it needs.
             comm: communicator of the mesh.
             on_step: called on every rank after each accepted step with the part of the whole history that is done.
             on_load: called on every rank when a load has been reached.
@@ -93,17 +102,23 @@ class Simulation:
         """
         self.scene, self.on_step, self.on_load = scene, on_step, on_load
         self.profiles = Profiles(scene.geometry)
-        self.body = mesh.load(comm, lambda: fingertip.build(scene.geometry, scene.mesh), tags.LAYERS.values())
+        self.plan = needed
+        half = not needed.both_halves
+        build = partial(fingertip.build, scene.geometry, scene.mesh, needed.receptors, half)
+        self.body = mesh.load(comm, build, tags.LAYERS.values())
         body, contact, numerics = self.body, scene.contact, scene.numerics
         ridges = {j: tags.ridge(j) for j in body.ridges()}
         surface = Surface(body.mesh, body.facet_tags, ridges, numerics.quadrature_points)
-        interface = Interface(contact.law(), scene.friction, scene.h_0)
+        attraction = ELECTROSTATIC if self.plan.voltage else None
+        interface = Interface(contact.law(), scene.friction, scene.h_0, attraction)
         self.problem = Problem(body.mesh, body.cell_tags, surface, solids(scene), interface, numerics.element)
         force = max((load.f_ext for load in scene.loads() if load.f_ext), default=1.0)
         rim = body.facet_tags.find(tags.BONE_RIM)
-        self.solver = Solver(self.problem, rim, force, numerics.tolerance)
-        self.observer = Observer(self.problem)
-        self.closure = scene.roughness.bearing_area(scene.h_0)
+        line = body.facet_tags.find(tags.SYMMETRY) if half else None
+        self.solver = Solver(self.problem, rim, force, numerics.tolerance, mirror=line)
+        self.observer = Observer(self.problem, half)
+        self.ridges = mirror.names(surface.names) if half else surface.names
+        self.closure = scene.roughness.bearing_area(scene.h_0) if self.plan.voltage else None
         self.coupling = Coupling(
             self.solver,
             self.observer,
@@ -113,20 +128,20 @@ class Simulation:
             by_gap=contact.length == "gap",
         )
         self.continuation = Continuation(self.coupling, self._accepted, step_scale=step_scale)
-        self.energy = EnergyBook(self.problem, *self._state())
+        self.energy = EnergyBook(self.problem, *self._state(), copies=2 if half else 1)
         self.unknowns = self.solver.layout.global_size
         self.full_slip = False
         self.checks: dict[int, Checked] = {}
         self._stability = StabilityCheck(self.solver)
         self._load, self._loads_done = "", 0.0
-        outside = body.facet_tags.find(tags.OUTER_SKIN)
-        self._other_skin = fem.locate_dofs_topological(self.problem.V, 1, outside)
+        self._zone = Zone(scene, needed, body, self.observer)
 
     def run(self) -> None:
         """Reach every load of the scene.
 
         Raises:
             StepFailed: a load that could not be reached; everything accepted before was reported.
+            Woken: what the plan left out matters.
         """
         loads = self.scene.loads()
         for k, load in enumerate(loads):
@@ -152,13 +167,21 @@ class Simulation:
             StepFailed: no equilibrium was found from there, or it is none (forces out of balance, skin where it was not
                 expected to touch), or full slip is no longer full or not steady.
         """
+        try:
+            self._adopt(carried, name, direction)
+        except (Woken, ZoneExceeded) as error:
+            raise StepFailed(
+                f"{name}, solved again with a contact size of {self.scene.mesh.contact:g} m: {error}"
+            ) from error
+
+    def _adopt(self, carried: Carried, name: str, direction: int) -> None:
         give(carried, self.coupling, direction * _SLIDE_ON)
         self._load = name
         self.continuation.adopt(name)
         self.energy = EnergyBook(self.problem, *self._state())  # what was dissipated on the way is not known
         loads = self.observer.ridge_loads(self.continuation.surface_state)
         self._check_balance(loads)
-        self._check_zone(loads)
+        self._zone.check(self.ridges, loads)
         if direction and not self._slides_on(Load(name=name, bone_x=self.solver.control.x + direction)):
             raise StepFailed(
                 f"{name}, solved again with a contact size of {self.scene.mesh.contact:g} m, is not steady"
@@ -185,6 +208,9 @@ class Simulation:
                 raise StepFailed(
                     f"step {step} ({self._load}): its stability cannot be examined: {failure}"
                 ) from failure
+            if not (self.plan.both_halves or self.checks[step].frozen.stable):
+                reason = "the half of the finger is not stable, so that the whole may not be symmetric"
+                raise Woken(reason, self.scene, self.plan.with_both_halves())
 
     # -- reports ---------------------------------------------------------------------------------------
     def _state(self) -> tuple[SurfaceState, Array, Array, Array]:
@@ -193,15 +219,20 @@ class Simulation:
 
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
         state = self.continuation.surface_state
-        loads = self.observer.ridge_loads(state)
+        loads, d_eq = self.observer.ridge_loads(state), self.coupling.d_eq
+        if not self.plan.both_halves:
+            loads, d_eq = mirror.loads(loads), np.array(mirror.values(list(d_eq)))
         if _jumped(attempt):
             self._check_stability()
-        states = [self.closure.state(float(p), self._voltage) for p in loads.p_c]
-        step = Step(self._row(target, loads, attempt), loads, self.coupling.d_eq, states, attempt, state)
+        states = [self.closure.state(float(p), self._voltage) if self.closure else "" for p in loads.p_c]
+        step = Step(self._row(target, loads, attempt), loads, d_eq, states, attempt, state)
         whole = len(self.scene.loads())
         self.on_step(step, min((self._loads_done + (0.0 if target.name == "touch" else part)) / whole, 1.0))
         self._check_balance(loads)
-        self._check_zone(loads)
+        try:
+            self._zone.check(self.ridges, loads)
+        except ZoneExceeded as error:
+            raise StepFailed(f"step {self.continuation.steps} ({self._load}): {error}") from error
 
     @property
     def _voltage(self) -> float:
@@ -211,7 +242,7 @@ class Simulation:
         bone, reaction = self.solver.bone, self.solver.reaction
         slipping, full = self.continuation.slip
         energy = self.energy.step(*self._state())
-        f_ext, f_t = float(reaction[1]), -float(reaction[0])
+        f_ext, f_t = float(reaction[1]), 0.0 - float(reaction[0])  # no negative zero
         return {
             "step": self.continuation.steps,
             "load": self._load if target.name != "touch" else "touch",
@@ -250,25 +281,6 @@ class Simulation:
                 f"{('sideways', 'downwards')[worst]} and the screen {screen[worst]:.9g} N/m; forces are not "
                 f"balanced to {_BALANCED:g} of {self.solver.force_scale:g} N/m; try a numerics.tolerance below "
                 f"{self.scene.numerics.tolerance:g}"
-            )
-
-    def _check_zone(self, loads: RidgeLoads) -> None:
-        """Stop if the skin touches where it was not expected to."""
-        names = self.problem.surface.names
-        if loads.length[0] > 0 or loads.length[-1] > 0:
-            j = names[0] if loads.length[0] > 0 else names[-1]
-            raise StepFailed(
-                f"step {self.continuation.steps} ({self._load}): ridge {j}, the last one that is meshed to touch, "
-                f"is in contact; mesh.touching_half_arc is {self.scene.mesh.touching_half_arc:g} m and must be larger"
-            )
-        nodes = self._other_skin
-        height = self.problem.V.tabulate_dof_coordinates()[nodes, 1] + self.problem.u.x.array.reshape(-1, 2)[nodes, 1]
-        lowest = self.observer.lowest_outside(height)
-        if lowest < 0:
-            raise StepFailed(
-                f"step {self.continuation.steps} ({self._load}): skin beyond the ridges that are meshed to touch is "
-                f"{-lowest:.3g} m below the screen; mesh.touching_half_arc is {self.scene.mesh.touching_half_arc:g} m "
-                "and must be larger"
             )
 
 

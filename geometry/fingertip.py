@@ -36,8 +36,14 @@ def check(finger: Fingertip, size: MeshSize) -> Profiles:
     return profiles
 
 
-def build(finger: Fingertip, size: MeshSize) -> float:
+def build(finger: Fingertip, size: MeshSize, receptors: bool = True, half: bool = False) -> float:
     """Mesh the fingertip in the current gmsh session, with physical groups from :mod:`geometry.tags`.
+
+    Args:
+        finger: what is meshed.
+        size: of its elements.
+        receptors: whether elements are small at the receptor sites.
+        half: mesh the half at x >= 0 alone, with half of ridge 0.
 
     Returns:
         The length of gmsh's unit in m.
@@ -46,15 +52,20 @@ def build(finger: Fingertip, size: MeshSize) -> float:
         GeometryError: see :func:`check`.
     """
     profiles = check(finger, size)
-    curves = _curves(profiles, touching_ridges(finger, size))
+    touching = [j for j in touching_ridges(finger, size) if j >= 0 or not half]
+    curves = _curves(profiles, touching, half)
     _surfaces(curves)
-    _sizes(profiles, size, curves)
+    _sizes(profiles, size, curves, touching, receptors)
     gmsh.model.mesh.generate(2)
     return 1 / _MM
 
 
 class _Curves:
-    """Tags of gmsh curves by what they are; closed ones run anticlockwise."""
+    """Tags of gmsh curves by what they are; closed ones run anticlockwise.
+
+    At either end the layers are cut by a line from the skin to the bone, at x < 0 (0) and at x > 0 (1): at the nail's
+    edges, or on the left at x = 0 if the finger is built by half. Half a nail and its bed have another cut, on top.
+    """
 
     def __init__(self) -> None:
         self.skin: list[int] = []
@@ -62,7 +73,15 @@ class _Curves:
         self.wavy: list[int] = []
         self.interfaces: dict[str, list[int]] = {}
         self.ends: dict[int, list[int]] = {}
+        self.depths: dict[int, list[str]] = {}
+        self.top: list[int] = []
+        self.symmetry: list[int] = []
         self.ridges: dict[int, list[int]] = {}
+
+    def cut(self, side: int, upper: str, lower: str) -> list[int]:
+        """Return the lines of an end between two depths."""
+        a, b = (self.depths[side].index(name) for name in (upper, lower))
+        return self.ends[side][a:b]
 
 
 def _point(xy: NDArray[np.float64]) -> int:
@@ -71,6 +90,10 @@ def _point(xy: NDArray[np.float64]) -> int:
 
 def _spline(points: NDArray[np.float64], first: int, last: int) -> int:
     return int(gmsh.model.geo.addSpline([first, *(_point(xy) for xy in points[1:-1]), last]))
+
+
+def _lines(points: list[int]) -> list[int]:
+    return [gmsh.model.geo.addLine(a, b) for a, b in zip(points, points[1:], strict=False)]
 
 
 def _chain(
@@ -86,10 +109,11 @@ def _chain(
     return chain
 
 
-def _curves(p: Profiles, touching: range) -> _Curves:
+def _curves(p: Profiles, touching: list[int], half: bool) -> _Curves:
     f, c = p.finger, _Curves()
     end = p.nail_arc
-    edge = np.array([-end, end])
+    start = 0.0 if half else -end
+    edge = np.array([start, end])
     depths = {
         "skin": p.skin,
         "sc_ve": p.sc_ve,
@@ -98,82 +122,90 @@ def _curves(p: Profiles, touching: range) -> _Curves:
         "d_sub": p.d_sub,
     }
 
-    # End lines at the nail's edges, normal to the outline, and on to the bone.
+    # End lines, normal to the outline, and on to the bone.
     corners: dict[str, tuple[int, int]] = {}
     for name, depth in depths.items():
         xy = p.point(edge, depth(edge))
         corners[name] = (_point(xy[0]), _point(xy[1]))
-    down = sorted(depths, key=lambda name: float(depths[name](edge)[0]))
     attach = np.arcsin(f.nail_bed_half_width / (f.bone_width / 2))
-    bone = tuple(_point(p.bone(side * (np.pi - attach))) for side in (-1, 1))
+    bone = tuple(_point(p.bone(phi)) for phi in (0.0 if half else -(np.pi - attach), np.pi - attach))
     for side in (0, 1):
-        nodes = [corners[name][side] for name in down] + [bone[side]]
-        c.ends[side] = [gmsh.model.geo.addLine(a, b) for a, b in zip(nodes, nodes[1:], strict=False)]
-    c.interfaces["order"] = [down.index(name) for name in ("skin", "sc_ve", "ve_d", "d_sub", "nail")]
+        down = sorted(depths, key=lambda name: float(depths[name](edge)[side]))
+        if half and side == 0:
+            down.remove("nail")
+        c.ends[side] = _lines([corners[name][side] for name in down] + [bone[side]])
+        c.depths[side] = [*down, "bone"]
 
     # Skin: one group of curves a ridge, those that can touch broken where the fine mesh ends.
     grooves = (np.arange(f.ridge_count + 1) - f.ridge_count / 2) * f.ridge_wavelength
-    stations = np.concatenate([[-end], grooves, [end]])
+    tips = np.linspace(grooves[0], grooves[-1], 4 * f.ridge_count + 1)
+    first = 0 if half else 1  # curve of the first ridge
+    stations = np.concatenate([[start], grooves[grooves > start], [end]])
     c.skin = _chain(p, p.skin, stations, corners["skin"])
-    for j, curve in zip(p.ridges, c.skin[1:-1], strict=True):
+    for j, curve in zip((j for j in p.ridges if j >= 0 or not half), c.skin[first:-1], strict=True):
         c.ridges[j] = [curve]
         if j in touching:
             c.touching.append(curve)
     for name, depth in (("sc_ve", p.sc_ve), ("d_sub", p.d_sub)):
         c.interfaces[name] = _chain(p, depth, stations, corners[name])
     # A node on each tip and papilla: facets that cut them off would leave receptor sites in the wrong layer.
-    tips = np.concatenate([[-end], np.linspace(grooves[0], grooves[-1], 4 * f.ridge_count + 1), [end]])
+    tips = np.concatenate([[start], tips[tips > start + f.ridge_wavelength / 8], [end]])
     c.interfaces["ve_d"] = _chain(p, p.ve_d, tips, corners["ve_d"], _SHARP_SAMPLES)
-    c.wavy = c.skin[1:-1] + c.interfaces["sc_ve"][1:-1] + c.interfaces["ve_d"][1:-1]
+    c.wavy = c.skin[first:-1] + c.interfaces["sc_ve"][first:-1] + c.interfaces["ve_d"][first:-1]
 
-    # Dorsal faces of the nail, from the right edge over the top to the left one.
+    # Dorsal faces of the nail, from the right edge over the top to the left one, or to the top.
+    top = [_point(p.point(p.half_perimeter, depth)) for depth in (0.0, f.nail_thickness)] if half else []
     s = np.linspace(end, p.half_perimeter, 61)
-    for name, depth_value in (("nail outside", 0.0), ("nail inside", f.nail_thickness)):
+    for k, (name, key, depth_value) in enumerate(
+        (("nail outside", "skin", 0.0), ("nail inside", "nail", f.nail_thickness))
+    ):
         right = p.point(s, depth_value)
-        xy = np.concatenate([right, (right * [-1, 1])[-2::-1]])
-        key = "skin" if name == "nail outside" else "nail"
-        if key == "skin":  # the ridges' mean line lies deeper than the outline; start the nail on the skin
-            xy[[0, -1]] = p.point(edge, p.skin(edge))[::-1]
-        c.interfaces[name] = [_spline(xy, corners[key][1], corners[key][0])]
+        xy = right if half else np.concatenate([right, (right * [-1, 1])[-2::-1]])
+        # The ends are the corners: the ridges' mean line lies deeper than the outline, the nail starts on the skin.
+        c.interfaces[name] = [_spline(xy, corners[key][1], top[k] if half else corners[key][0])]
 
-    lower = np.linspace(-(np.pi - attach), np.pi - attach, 121)
-    upper = np.linspace(np.pi - attach, np.pi + attach, 61)
+    lower = np.linspace(0.0 if half else -(np.pi - attach), np.pi - attach, 121)
+    upper = np.linspace(np.pi - attach, np.pi if half else np.pi + attach, 61)
+    summit = _point(p.bone(np.pi)) if half else bone[0]
     c.interfaces["bone below"] = [_spline(p.bone(lower), bone[0], bone[1])]
-    c.interfaces["bone above"] = [_spline(p.bone(upper), bone[1], bone[0])]
+    c.interfaces["bone above"] = [_spline(p.bone(upper), bone[1], summit)]
+    if half:
+        c.top = _lines([*top, summit])
+        c.symmetry = c.ends[0] + c.top
     return c
 
 
 def _surfaces(c: _Curves) -> None:
     geo = gmsh.model.geo
-    skin, sc_ve, ve_d, d_sub, nail = c.interfaces["order"]
-    left, right = c.ends[0], c.ends[1]
     i = c.interfaces
 
     def surface(*loop: int) -> int:
         return int(geo.addPlaneSurface([geo.addCurveLoop(list(loop))]))
 
-    def band(upper: list[int], lower: list[int], a: int, b: int) -> int:
-        """Return the surface between two curves whose ends are at positions a < b of the end lines."""
-        return surface(*upper, *right[a:b], *(-k for k in reversed(lower)), *(-k for k in reversed(left[a:b])))
-
     def reverse(curves: list[int]) -> list[int]:
         return [-k for k in reversed(curves)]
 
+    def band(upper: list[int], lower: list[int], a: str, b: str) -> int:
+        """Return the surface between two curves whose ends are at depths a and b of the end lines."""
+        return surface(*upper, *c.cut(1, a, b), *reverse(lower), *reverse(c.cut(0, a, b)))
+
+    nail, bed = ([c.top[:1], c.top[1:]]) if c.top else (c.cut(0, "skin", "nail"), c.cut(0, "nail", "bone"))
+
     surfaces = {
-        tags.STRATUM_CORNEUM: band(c.skin, i["sc_ve"], skin, sc_ve),
-        tags.VIABLE_EPIDERMIS: band(i["sc_ve"], i["ve_d"], sc_ve, ve_d),
-        tags.DERMIS: band(i["ve_d"], i["d_sub"], ve_d, d_sub),
-        tags.SUBCUTIS: surface(*i["d_sub"], *right[d_sub:], *reverse(i["bone below"]), *reverse(left[d_sub:])),
-        tags.NAIL: surface(
-            *i["nail outside"], *left[skin:nail], *reverse(i["nail inside"]), *reverse(right[skin:nail])
-        ),
-        tags.NAIL_BED: surface(*i["nail inside"], *left[nail:], *reverse(i["bone above"]), *reverse(right[nail:])),
+        tags.STRATUM_CORNEUM: band(c.skin, i["sc_ve"], "skin", "sc_ve"),
+        tags.VIABLE_EPIDERMIS: band(i["sc_ve"], i["ve_d"], "sc_ve", "ve_d"),
+        tags.DERMIS: band(i["ve_d"], i["d_sub"], "ve_d", "d_sub"),
+        tags.SUBCUTIS: band(i["d_sub"], i["bone below"], "d_sub", "bone"),
+        tags.NAIL: surface(*i["nail outside"], *nail, *reverse(i["nail inside"]), *reverse(c.cut(1, "skin", "nail"))),
+        tags.NAIL_BED: surface(*i["nail inside"], *bed, *reverse(i["bone above"]), *reverse(c.cut(1, "nail", "bone"))),
     }
     geo.synchronize()
     for name, tag in tags.LAYERS.items():
         gmsh.model.addPhysicalGroup(2, [surfaces[tag]], tag, name)
     gmsh.model.addPhysicalGroup(1, i["bone below"] + i["bone above"], tags.BONE_RIM, "bone rim")
     gmsh.model.addPhysicalGroup(1, i["nail outside"], tags.NAIL_SURFACE, "nail surface")
+    if c.symmetry:
+        gmsh.model.addPhysicalGroup(1, c.symmetry, tags.SYMMETRY, "symmetry")
     others = [k for k in c.skin if k not in c.touching]
     gmsh.model.addPhysicalGroup(1, others, tags.OUTER_SKIN, "outer skin")
     for j, curves in c.ridges.items():
@@ -181,10 +213,9 @@ def _surfaces(c: _Curves) -> None:
             gmsh.model.addPhysicalGroup(1, curves, tags.ridge(j), f"ridge {j}")
 
 
-def _sizes(p: Profiles, size: MeshSize, c: _Curves) -> None:
+def _sizes(p: Profiles, size: MeshSize, c: _Curves, touching: list[int], receptors: bool) -> None:
     """Set the element size: smallest of several cones, each growing from what needs fine elements."""
     f = p.finger
-    touching = touching_ridges(f, size)
     fields = gmsh.model.mesh.field
 
     def cone(smallest: float, **what: list[int] | list[float]) -> int:
@@ -201,8 +232,10 @@ def _sizes(p: Profiles, size: MeshSize, c: _Curves) -> None:
     across = np.linspace(-half, half, 1 + int(np.ceil(2 * half / max(size.contact / 2, 2e-6))))
     s = (np.array(touching)[:, None] * f.ridge_wavelength + across).ravel()
     tips = _mesh_points(p.point(s, p.skin(s)))
-    sites = _mesh_points(p.merkel_sites()[[p.ridges.index(j) for j in touching]])
-    cones = [cone(size.contact, PointsList=tips), cone(size.receptor, PointsList=sites)]
+    cones = [cone(size.contact, PointsList=tips)]
+    if receptors:
+        sites = _mesh_points(p.merkel_sites()[[p.ridges.index(j) for j in touching]])
+        cones.append(cone(size.receptor, PointsList=sites))
     cones.append(cone(size.interface, CurvesList=c.wavy))
     cap = fields.add("MathEval")
     fields.setString(cap, "F", str(size.coarsest * _MM))

@@ -90,7 +90,7 @@ class MeshSize(BaseModel):
     """Increase of the element size per distance."""
     touching_half_arc: Length = 5e-3
     """Arc length on either side of the centre within which ridges can touch; a run that finds contact at
-    its end stops and says so. Enough for 75 N/m and a friction coefficient of 0.25; a scene with more of
-    either, and no word of this, takes more."""
+    its end says so and begins again with more. Enough for 75 N/m and a friction coefficient of 0.25; a scene
+    with more of either, and no word of this, takes more."""
     touching_fraction: Annotated[float, Field(gt=0, le=1)] = 0.4
     """Part of a ridge's period, about its tip, that can touch; the grooves are coarser."""

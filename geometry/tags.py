@@ -21,6 +21,7 @@ BONE_RIM = 11
 OUTER_SKIN = 12  # skin that is not expected to touch
 NAIL_SURFACE = 13
 SIDES = 14  # lateral faces of the verification bodies
+SYMMETRY = 15  # x = 0, where a finger is built by half
 _RIDGE_CENTRE = 1000
 
 

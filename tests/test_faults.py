@@ -198,12 +198,13 @@ def test_asked_to_stop(tmp_path, number):
     assert len(accepted(tmp_path)) == summary["steps"] >= GOOD
 
 
-def test_last_ridge_that_may_touch_does(tmp_path):
-    """Contact would spread to skin without contact forces: the run stops where it does, and says what to change."""
-    scene = from_data({"mesh": MESH | {"touching_half_arc": 0.6e-3}, "history": [{"name": "press", "f_ext": 8.0}]})
+def test_last_ridge_of_the_finger_touches(tmp_path):
+    """There are no more ridges to wake: the run stops where contact reaches the last one, and says what to change."""
+    geometry = {"ridge_count": 3}
+    scene = from_data({"mesh": MESH, "geometry": geometry, "history": [{"name": "press", "f_ext": 8.0}]})
     summary = run(scene, tmp_path, MPI.COMM_WORLD)
-    assert "the last one that is meshed to touch" in summary["failure"]
-    assert "mesh.touching_half_arc is 0.0006 m" in summary["failure"]
+    assert "the finger has no more ridges" in summary["failure"]
+    assert "geometry.ridge_count is 3" in summary["failure"]
     rows = accepted(tmp_path)
     assert (
         [int(row["ridges_in_contact"]) for row in rows][-1] == max(int(row["ridges_in_contact"]) for row in rows) == 3

@@ -182,8 +182,22 @@ def test_bone_rim(finger_mesh, profiles):
 
 def test_ridge_tags():
     assert [tags.ridge_index(tags.ridge(j)) for j in (-50, -1, 0, 50)] == [-50, -1, 0, 50]
-    others = [*tags.LAYERS.values(), tags.BONE_RIM, tags.OUTER_SKIN, tags.NAIL_SURFACE, tags.SIDES]
+    others = [*tags.LAYERS.values(), tags.BONE_RIM, tags.OUTER_SKIN, tags.NAIL_SURFACE, tags.SIDES, tags.SYMMETRY]
     assert not {tags.ridge(j) for j in range(-50, 51)} & set(others)
+
+
+def test_half_a_finger_has_half_of_each_layer(coarse, finger_mesh):
+    """Its areas are half those of the whole; half of ridge 0 is there.
+
+    Tolerance: coarse elements cut the nail's and the bone's curves off by chords that lie elsewhere, some 0.3 %.
+    """
+    half = load(MPI.COMM_WORLD, partial(fingertip.build, Fingertip(), coarse, half=True))
+    for name, tag in tags.LAYERS.items():
+        assert 2 * integral(half, tag) == pytest.approx(integral(finger_mesh, tag), rel=5e-3), name
+    assert half.ridges() == [j for j in finger_mesh.ridges() if j >= 0]
+    line = vertices(half, half.facet_tags.find(tags.SYMMETRY))
+    assert np.abs(line[:, 0]).max(initial=0) < 1e-12
+    assert half.mesh.geometry.x[:, 0].min(initial=0) > -1e-12
 
 
 # -- refusals ------------------------------------------------------------------------------------------

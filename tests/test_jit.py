@@ -27,7 +27,9 @@ def test_sweep_leaves_what_a_compiler_is_at(tmp_path, monkeypatch):
     source = tmp_path / "slow_form.c"
     source.touch()
     os.utime(source, times=(time.time() - 6000,) * 2)
-    with subprocess.Popen([sys.executable, "-c", "input()", str(source)], stdin=subprocess.PIPE) as compiler:
+    command = [sys.executable, "-c", "input(print(flush=True))", str(source)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as compiler:
+        assert compiler.stdout.readline()  # it runs, so that its command line is its own
         jit.sweep(MPI.COMM_SELF)
         assert source.exists()
         compiler.communicate(b"\n")

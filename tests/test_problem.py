@@ -46,7 +46,12 @@ def wave(problem, lowest=-1.5e-6, height=6e-6):
 
 
 def anchor_apart(problem):
-    """Of the points of a facet, let one stick and one slip either way; none is where its spring is slack."""
+    """Of the points of a facet, let one stick and one slip either way; none is where its spring is slack.
+
+    Without friction there is nothing to do.
+    """
+    if problem.anchor is None:
+        return
     c = problem.contact
     s, p_n, t_t, gamma_t = problem.surface.evaluate(
         problem.surface.compile([c.new_anchor, c.p_n, c.t_t, c.springs.gamma_t])
@@ -79,9 +84,8 @@ def dense(A):
 
 def distance_to_kinks(problem):
     """Return how far the nearest point is from touching, from d_eq and from its cone's edge (m of displacement)."""
-    y, p_n, u_x, anchor = problem.surface.evaluate(
-        problem.surface.compile([problem.y, problem.contact.p_n, problem.u[0], problem.anchor])
-    )
+    compiled = problem.surface.compile([problem.y, problem.contact.p_n, problem.u[0], problem.anchor or problem.y])
+    y, p_n, u_x, anchor = problem.surface.evaluate(compiled)
     law = problem.interface
     apart = [np.abs(y), np.abs(y - D_EQ)]
     if law.mu_f > 0:

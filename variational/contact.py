@@ -45,7 +45,7 @@ class Skin:
     y: Any
     """Current height above the screen (m)."""
     anchor: Any
-    """Accepted anchor (m)."""
+    """Accepted anchor (m); None without friction."""
     multiplier: Any
     """Accepted contact pressure (Pa), as corrected since."""
     elastic: Callable[[], Any]
@@ -85,9 +85,12 @@ class Contact:
         self.springs = s = springs
         self.gap = skin.y - s.lambda_n / s.gamma_n
         self.p_n = pressure(self.gap, s.gamma_n)
-        self.t_t = friction.traction(skin.u[0], skin.anchor, mu_f * self.p_n, s.gamma_t, guess, s.lambda_t)
+        if skin.anchor is None:
+            self.t_t, self.new_anchor = ufl.zero(), skin.u[0]
+        else:
+            self.t_t = friction.traction(skin.u[0], skin.anchor, mu_f * self.p_n, s.gamma_t, guess, s.lambda_t)
+            self.new_anchor = friction.new_anchor(skin.u[0], self.t_t, s.gamma_t, s.lambda_t)
         self.traction = ufl.as_vector([self.t_t, self.p_n])
-        self.new_anchor = friction.new_anchor(skin.u[0], self.t_t, s.gamma_t, s.lambda_t)
 
 
 @dataclass(frozen=True)

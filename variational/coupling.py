@@ -15,7 +15,8 @@ back. Between the loads at which either state is one of equilibrium the loop cyc
 :mod:`~variational.continuation` leaps over them.
 
 A formulation of contact whose history is corrected after each solve, the augmented Lagrangian, shares the loop: a
-sweep corrects air gaps and multipliers, and the loop ends when both agree.
+sweep corrects air gaps and multipliers, and the loop ends when both agree. Without a closure, for a path without
+voltage, the multipliers are all there is to correct, and a step is mostly one solve.
 
 The tangent of the macroscale is that of frozen air gaps. When a later sweep of a load that was in equilibrium
 fails, it is because a ridge jumps, and the solver may creep at once.
@@ -54,7 +55,7 @@ class Coupling:
     """Solves macroscale and closure together.
 
     Attributes:
-        d_eq: equivalent air gap of each ridge (m).
+        d_eq: equivalent air gap of each ridge (m); NaN without a closure.
         history: sweeps of the last solve.
         gain: d closure(p_c) / d d_eq of each ridge, the last secant of the last solve that moved its air gap;
             NaN where none did yet. Below one the ridge's loop contracts: its state is stable if that of
@@ -65,7 +66,7 @@ class Coupling:
         self,
         solver: Solver,
         observer: Observer,
-        closure: Closure,
+        closure: Closure | None,
         tolerance: float = 1e-6,
         cap: int = 30,
         by_gap: bool = False,
@@ -75,7 +76,7 @@ class Coupling:
         Args:
             solver: the macroscale.
             observer: evaluates its surface.
-            closure: the microscale.
+            closure: the microscale; None where there is never a voltage.
             tolerance: relative error of d_eq, r / (1 - gain), at which the loop ends; gains count up to 0.99.
             cap: most sweeps.
             by_gap: take the length below d_eq, not the length under pressure, as L_R of Eq. 4.
@@ -83,19 +84,23 @@ class Coupling:
         self.solver, self.observer, self.closure = solver, observer, closure
         self.tolerance, self.cap, self.by_gap = tolerance, cap, by_gap
         self.history = CouplingHistory()
-        self.d_eq = closure(np.zeros(len(observer.surface.names))).d_eq
+        ridges = len(observer.surface.names)
+        self.d_eq = closure(np.zeros(ridges)).d_eq if closure else np.full(ridges, np.nan)
         self.gain = np.full_like(self.d_eq, np.nan)
 
     def set_air_gaps(self, d_eq: Array) -> None:
         """Impose air gaps (m), shape (ridges,)."""
         self.d_eq = d_eq
-        self.solver.problem.set_air_gaps(d_eq)
+        if self.closure:
+            self.solver.problem.set_air_gaps(d_eq)
 
     def _sweep(self, creep: bool) -> tuple[Array, SurfaceState]:
         """Solve at the current air gaps; return what the closure makes of the pressures (m), and the surface."""
         self.solver.solve(creep)
         with self.solver.timings.phase("coupling"):
             state = self.observer.state()
+            if self.closure is None:
+                return self.d_eq, state
             d_eq = self.closure(self.observer.ridge_loads(state, self.by_gap).p_c).d_eq
         if not np.isfinite(d_eq).all():
             ridge = self.observer.surface.names[int(np.argmin(np.isfinite(d_eq)))]
@@ -115,7 +120,8 @@ class Coupling:
         self.history = CouplingHistory()
         self.set_air_gaps(self.d_eq)
         problem = self.solver.problem
-        formulation, charged = problem.interface.formulation, float(problem.voltage.value) != 0.0
+        formulation = problem.interface.formulation
+        charged = self.closure is not None and float(problem.voltage.value) != 0.0
         contact_history = problem.history
         secants, names = Secants(self.d_eq, self.gain), self.observer.surface.names
         for sweep in range(self.cap):
@@ -124,12 +130,13 @@ class Coupling:
             r = found - d if charged else np.zeros_like(d)  # without attraction the air gaps do not act
             error = formulation.error(state, contact_history, problem.interface.mu_f)
             self.history.errors.append(problem.mesh.comm.allreduce(error, op=MPI.MAX))
-            worst = int(np.argmax(np.abs(r) / d))
-            self.history.changes.append(float(np.abs(r[worst]) / d[worst]))
+            change = np.abs(r) / d if charged else np.zeros_like(d)
+            worst = int(np.argmax(change))
+            self.history.changes.append(float(change[worst]))
             self.history.ridges.append(names[worst])
             secants.see(d, r)
             self.history.jumped = {names[k] for k in np.flatnonzero(secants.jumped())}
-            scales = secants.settled(self.tolerance)
+            scales = not charged or secants.settled(self.tolerance)
             contact = self.history.errors[-1] <= formulation.tolerance
             if scales and contact:
                 if charged:

@@ -73,15 +73,17 @@ class _State:
 class EnergyBook:
     """Keeps the energies of accepted states; reads the problem and changes nothing in it."""
 
-    def __init__(self, problem: Problem, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array) -> None:
-        """Start from an equilibrium; arguments as in :meth:`step`.
+    def __init__(
+        self, problem: Problem, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array, copies: int = 1
+    ) -> None:
+        """Start from an equilibrium; arguments as in :meth:`step`, and of how many copies of it the body is made.
 
         Raises:
-            ValueError: the attraction is not the electrostatic one, whose potential the book knows.
+            ValueError: there is an attraction, and not the electrostatic one, whose potential the book knows.
         """
-        if problem.interface.attraction != ELECTROSTATIC:
+        if problem.interface.attraction not in (None, ELECTROSTATIC):
             raise ValueError("the energy balance knows the potential of the electrostatic attraction only")
-        self._problem = problem
+        self._problem, self._copies = problem, copies
         self._last = self._state(surface, bone, reaction, d_eq)
 
     def _state(self, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array) -> _State:
@@ -90,7 +92,7 @@ class EnergyBook:
         springs = float(integrate(problem.interface.formulation.stored(surface)).sum())
         square = float(problem.voltage.value) ** 2
         return _State(
-            bulk + springs,
+            self._copies * (bulk + springs),
             np.array(bone),
             np.array(reaction),
             square,
@@ -105,7 +107,7 @@ class EnergyBook:
         g = h_0 + np.maximum(y, d)
         phi = -VACUUM_PERMITTIVITY / 2 * (1 / g + (d - near) / g**2)
         width = -surface.area_y  # current dx per reference length
-        return float(self._problem.surface.per_ridge(phi * width).sum())
+        return self._copies * float(self._problem.surface.per_ridge(phi * width).sum())
 
     def step(self, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array) -> Balance:
         """Close the book on a step; collective.
@@ -119,7 +121,9 @@ class EnergyBook:
         a, b = self._last, self._state(surface, bone, reaction, d_eq)
         self._last = b
         # The potential at the shapes (rows) and air gaps (columns) before and after.
-        phi = np.array([[self._potential(shape.surface, gap.d_eq) for gap in (a, b)] for shape in (a, b)])
+        phi = np.zeros((2, 2))
+        if self._problem.interface.attraction:
+            phi[:] = [[self._potential(shape.surface, gap.d_eq) for gap in (a, b)] for shape in (a, b)]
         return Balance(
             stored=b.stored,
             change=b.stored - a.stored,
@@ -133,4 +137,4 @@ class EnergyBook:
         # A point that bears nothing is carried along: no slip.
         slip = np.where(b.p_n > 0, np.abs(self._problem.interface.formulation.slip(a, b)), 0.0)
         cone = self._problem.interface.mu_f * (a.p_n + b.p_n) / 2
-        return float(self._problem.surface.per_ridge(cone * slip).sum())
+        return self._copies * float(self._problem.surface.per_ridge(cone * slip).sum())

@@ -9,7 +9,7 @@ P = dW/dF: :mod:`~variational.ogden`, :mod:`~variational.saint_venant`, the volu
 :mod:`~variational.element` has it, which may bring a pressure p and a second equation, p = K (J - 1) weakly; p_n and
 t_t: :mod:`~variational.contact` in one of the formulations :mod:`~variational.penalty`, :mod:`~variational.nitsche`
 (with terms of its own) and :mod:`~variational.augmented`; p_el: :mod:`~variational.electroadhesion`, written as the
-derivative of its potential.
+derivative of its potential. Without a voltage the attraction is left out, with a friction coefficient of zero t_t is.
 Friction makes the derivative unsymmetric. The derivative may carry a shift :math:`\int \eta\, du \cdot v \,dS`, which
 is no part of the equations but of pseudo-transient continuation (:mod:`~variational.solver`). This module adds up
 forms and never solves.
@@ -69,11 +69,11 @@ class Interface:
     formulation: Formulation
     """How contact and friction enter the weak form."""
     mu_f: float
-    """Friction coefficient."""
+    """Friction coefficient; zero leaves friction and its history out of the forms."""
     h_0: float
     """Effective insulator thickness (m)."""
-    attraction: electroadhesion.Attraction = electroadhesion.ELECTROSTATIC
-    """What draws the skin to the screen."""
+    attraction: electroadhesion.Attraction | None = electroadhesion.ELECTROSTATIC
+    """What draws the skin to the screen; None leaves it out of the forms."""
 
 
 class Problem:
@@ -85,7 +85,7 @@ class Problem:
         voltage, eta: constants (V; Pa/m, the shift of the Jacobian).
         guess: constant, what points on the friction cone are first taken for: STICKS or SLIPS.
         d_eq: equivalent air gap (m), one value a cell, read on the ridges.
-        anchor: accepted friction history (m), see :mod:`variational.friction`.
+        anchor: accepted friction history (m), see :mod:`variational.friction`; None without friction.
         multiplier: accepted contact pressure (Pa), read by an augmented Lagrangian.
         history: what the two were last accepted with, and where.
         contact: the projected tractions.
@@ -122,7 +122,8 @@ class Problem:
         cellwise = fem.functionspace(mesh, ("Discontinuous Lagrange", 0))
         self.u = fem.Function(self.V, name="displacement")
         self.d_eq = fem.Function(cellwise)
-        self.anchor, self.multiplier = (fem.Function(surface.history_space) for _ in range(2))
+        self.multiplier = fem.Function(surface.history_space)
+        self.anchor = fem.Function(surface.history_space) if interface.mu_f else None
 
         def constant(value: float) -> fem.Constant:
             return fem.Constant(mesh, np.float64(value))
@@ -152,7 +153,8 @@ class Problem:
         self.densities = {tags: law.energy(F, self.pressures[tags]) for tags, law in self.laws.items()}
 
         self.y = kinematics.current_height(mesh, u)
-        self.p_el = interface.attraction.pressure(self.y, self.d_eq, self.voltage, h_0)
+        attraction = interface.attraction
+        self.p_el = attraction.pressure(self.y, self.d_eq, self.voltage, h_0) if attraction else ufl.zero()
         normal = ufl.FacetNormal(mesh)
         self.area = kinematics.cofactor(F) * normal  # current per reference area, a vector
         skin = Skin(
@@ -169,7 +171,8 @@ class Problem:
         self.contact = Contact(skin, formulation.springs(skin), mu_f, self.guess)
         self.opening = formulation.opening(skin, self.contact)
         dS = surface.measure
-        energy += -interface.attraction.potential(self.y, self.d_eq, self.voltage, h_0) * self.area[1] * dS
+        if attraction:
+            energy += -attraction.potential(self.y, self.d_eq, self.voltage, h_0) * self.area[1] * dS
         residual = ufl.derivative(energy, u, v) + formulation.virtual_work(skin, self.contact, v) * dS
         du = ufl.TrialFunction(self.V)
         jacobian = ufl.derivative(residual, u, du) + self.eta * ufl.dot(du, v) * dS
@@ -250,7 +253,8 @@ class Problem:
 
     def correct_history(self, history: History) -> None:
         """Impose anchors and multipliers that are not accepted yet."""
-        self.surface.set_history(self.anchor, history.anchor)
+        if self.anchor is not None:
+            self.surface.set_history(self.anchor, history.anchor)
         self.surface.set_history(self.multiplier, history.pressure)
 
     def set_air_gaps(self, d_eq: np.ndarray) -> None:

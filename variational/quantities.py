@@ -51,9 +51,14 @@ class SurfaceState:
 class Observer:
     """Evaluates the surface of a problem."""
 
-    def __init__(self, problem: Problem) -> None:
-        """Compile what is evaluated."""
-        self.problem, self.surface = problem, problem.surface
+    def __init__(self, problem: Problem, mirrored: bool = False) -> None:
+        """Compile what is evaluated.
+
+        Args:
+            problem: whose surface is evaluated.
+            mirrored: it is that of the half of a body whose other half is the mirror image.
+        """
+        self.problem, self.surface, self._mirrored = problem, problem.surface, mirrored
         x = ufl.SpatialCoordinate(problem.mesh)[0] + problem.u[0]
         c, area = problem.contact, problem.area
         self._compiled = self.surface.compile(
@@ -91,12 +96,15 @@ class Observer:
         # The law gives plus or minus mu_f p_n where it slips; the factor covers roundoff alone.
         forth = loaded & (state.t_t >= mu_f * state.p_n * (1 - CONE_ROUNDOFF))
         back = loaded & (-state.t_t >= mu_f * state.p_n * (1 - CONE_ROUNDOFF))
-        count = np.array([loaded.sum(), forth.sum(), back.sum()])
+        count = np.array([loaded.sum(), forth.sum(), back.sum(), (forth | back).sum()])
         total = np.empty_like(count)
         self.problem.mesh.comm.Allreduce(count, total)
         if total[0] == 0:
             return 0.0, False
-        return float((total[1] + total[2]) / total[0]), bool(total[0] in (total[1], total[2]))
+        one_way = total[0] in (total[1], total[2])
+        if self._mirrored:  # what slips forth here slips back there
+            one_way = total[0] == total[1] == total[2]
+        return float(total[3] / total[0]), bool(one_way)
 
     def penetration(self, state: SurfaceState) -> float:
         """Return how deep the skin is in the screen where it bears pressure (m), the largest of all ranks' points."""

@@ -95,6 +95,7 @@ class Solver:
         force_scale: float,
         tolerance: float = 1e-9,
         fixed: Sequence[tuple[NDArray[np.int32], float]] = (),
+        mirror: NDArray[np.int32] | None = None,
     ) -> None:
         """Set SNES up.
 
@@ -105,16 +106,24 @@ class Solver:
             tolerance: norm of the nodal forces' imbalance (N/m) at convergence, over ``force_scale``; volume defects
                 count as forces, see :mod:`variational.pressure`.
             fixed: further prescribed unknowns: (local indices, displacement in m).
+            mirror: the facets at x = 0 known to this rank if the body is but the half at x >= 0 of one that is its own
+                mirror image; forces are those of the whole.
         """
         self.problem, self.control, self.counts = problem, Control(), Counts()
         self.layout = RigidRimLayout(problem.V, rim_facets, problem.pressure)
         self.timings = Timings()
-        rows = np.concatenate([self.layout.rows[dofs] for dofs, _ in fixed] or [np.empty(0, PETSc.IntType)])
-        values = np.concatenate([np.full(len(dofs), value) for dofs, value in fixed] or [np.empty(0)])
-        first = int(self.layout.create_vector().getOwnershipRange()[0])
-        mine = (rows >= first) & (rows < first + self.layout.local_size)
-        self._fixed_rows, self._fixed_values = rows[mine], values[mine]
-        self._first_row = first
+        self._first_row = int(self.layout.create_vector().getOwnershipRange()[0])
+        # Of the whole body's reaction in x and y, over the part's: the halves' horizontal ones cancel.
+        self._copies = np.ones(2) if mirror is None else np.array([0.0, 2.0])
+        self._antisymmetric: NDArray[np.int64] | None = None
+        if mirror is not None:
+            on_line = fem.locate_dofs_topological(problem.V, 1, mirror)
+            fixed = [*fixed, (2 * on_line, 0.0)]
+            self._antisymmetric = self._own_rows(2 * on_line + 1)
+        self._fixed_rows = np.concatenate([np.empty(0, PETSc.IntType), *(self._own_rows(dofs) for dofs, _ in fixed)])
+        self._fixed_values = np.concatenate(
+            [np.empty(0), *(np.full(len(self._own_rows(dofs)), value) for dofs, value in fixed)]
+        )
         self.reaction: Array = np.zeros(2)
         self._inverted = self._shifted = False
         self._not_a_number = ""  # what is not, in the iterate last rejected
@@ -149,6 +158,12 @@ class Solver:
         snes.setLineSearchPreCheck(self._limit)
         snes.setFromOptions()
         return snes
+
+    def _own_rows(self, dofs: NDArray[np.int32]) -> NDArray[np.int64]:
+        """Return the global rows of local unknowns that are this rank's, the bone's left out."""
+        rows = self.layout.rows[dofs] - self._first_row
+        mine = (rows >= 0) & (rows < self.layout.local_size) & ~np.isin(self.layout.rows[dofs], self.layout.rigid_rows)
+        return np.asarray(self.layout.rows[dofs][mine])
 
     # -- callbacks -------------------------------------------------------------------------------------
     def _prescribed(self) -> tuple[NDArray[np.int64], Array]:
@@ -186,9 +201,9 @@ class Solver:
                 self._blame(x)
                 f.set(_OUTSIDE / np.sqrt(self.layout.global_size))
                 return
-            self.reaction = -self.layout.rigid_part(f)
+            self.reaction = -self._copies * self.layout.rigid_part(f)
             if self.layout.owns_rigid and self.control.y is None:
-                f.array_w[-1] += self.control.force
+                f.array_w[-1] += self.control.force / self._copies[1]
             rows, values = self._prescribed()
             local = rows - self._first_row
             f.array_w[local] = self.stiffness * (x.array_r[local] - values)
@@ -198,8 +213,9 @@ class Solver:
         suspects = {
             "displacement": x.array_r,
             "air gaps": self.problem.d_eq.x.array,
-            "history": self.problem.anchor.x.array,
         }
+        if self.problem.anchor is not None:
+            suspects["history"] = self.problem.anchor.x.array
         for name, values in suspects.items():
             if not self.layout.comm.allreduce(bool(np.isfinite(values).all()), op=MPI.LAND):
                 self._not_a_number = name
@@ -312,7 +328,8 @@ class Solver:
         start = self.x.array_r.copy()
         self._inverted, self._not_a_number = False, ""
         reason = self._run(shifted=False)
-        if reason <= 0 and not creep:  # the other guess for the points on the cone, which is then kept
+        friction = self.problem.anchor is not None
+        if reason <= 0 and not creep and friction:  # the other guess for the points on the cone, which is then kept
             self.x.array_w[:] = start
             self.problem.guess.value = SLIPS if self.problem.guess.value == STICKS else STICKS
             self._stale = True
@@ -352,6 +369,12 @@ class Solver:
     def prescribed_rows(self) -> NDArray[np.int64]:
         """Return the global numbers of this rank's prescribed rows."""
         return self._prescribed()[0]
+
+    def antisymmetric_rows(self) -> NDArray[np.int64] | None:
+        """Return this rank's rows that are zero in disturbances which the mirror turns round; None without mirror."""
+        if self._antisymmetric is None or not self.layout.owns_rigid:
+            return self._antisymmetric
+        return np.concatenate([self._antisymmetric, self.layout.rigid_rows])
 
     def imbalance(self) -> float:
         """Return the largest force that the last solve left at a node or on the bone, over ``force_scale``."""

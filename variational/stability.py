@@ -16,6 +16,9 @@ needs no iteration and gives no rate.
 Three things it does not say. K is that of frozen air gaps; how these react is the gain of the loop over the scales
 (:mod:`~variational.coupling`), below one where it is stable. Points on the friction cone are taken for slipping on in
 their direction, the softer choice. And a disturbance is infinitely small.
+
+Of half a body that is its own mirror image, the disturbances that keep the symmetry and those that turn it round are
+examined one after the other: the tangent of the whole does not couple the two.
 """
 
 from dataclasses import dataclass
@@ -32,6 +35,7 @@ from variational.problem import SLIPS
 from variational.solver import Solver
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.int64]
 _ETA = 2e8  # Pa/m, of the order of the softest disturbances of a fingerpad
 _MOST = 50  # vectors
 _ROUGH = 0.1  # residual of a Ritz pair over its own growth above which it says nothing
@@ -64,12 +68,7 @@ class StabilityCheck:
         u, v = ufl.TrialFunction(problem.V), ufl.TestFunction(problem.V)
         self._mass = fem.form(ufl.dot(u, v) * problem.surface.measure, jit_options=jit.OPTIONS)
 
-    def _free(self, A: PETSc.Mat, diagonal: float) -> PETSc.Mat:
-        """Replace prescribed rows and columns by a diagonal."""
-        A.zeroRowsColumns(self.solver.prescribed_rows(), diag=diagonal)
-        return A
-
-    def _tangent(self, eta: float) -> PETSc.Mat:
+    def _tangent(self, eta: float, rows: Rows) -> PETSc.Mat:
         problem, A = self.solver.problem, self.solver.layout.create_matrix()
         guess = float(problem.guess.value)
         problem.guess.value, problem.eta.value = SLIPS, eta
@@ -77,13 +76,15 @@ class StabilityCheck:
             self.solver.assemble_tangent(A)
         finally:
             problem.guess.value, problem.eta.value = guess, 0.0
-        return self._free(A, self.solver.stiffness)
+        A.zeroRowsColumns(rows, diag=self.solver.stiffness)
+        return A
 
-    def _mass_matrix(self) -> PETSc.Mat:
+    def _mass_matrix(self, rows: Rows) -> PETSc.Mat:
         A = self.solver.layout.create_matrix()
         self.solver.layout.add_to_matrix(A, self._mass, (0, 0))
         A.assemble()
-        return self._free(A, 0.0)
+        A.zeroRowsColumns(rows, diag=0.0)
+        return A
 
     def negative_pivots(self) -> int:
         """Count the negative eigenvalues of a symmetric tangent, by LDL^T of MUMPS; collective.
@@ -92,7 +93,7 @@ class StabilityCheck:
             ValueError: the tangent is not symmetric, as where points slip.
             NotConverged: the factorisation failed.
         """
-        K = self._tangent(0.0)
+        K = self._tangent(0.0, self.solver.prescribed_rows())
         if not K.isSymmetric(1e-9 * K.norm(PETSc.NormType.INFINITY)):
             raise ValueError("the tangent is not symmetric: its inertia says nothing of stability")
         K.setOption(PETSc.Mat.Option.SYMMETRIC, True)
@@ -129,15 +130,21 @@ class StabilityCheck:
         Raises:
             NotConverged: the factorisation failed.
         """
+        kinds = [self.solver.prescribed_rows(), self.solver.antisymmetric_rows()]
         with self.solver.timings.phase("stability"):
-            K, M = self._tangent(eta), self._mass_matrix()
-            ksp = self._factorise(K, PETSc.PC.Type.LU)
-            result = self._arnoldi(ksp, M, eta)
-            for used in (ksp, K, M):
-                used.destroy()
+            found = [self._least(rows, eta) for rows in kinds if rows is not None]
+        return min(found, key=lambda stability: stability.lambda_min)
+
+    def _least(self, rows: Rows, eta: float) -> Stability:
+        """Examine the disturbances that are zero in the rows given."""
+        K, M = self._tangent(eta, rows), self._mass_matrix(rows)
+        ksp = self._factorise(K, PETSc.PC.Type.LU)
+        result = self._arnoldi(ksp, M, rows, eta)
+        for used in (ksp, K, M):
+            used.destroy()
         return result
 
-    def _start(self) -> PETSc.Vec:
+    def _start(self, rows: Rows) -> PETSc.Vec:
         """Return a disturbance without symmetry that depends on position alone, not on the partition."""
         problem, layout = self.solver.problem, self.solver.layout
         x = problem.V.tabulate_dof_coordinates()[:, :2] / 1e-3
@@ -145,12 +152,11 @@ class StabilityCheck:
         nodal = sum(np.sin(k * phases + k**2) for k in (1, 3, 8, 21, 55))
         start = layout.create_vector()
         layout.from_nodes(np.asarray(nodal).ravel(), np.array([0.3, 1.0]), start)
-        rows = self.solver.prescribed_rows() - start.getOwnershipRange()[0]
-        start.array_w[rows] = 0.0
+        start.array_w[rows - start.getOwnershipRange()[0]] = 0.0
         return start
 
-    def _arnoldi(self, ksp: PETSc.KSP, M: PETSc.Mat, eta: float) -> Stability:
-        w = self._start()
+    def _arnoldi(self, ksp: PETSc.KSP, M: PETSc.Mat, rows: Rows, eta: float) -> Stability:
+        w = self._start(rows)
         Mw = w.duplicate()
         M.mult(w, Mw)
         ksp.solve(Mw, w)  # into the range of the operator: what does not move the skin is left out

@@ -45,7 +45,8 @@ class Walk:
         solver.solve(creep=True)
         self.state = self.observer.state()
         balance = self.book.step(self.state, solver.bone, solver.reaction, np.array([d_eq]))
-        problem.surface.set_history(problem.anchor, self.state.anchor)
+        if problem.anchor is not None:
+            problem.surface.set_history(problem.anchor, self.state.anchor)
         return balance
 
 

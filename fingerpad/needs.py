@@ -1,0 +1,68 @@
+"""What a scene needs of the model, decided from the scene alone.
+
+What cannot change any number asked for is left out, and each omission comes with its reason. Nothing here is an
+approximation but what the finite elements make of it: the numbers stay those of the whole model.
+"""
+
+from dataclasses import asdict, dataclass, replace
+
+from fingerpad.scene import Scene
+
+
+@dataclass(frozen=True)
+class Omission:
+    """A part of the model that is left out, and why."""
+
+    what: str
+    reason: str
+
+    def __str__(self) -> str:
+        """Return both in words."""
+        return f"{self.what} left out: {self.reason}"
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The parts of the model that a scene needs."""
+
+    voltage: bool
+    """Attraction in the forms, and the loop over the scales."""
+    friction: bool
+    """Tangential tractions and their history."""
+    receptors: bool
+    """Receptor sites, and elements small enough for them."""
+    both_halves: bool
+    """The finger on both sides of x = 0."""
+    omitted: tuple[Omission, ...]
+
+    def table(self) -> list[dict[str, str]]:
+        """Return the omissions, ready for JSON."""
+        return [asdict(omission) for omission in self.omitted]
+
+    def with_both_halves(self) -> "Plan":
+        """Return the plan for the whole finger."""
+        return replace(self, both_halves=True, omitted=tuple(o for o in self.omitted if o != _HALF))
+
+
+_HALF = Omission(
+    "the half at x < 0, but in tables and pictures (displacement.bp, stress.bp and sed.bp hold the other)",
+    "no load moves the bone sideways, and the finger is its own mirror image",
+)
+
+
+def plan(scene: Scene) -> Plan:
+    """Return what a scene needs; a pure function of it."""
+    voltage = any(load.voltage for load in scene.loads())
+    friction, receptors = scene.friction > 0, scene.output.receptors
+    omitted = []
+    if not voltage:
+        omitted.append(Omission("attraction and the air gaps of the ridges", "no load has a voltage"))
+    if not friction:
+        omitted.append(Omission("friction and its history", "the friction coefficient is 0"))
+    if not receptors:
+        omitted.append(Omission("receptor sites and their fine elements", "output.receptors is false"))
+    # A state is carried to another mesh whole.
+    both_halves = scene.accuracy is not None or any(load.bone_x for load in scene.loads())
+    if not both_halves:
+        omitted.append(_HALF)
+    return Plan(voltage, friction, receptors, both_halves, tuple(omitted))

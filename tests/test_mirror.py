@@ -1,0 +1,239 @@
+"""Half a body in the place of one that is its own mirror image: exact on a mirrored mesh, and the finger's numbers."""
+
+import csv
+from dataclasses import replace
+
+import basix.ufl
+import dolfinx
+import numpy as np
+import pytest
+import ufl
+from mpi4py import MPI
+
+from fingerpad import mirror, needs
+from fingerpad import run as run_module
+from fingerpad.needs import plan
+from fingerpad.run import run
+from fingerpad.scene import Scene, from_data
+from variational.continuation import Continuation, Target
+from variational.coupling import Coupling
+from variational.energy import EnergyBook
+from variational.output import Snapshot
+from variational.penalty import Penalty
+from variational.problem import Interface, Ogden, Problem
+from variational.quantities import Observer, RidgeLoads
+from variational.roughness.bam import BearingArea
+from variational.solver import Solver
+from variational.stability import StabilityCheck
+from variational.surface import Surface
+
+H_0, WIDTH, HEIGHT, FORCE = 0.514e-6, 0.5e-3, 0.5e-3, 3.0
+MU_F = 0.02  # so little that some points slip
+SKIN, BOTTOM, TOP, LINE = 1, 2, 3, 4
+
+
+# -- the plan ----------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("loads", "both"),
+    [
+        ([{"f_ext": 5.0}, {"voltage": 100.0}], False),
+        ([{"f_ext": 5.0, "bone_x": 0.0}], False),
+        ([{"f_ext": 5.0}, {"bone_x": -1e-3}, {"bone_x": 0.0}], True),
+    ],
+)
+def test_half_the_finger_where_the_bone_never_moves_sideways(loads, both):
+    history = [{"name": "load"} | load for load in loads]
+    needed = plan(from_data({"history": history}))
+    assert needed.both_halves is both
+    assert any("mirror image" in omission.reason for omission in needed.omitted) is not both
+
+
+def test_sliding_needs_both_halves():
+    assert plan(Scene()).both_halves
+
+
+def test_plan_for_the_whole_finger_says_nothing_of_halves():
+    needed = plan(from_data({"history": [{"name": "press", "f_ext": 5.0}]}))
+    assert [o.reason for o in needed.with_both_halves().omitted] == ["no load has a voltage"]
+
+
+# -- a block and its half ----------------------------------------------------------------------------------
+def mesh_of(half: bool, n: int = 6) -> dolfinx.mesh.Mesh:
+    """Return a block, 2 n x n rectangles halved, its own mirror image to the last diagonal, or its right half."""
+    x, y = np.meshgrid(np.linspace(0, WIDTH, n + 1), np.linspace(0, HEIGHT, n + 1))
+    points = np.column_stack([x.ravel(), y.ravel()])
+    a = np.arange(n * (n + 1)).reshape(n, n + 1)[:, :-1].ravel()
+    cells = np.concatenate([np.stack([a, a + 1, a + n + 2], 1), np.stack([a, a + n + 2, a + n + 1], 1)])
+    if not half:
+        nothing = np.zeros(len(cells))
+        whole = mirror.snapshot(Snapshot(points, points, cells, nothing, nothing))
+        points, cells = whole.x, whole.triangles
+    element = ufl.Mesh(basix.ufl.element("Lagrange", "triangle", 1, shape=(2,)))
+    return dolfinx.mesh.create_mesh(MPI.COMM_SELF, cells, x=points, e=element)
+
+
+class Block:
+    """A barrelling block pressed with friction and charged; what it ended in."""
+
+    def __init__(self, half: bool) -> None:
+        mesh = mesh_of(half)
+        cells = np.arange(mesh.topology.index_map(2).size_local, dtype=np.int32)
+        cell_tags = dolfinx.mesh.meshtags(mesh, 2, cells, np.full(len(cells), SKIN, dtype=np.int32))
+        mesh.topology.create_connectivity(1, 2)
+        where = {BOTTOM: lambda x: x[1] < 1e-9, TOP: lambda x: x[1] > HEIGHT - 1e-9}
+        if half:
+            where[LINE] = lambda x: x[0] < 1e-9
+        found = {tag: dolfinx.mesh.locate_entities_boundary(mesh, 1, place) for tag, place in where.items()}
+        facets = np.concatenate(list(found.values()))
+        values = np.repeat(np.array(list(found), dtype=np.int32), [len(f) for f in found.values()])
+        order = np.argsort(facets)
+        facet_tags = dolfinx.mesh.meshtags(mesh, 1, facets[order], values[order])
+        surface = Surface(mesh, facet_tags, {0: BOTTOM})
+        interface = Interface(Penalty(1.5e12, 5e10), MU_F, H_0)
+        problem = Problem(mesh, cell_tags, surface, {SKIN: Ogden(86.76e3, -14.53, 0.48)}, interface)
+        line = facet_tags.find(LINE) if half else None
+        self.solver = Solver(problem, facet_tags.find(TOP), FORCE, 1e-11, mirror=line)
+        coupling = Coupling(self.solver, Observer(problem, half), BearingArea(H_0), tolerance=1e-10)
+        self.path = path = Continuation(coupling)
+        copies = 2 if half else 1
+        book = EnergyBook(problem, path.surface_state, self.solver.bone, self.solver.reaction, coupling.d_eq, copies)
+        path.run(Target("press", f_ext=FORCE))
+        path.run(Target("charge", voltage=100.0))
+        self.energy = book.step(path.surface_state, self.solver.bone, self.solver.reaction, coupling.d_eq)
+        loads = path.observer.ridge_loads(path.surface_state)
+        self.loads = mirror.loads(loads) if half else loads
+
+
+@pytest.fixture(scope="module")
+def blocks():
+    return Block(True), Block(False)
+
+
+CLOSE = 1e-8  # relative: imbalances of 1e-11 of the load over some hundred nodes and twenty steps
+
+
+@pytest.mark.parametrize("name", ["f_contact", "f_attraction", "length"])
+def test_half_block_bears_what_the_whole_does(blocks, name):
+    half, whole = (getattr(block.loads, name) for block in blocks)
+    assert half == pytest.approx(whole, rel=CLOSE)
+
+
+def test_half_block_sinks_as_the_whole(blocks):
+    half, whole = blocks
+    assert half.solver.bone[1] == pytest.approx(whole.solver.bone[1], rel=CLOSE)
+    assert half.solver.reaction == pytest.approx([0.0, FORCE], rel=CLOSE)
+    assert half.path.coupling.d_eq == pytest.approx(whole.path.coupling.d_eq, rel=CLOSE)
+
+
+@pytest.mark.parametrize("name", ["stored", "external", "voltage", "air_gap", "dissipation"])
+def test_half_block_s_energies_are_the_whole_s(blocks, name):
+    half, whole = (getattr(block.energy, name) for block in blocks)
+    assert half == pytest.approx(whole, rel=1e-6, abs=1e-9 * abs(blocks[1].energy.stored))
+
+
+def test_half_block_slips_as_the_whole(blocks):
+    assert blocks[0].path.slip == pytest.approx(blocks[1].path.slip)
+    assert blocks[0].path.slip[0] > 0
+
+
+def test_half_block_never_slips_one_way(blocks):
+    """Where all its points slip forth the image's slip back."""
+    slips = []
+    for block in blocks:
+        state = block.path.surface_state
+        slips.append(block.path.observer.slip(replace(state, t_t=MU_F * state.p_n)))
+    assert slips == [(1.0, False), (1.0, True)]
+
+
+def test_stability_of_the_half_is_that_of_the_whole(blocks):
+    """The least eigenvalue, of whichever symmetry; Ritz pairs settle to 1e-6 of the largest growth."""
+    half, whole = (StabilityCheck(block.solver).check() for block in blocks)
+    assert half.settled and whole.settled
+    assert half.lambda_min == pytest.approx(whole.lambda_min, rel=1e-4)
+
+
+def test_half_block_has_half_the_unknowns(blocks):
+    half, whole = (block.solver.layout.global_size for block in blocks)
+    assert half < 0.55 * whole
+
+
+# -- mirrored numbers --------------------------------------------------------------------------------------
+def test_mirrored_ridges():
+    ramp = np.array([1.0, 2.0, 3.0])
+    loads = mirror.loads(RidgeLoads(ramp, ramp, ramp, ramp, ramp))
+    assert mirror.names([0, 1, 2]) == [-2, -1, 0, 1, 2]
+    assert loads.f_contact.tolist() == loads.length.tolist() == [3, 2, 2, 2, 3]
+    assert loads.f_friction.tolist() == [-3, -2, 0, 2, 3]
+
+
+def test_mirrored_snapshot_is_one_body():
+    """No edge on the line belongs to one triangle only, and what moves right moves left."""
+    points = np.array([[0, 0], [1, 0], [0, 1.0]])
+    whole = mirror.snapshot(Snapshot(points, points, np.array([[0, 1, 2]]), np.ones(1), np.ones(1, dtype=np.int32)))
+    assert whole.x.tolist() == whole.u.tolist() == [[0, 0], [1, 0], [0, 1], [-1, 0]]
+    assert whole.triangles.tolist() == [[0, 1, 2], [2, 3, 0]]
+    areas = [np.linalg.det(whole.x[t[1:]] - whole.x[t[0]]) for t in whole.triangles]
+    assert areas == [1, 1]
+
+
+# -- the finger --------------------------------------------------------------------------------------------
+MESH = {"contact": 12e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 0.8e-3}
+HISTORY = [{"name": "press", "bone_height": -60e-6}, {"name": "charge", "voltage": 60.0}]
+
+
+def columns(folder, name: str) -> list[dict[str, str]]:
+    with (folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.fixture(scope="module")
+def fingers(tmp_path_factory):
+    """Summaries and folders of a charged finger, by half and whole."""
+    folders = [tmp_path_factory.mktemp(name) for name in ("half", "whole")]
+    scene = from_data({"mesh": MESH, "history": HISTORY})
+    half = run(scene, folders[0], MPI.COMM_WORLD)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(run_module, "plan", lambda scene: replace(needs.plan(scene), both_halves=True))
+        whole = run(scene, folders[1], MPI.COMM_WORLD)
+    assert "failure" not in half and "failure" not in whole
+    return (half, whole), folders
+
+
+@pytest.mark.parametrize(
+    ("name", "rel"), [("f_ext", 0.03), ("f_contact", 0.03), ("f_electrostatic", 0.03), ("contact_length", 0.1)]
+)
+def test_half_the_finger_has_the_whole_s_numbers(fingers, name, rel):
+    """A ridge's contact is three facets of 12 um long, and no facet of one mesh is one of the other: 3 % of forces.
+
+    10 % of the length: its edge is trapped between nodes. Under the whole's central ridge it stays at three facets
+    while the force grows by a third; what the two meshes have alike is tested on the block, to roundoff.
+    """
+    half, whole = fingers[0]
+    key = name if name == "f_ext" else f"normal_{name}"
+    assert half[key] == pytest.approx(whole[key], rel=rel)
+
+
+def test_half_the_finger_has_the_whole_s_tables(fingers):
+    _, (half, whole) = fingers
+    for name in ("ridges", "receptors"):
+        mine, other = columns(half, name), columns(whole, name)
+        assert list(mine[0]) == list(other[0])
+        last = [[row["ridge"] for row in rows if row["step"] == rows[-1]["step"]] for rows in (mine, other)]
+        assert last[0] == last[1]
+    sed = {row["ridge"]: row for row in columns(half, "receptors")}
+    assert sed["1"]["meissner_left"] == sed["-1"]["meissner_right"]
+    assert sed["2"]["merkel_sed"] == sed["-2"]["merkel_sed"]
+    assert {path.name for path in half.iterdir()} == {path.name for path in whole.iterdir()}
+
+
+def test_half_the_finger_costs_half(fingers):
+    (half, whole), _ = fingers
+    assert half["unknowns"] < 0.55 * whole["unknowns"]
+    assert half["normal_f_t"] == 0.0
+
+
+def test_picture_shows_the_whole_finger(fingers):
+    _, (half, whole) = fingers
+    with np.load(half / "finger_charge.npz") as mine, np.load(whole / "finger_charge.npz") as other:
+        assert np.ptp(mine["x"][:, 0]) == pytest.approx(np.ptp(other["x"][:, 0]), rel=1e-3)
+        assert mine["merkel"] == pytest.approx(other["merkel"], abs=5e-6)

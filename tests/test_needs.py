@@ -1,0 +1,204 @@
+"""What a scene does not need is left out, with a reason; the numbers stay those of the whole model."""
+
+import json
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from fingerpad import needs
+from fingerpad import run as run_module
+from fingerpad.needs import plan
+from fingerpad.run import run
+from fingerpad.scene import Scene, from_data
+from geometry import fingertip, tags
+from geometry.benchmarks import ridge
+from geometry.mesh import load
+from geometry.parameters import Fingertip
+from variational.augmented import AugmentedLagrangian
+from variational.continuation import Continuation, Target
+from variational.coupling import Coupling
+from variational.electroadhesion import ELECTROSTATIC
+from variational.nitsche import Nitsche
+from variational.penalty import Penalty
+from variational.problem import Interface, Ogden, Problem
+from variational.quantities import Observer, RidgeLoads
+from variational.roughness.bam import BearingArea
+from variational.solver import Solver
+from variational.surface import Surface
+
+H_0, FORCE = 0.514e-6, 5.0
+MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
+PRESS = {"name": "press", "f_ext": 2.0}
+
+
+# -- the plan ----------------------------------------------------------------------------------------------
+def test_default_scene_needs_everything():
+    needed = plan(Scene())
+    assert needed.voltage and needed.friction and needed.receptors
+    assert needed.omitted == ()
+
+
+@pytest.mark.parametrize(
+    ("data", "part", "reason"),
+    [
+        ({"voltage": 0.0}, "voltage", "no load has a voltage"),
+        ({"history": [PRESS, {"name": "off", "voltage": 0.0}]}, "voltage", "no load has a voltage"),
+        ({"friction": 0.0}, "friction", "the friction coefficient is 0"),
+        ({"output": {"receptors": False}}, "receptors", "output.receptors is false"),
+    ],
+)
+def test_what_cannot_matter_is_left_out_with_its_reason(data, part, reason):
+    needed = plan(from_data(data))
+    assert getattr(needed, part) is False
+    assert reason in [omission.reason for omission in needed.omitted]
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"history": [PRESS, {"name": "on", "voltage": 10.0}, {"name": "off", "voltage": 0.0}]},
+        {"friction": 1e-6},
+        {},
+    ],
+)
+def test_what_matters_for_a_while_stays(data):
+    """A voltage that is switched off again, a little friction."""
+    needed = plan(from_data({"friction": 0.2} | data))
+    assert needed.voltage == any(load.voltage for load in from_data(data).loads())
+    assert needed.friction
+
+
+def test_wanted_output_is_no_new_name_for_old_runs():
+    """A scene that wants everything has the parameters it had before the key was there, and finds its runs again."""
+    assert "output" not in Scene().parameters()
+    assert from_data({"output": {"receptors": False}}).parameters()["output"] == {"receptors": False}
+
+
+# -- forms -------------------------------------------------------------------------------------------------
+@pytest.fixture(scope="module")
+def body():
+    """One papillary ridge."""
+    return load(MPI.COMM_WORLD, partial(ridge, 20e-6))
+
+
+class Path:
+    """A ridge pressed and slid without voltage; what it ended in and what that took."""
+
+    def __init__(self, body, interface: Interface) -> None:
+        surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
+        skin = {tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53, 0.48)}
+        self.problem = Problem(body.mesh, body.cell_tags, surface, skin, interface)
+        self.solver = Solver(self.problem, body.facet_tags.find(tags.BONE_RIM), FORCE)
+        closure = BearingArea(H_0) if interface.attraction else None
+        self.path = Continuation(Coupling(self.solver, Observer(self.problem), closure))
+        self.path.run(Target("press", f_ext=FORCE))
+        self.path.run(Target("slide", bone_x=20e-6))
+
+    @property
+    def loads(self) -> RidgeLoads:
+        return self.path.observer.ridge_loads(self.path.surface_state)
+
+    @property
+    def compiled(self) -> tuple[int, int]:
+        """Constants and fields that the compiled tangent reads."""
+        form = self.problem.jacobian.ufcx_form
+        return form.num_constants, form.num_coefficients
+
+
+@pytest.mark.parametrize("law", [Penalty(1.5e12, 5e10), Nitsche(10.0)], ids=["penalty", "nitsche"])
+def test_forms_without_voltage(body, law):
+    """To the last bit the state at 0 V of the forms with attraction; they read two constants and one field less."""
+    whole, less = Path(body, Interface(law, 0.25, H_0, ELECTROSTATIC)), Path(body, Interface(law, 0.25, H_0, None))
+    assert np.array_equal(whole.problem.u.x.array, less.problem.u.x.array)
+    assert less.solver.counts == whole.solver.counts
+    assert [a - b for a, b in zip(whole.compiled, less.compiled, strict=True)] == [2, 1]
+    assert np.isnan(less.path.coupling.d_eq).all() and not np.isnan(whole.path.coupling.d_eq).any()
+
+
+def test_one_solve_a_step_without_voltage(body):
+    less = Path(body, Interface(Penalty(1.5e12, 5e10), 0.25, H_0, None))
+    assert less.path.coupling.history.changes == [0.0]
+
+
+def test_contact_of_an_augmented_lagrangian_is_corrected_without_voltage(body):
+    """Its sweeps are not those of the scales: depth and slip stay below the tolerance."""
+    law = AugmentedLagrangian(1.5e13, 5e11, 5e-9)
+    errors = Path(body, Interface(law, 0.25, H_0, None)).path.coupling.history.errors
+    assert len(errors) > 1 and errors[-1] <= law.tolerance < errors[0]
+
+
+@pytest.mark.parametrize("law", [Penalty(1.5e12, 5e10), Nitsche(10.0)], ids=["penalty", "nitsche"])
+def test_forms_without_friction(body, law):
+    """The limit of vanishing friction, but for 1e-9 of it times some ten steps; fewer fields, no more work."""
+    whole, less = Path(body, Interface(law, 1e-9, H_0, None)), Path(body, Interface(law, 0.0, H_0, None))
+    largest = np.abs(less.problem.u.x.array).max()
+    np.testing.assert_allclose(less.problem.u.x.array, whole.problem.u.x.array, rtol=0, atol=1e-7 * largest)
+    assert less.loads.length == pytest.approx(whole.loads.length, rel=1e-6)
+    assert not less.path.surface_state.t_t.any()
+    assert less.problem.anchor is None
+    assert less.compiled[0] < whole.compiled[0] and less.compiled[1] == whole.compiled[1] - 1
+    assert less.solver.counts.factorisations <= whole.solver.counts.factorisations
+
+
+def test_all_points_slip_without_friction(body):
+    """Whichever way: the part of the points that slip is one, not two."""
+    assert Path(body, Interface(Penalty(1.5e12, 5e10), 0.0, H_0, None)).path.slip == (1.0, True)
+
+
+# -- runs --------------------------------------------------------------------------------------------------
+def summary_of(data, folder, monkeypatch=None, **parts) -> dict:
+    """Run a scene, with parts of the model that the plan would leave out if ``parts`` say so."""
+    scene = from_data({"mesh": MESH} | data)
+    if monkeypatch is not None:
+        monkeypatch.setattr(run_module, "plan", lambda scene: replace(needs.plan(scene), **parts))
+    summary = run(scene, folder, MPI.COMM_WORLD)
+    assert "failure" not in summary
+    return summary
+
+
+RESULTS = ["bone_height", "f_contact", "contact_length", "ridges_in_contact"]
+
+
+@pytest.fixture(scope="module")
+def pressed(tmp_path_factory):
+    """A finger pressed by displacement without voltage."""
+    folder = tmp_path_factory.mktemp("pressed")
+    return folder, summary_of({"history": [{"name": "press", "bone_height": -60e-6}]}, folder)
+
+
+def test_run_without_voltage(pressed, tmp_path, monkeypatch):
+    """The same numbers to the last bit as with attraction and closure; what was left out is said in three places."""
+    folder, less = pressed
+    history = {"history": [{"name": "press", "bone_height": -60e-6}]}
+    whole = summary_of(history, tmp_path, monkeypatch, voltage=True)
+    assert [less[f"normal_{name}"] for name in RESULTS] == [whole[f"normal_{name}"] for name in RESULTS]
+    assert less["factorisations"] == whole["factorisations"]
+    assert {"what": "attraction and the air gaps of the ridges", "reason": "no load has a voltage"} in less["omitted"]
+    assert json.loads((folder / "summary.json").read_text(encoding="utf-8"))["omitted"] == less["omitted"]
+    assert "left out: no load has a voltage" in (folder / "run.log").read_text(encoding="utf-8")
+
+
+def test_run_without_receptors(pressed, tmp_path, capsys):
+    """Elements at the receptors are far from the contact: its numbers move by less than 1 % on this coarse mesh."""
+    _, whole = pressed
+    (tmp_path / "receptors.csv").write_text("of an earlier run\n", encoding="utf-8")
+    history = [{"name": "press", "bone_height": -60e-6}]
+    less = summary_of({"history": history, "output": {"receptors": False}}, tmp_path)
+    assert less["normal_f_contact"] == pytest.approx(whole["normal_f_contact"], rel=0.01)
+    assert less["unknowns"] < whole["unknowns"]
+    assert not (tmp_path / "receptors.csv").exists()
+    assert (tmp_path / "finger_press.png").exists()
+    assert capsys.readouterr().out.count("output.receptors is false") == 1
+
+
+def test_unknowns_spared_without_receptors(coarse):
+    """With elements of 20 um at the sites, as by default, they are a twelfth of this coarse mesh and more."""
+    size = coarse.model_copy(update={"receptor": 20e-6})
+    cells = [
+        load(MPI.COMM_WORLD, partial(fingertip.build, Fingertip(), size, wanted)).mesh.topology.index_map(2).size_local
+        for wanted in (True, False)
+    ]
+    assert cells[1] < 11 / 12 * cells[0]
