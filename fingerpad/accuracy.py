@@ -11,9 +11,9 @@ at a time gives each its share of the error (:mod:`fingerpad.estimate`):
 * ``steps``: of the loads, which matters where friction keeps a history, to normal contact; from a second path, up to
   there, on the first mesh. Full slip knows no path.
 
-Knobs whose share is too large are halved, as often as their order asks for, the states solved again, and those knobs'
-shares estimated anew. It ends when the estimate, which is always one of a real refinement, is within what is allowed,
-or says that it is not. A state in which another number of ridges touches is noted; it shows as a large share.
+The knobs with the largest shares are halved, the states solved again, and those knobs' shares estimated anew. It ends
+when the estimate, which is always one of a real refinement, is within what is allowed, or says that it is not. A state
+in which another number of ridges touches is noted; it shows as a large share.
 
 Not estimated: what a state of normal contact owes to its friction history having been that of the first mesh, and the
 penalty, which is part of the model here.
@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from fingerpad.estimate import Knob, errors, halvings
+from fingerpad.estimate import Knob, errors, to_halve
 from fingerpad.interrupt import Interrupted
 from fingerpad.needs import plan
 from fingerpad.scene import Load, Scene
@@ -39,7 +39,7 @@ from variational.transfer import Carried, carry
 
 STILL = 1e-12  # m, below which the bone has not moved sideways
 _SIZES = {"contact": ("contact",), "bulk": ("growth", "interface", "coarsest"), "receptor": ("receptor",)}
-_ROUNDS = 4  # of refinement
+_ROUNDS = 6  # of refinement
 _WORDS = {"normal": "normal contact", "slip": "full slip"}
 
 
@@ -190,18 +190,18 @@ class Search:
         Raises:
             Interrupted: ``pause`` was asked to.
         """
-        todo = dict.fromkeys(self.knobs, 1)
+        todo = list(self.knobs)
         for round_ in range(_ROUNDS + 1):
             try:
                 for key in todo:
                     self._see(key)
-                todo = halvings(self.knobs, self.allowed())
+                todo = to_halve(self.knobs, self.allowed())
                 self._tell()
                 if not todo:
                     return
                 if round_ == _ROUNDS:
                     break
-                halved = {key: n + todo.get(key, 0) for key, n in self.halved.items()}
+                halved = {key: n + (key in todo) for key, n in self.halved.items()}
                 self.base, self.halved = self._at(halved), halved
             except Interrupted:
                 raise

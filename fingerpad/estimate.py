@@ -28,8 +28,6 @@ import numpy as np
 
 Values = Mapping[str, float]
 _LOWEST, _HIGHEST = 1.0, 2.0  # orders that are believed
-_ROUNDOFF = 1e-9  # of a number of halvings
-_MOST_HALVINGS = 2  # of a knob at a time: the order is that of small changes
 
 
 @dataclass
@@ -72,28 +70,28 @@ def errors(knobs: Mapping[str, Knob], names: Sequence[str]) -> dict[str, float]:
     return {name: sum(knob.share(name) for knob in knobs.values() if name in knob.changes[-1][1]) for name in names}
 
 
-def halvings(knobs: Mapping[str, Knob], allowed: Values) -> dict[str, int]:
-    """Return how often each knob is to be halved for errors within what is allowed.
+def to_halve(knobs: Mapping[str, Knob], allowed: Values) -> list[str]:
+    """Return the knobs to halve once more on the way to errors within what is allowed, by name.
 
-    Each knob may spend an equal part of what is allowed; by its order it is known how small it must be for that.
+    Of each quantity that is not within it, as few as will do by their orders, those with the largest shares first, and
+    none that spends no more than its equal part. One halving at a time, since the order is that of small changes, and a
+    mesh finer than need be costs more than one more round.
 
     Args:
         knobs: that can be halved, with what halving them changed.
         allowed: largest error of each quantity, in its unit.
 
     Returns:
-        Knobs to halve and how often, at most twice; empty if every error is within what is allowed.
+        Empty if every error is within what is allowed.
     """
-    found: dict[str, int] = {}
+    found: set[str] = set()
     estimate = errors(knobs, list(allowed))
     for name, most in allowed.items():
-        if estimate[name] <= most:
-            continue
-        for key, knob in knobs.items():
-            if name not in knob.changes[-1][1]:
-                continue
-            excess = knob.share(name) * len(knobs) / most
-            if excess > 1:
-                count = int(np.clip(np.ceil(np.log2(excess) / knob.order(name) - _ROUNDOFF), 1, _MOST_HALVINGS))
-                found[key] = max(found.get(key, 0), count)
-    return found
+        left = estimate[name]
+        shares = {key: knob.share(name) for key, knob in knobs.items() if name in knob.changes[-1][1]}
+        for key in sorted(shares, key=shares.__getitem__, reverse=True):
+            if left <= most or shares[key] * len(shares) <= most:
+                break
+            left -= shares[key] * (1 - 2 ** -knobs[key].order(name))
+            found.add(key)
+    return sorted(found)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fingerpad.estimate import Knob, errors, halvings
+from fingerpad.estimate import Knob, errors, to_halve
 
 
 def law(order: float, c: float = 0.1):
@@ -63,16 +63,21 @@ def test_a_knob_that_does_not_act_on_a_quantity_is_left_out():
 
 
 def test_nothing_is_halved_within_the_tolerance():
-    assert halvings({"a": knob(law(1.0), 0)}, {"q": 0.101}) == {}
+    assert to_halve({"a": knob(law(1.0), 0)}, {"q": 0.101}) == []
 
 
-@pytest.mark.parametrize(("allowed", "count"), [(0.099, 1), (0.05, 1), (0.049, 2), (0.001, 2)])
-def test_halvings_follow_from_the_order(allowed, count):
-    """An error of 0.1 of first order needs two halvings below 0.05; more than two at a time are not made."""
-    assert halvings({"a": knob(law(1.0), 0)}, {"q": allowed}) == {"a": count}
+@pytest.mark.parametrize(
+    ("allowed", "keys"), [(0.12, []), (0.1, ["a"]), (0.061, ["a"]), (0.021, ["a"]), (0.019, ["a", "b"])]
+)
+def test_as_few_are_halved_as_will_do(allowed, keys):
+    """Shares of 0.1 and 0.01 become 0.05 and 0.005 at first order; each may spend half of what is allowed."""
+    knobs = {"b": knob(law(1.0, 0.01), 0), "a": knob(law(1.0, 0.1), 0)}
+    assert to_halve(knobs, {"q": allowed}) == keys
 
 
-def test_only_the_knob_that_spends_too_much_is_halved():
-    """0.1 and 0.01 where 0.06 are allowed, 0.03 each."""
-    knobs = {"a": knob(law(1.0, 0.1), 0), "b": knob(law(1.0, 0.01), 0)}
-    assert halvings(knobs, {"q": 0.06}) == {"a": 2}
+def test_one_that_does_not_matter_is_not_halved_for_another():
+    """Of two quantities, the second has no share of the knob b."""
+    other = Knob()
+    other.see(0, {"p": 1.0}, {"p": 0.9})
+    knobs = {"a": knob(law(1.0), 0), "b": other}
+    assert to_halve(knobs, {"q": 0.01}) == ["a"]
