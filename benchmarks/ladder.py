@@ -19,10 +19,11 @@ from matplotlib.figure import Figure
 from benchmarks import arguments
 from benchmarks.paper.scenes import grid
 from benchmarks.paper.style import VOLTAGE, draw
+from benchmarks.rung import ask, kept
 from benchmarks.traces import FORCES, VOLTAGES
 from fingerpad import closed_form
 from fingerpad.ladder import from_summary
-from fingerpad.rungs import Answer
+from fingerpad.processes import End, Pool
 from fingerpad.sweep import progress, result
 
 SIZE = 10e-6  # m
@@ -60,29 +61,31 @@ def name(f_ext: float, voltage: float) -> str:
     return f"{f_ext:g} N/m, {voltage:g} V"
 
 
-def kept(answer: Answer) -> dict[str, Any]:
-    """Return what ladder.json holds of an answer."""
-    return {"summary": answer.summary, "cost": vars(answer.cost), "more": answer.more}
-
-
-def collect(known: dict[str, Any], out: Path, rungs: Sequence[int], file: Path) -> dict[str, Any]:
+def collect(known: dict[str, Any], out: Path, rungs: Sequence[int], jobs: int, file: Path) -> dict[str, Any]:
     """Return the answers by scene and rung, computing what is missing and writing each as it comes."""
-    scenes = grid(SIZE)
-    with progress() as bar:
-        task = bar.add_task("scenes", total=len(scenes))
-        for (f, u), scene in scenes.items():
-            mine = known.setdefault(name(f, u), {})
-            summary = result(scene, out)
-            if summary is not None and summary.get("full_slip"):
-                mine["3"] = kept(from_summary(summary))
-            if 1 in rungs:
-                mine["1"] = kept(closed_form.solve(scene))
-            if 2 in rungs and "2" not in mine:
-                from fingerpad import smooth
+    scenes = {name(f, u): scene for (f, u), scene in grid(SIZE).items()}
+    for key, scene in scenes.items():
+        mine = known.setdefault(key, {})
+        summary = result(scene, out)
+        if summary is not None and summary.get("full_slip"):
+            mine["3"] = kept(from_summary(summary))
+        if 1 in rungs:
+            mine["1"] = kept(closed_form.solve(scene))
+    tables = out.parent / "ridge_tables"
+    tables.mkdir(parents=True, exist_ok=True)
 
-                mine["2"] = kept(smooth.solve(scene, out.parent / "ridge_tables"))
-            file.write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
-            bar.advance(task)
+    def done(key: str, end: End, left: int) -> None:
+        known[key]["2"] = {"failure": f"{end.reason}: {end.message}"} if end.reason else json.loads(end.stdout)
+        file.write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
+        words = known[key]["2"].get("failure", "done")
+        bar.console.print(f"{key}: {words}", highlight=False, markup=False, soft_wrap=True)
+        bar.advance(task)
+
+    missing = [key for key in scenes if 2 in rungs and "summary" not in known[key].get("2", {})]
+    with progress() as bar:
+        task = bar.add_task("rung 2", total=len(missing))
+        Pool[str, End](lambda key: ask(scenes[key], tables, key), jobs).run(missing, done)
+    file.write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
     return known
 
 
@@ -102,7 +105,7 @@ def _table(known: dict[str, Any], rung: int, key: str) -> str:
 
 
 def _takes(known: dict[str, Any], rung: int) -> str:
-    costs = [found[str(rung)]["cost"] for found in known.values() if str(rung) in found]
+    costs = [found[str(rung)]["cost"] for found in known.values() if "cost" in found.get(str(rung), {})]
     if not costs:
         return "not run"
     seconds, factorisations, unknowns = (
@@ -118,12 +121,15 @@ def page(known: dict[str, Any]) -> str:
     parts = [_HEADER.format(one=_takes(known, 1), two=_takes(known, 2), three=_takes(known, 3))]
     parts.append("![Errors of the rungs over force and voltage](ladder.png)")
     for rung in (1, 2):
-        done = [found for found in known.values() if str(rung) in found and "3" in found]
+        done = [found for found in known.values() if "summary" in found.get(str(rung), {}) and "3" in found]
         if not done:
             continue
+        lost = [f"{key} ({found['2']['failure']})" for key, found in known.items() if "failure" in found.get("2", {})]
         parts.append(
             f"## Rung {rung}: {RUNGS[rung]}\n\nErrors in % against the full model, {len(done)} of {len(known)} scenes."
         )
+        if rung == 2 and lost:
+            parts.append(f"No answer: {'; '.join(lost)}.")
         for key, words in NAMES.items():
             parts += [f"### {words}", _table(known, rung, key)]
     return "\n\n".join(part.strip() for part in parts) + "\n"
@@ -157,7 +163,7 @@ def main(given: Sequence[str] | None = None) -> int:
     args = parser.parse_args(given)
     file = args.docs / "ladder.json"
     known = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
-    known = collect(known, args.out, args.only, file)
+    known = collect(known, args.out, args.only, args.jobs, file)
     (args.docs / "ladder.md").write_text(page(known), encoding="utf-8")
     draw(args.docs / "ladder.png", (10.0, 5.6), lambda figure: paint(figure, known))
     compared = sum("3" in found for found in known.values())

@@ -1,0 +1,40 @@
+"""Rung 2's answer to one scene, in a process of its own, as JSON on standard output.
+
+python3 -m benchmarks.rung SCENE.json TABLES LIMIT
+"""
+
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from fingerpad.processes import End, limit_processor_time, run
+from fingerpad.rungs import Answer
+from fingerpad.scene import Scene, from_data
+
+LIMIT = 300.0  # s of processor time; mostly it takes half a minute
+
+
+def kept(answer: Answer) -> dict[str, Any]:
+    """Return what ladder.json holds of an answer."""
+    return {"summary": answer.summary, "cost": vars(answer.cost), "more": answer.more}
+
+
+def ask(scene: Scene, folder: Path, name: str) -> End:
+    """Start the process for a scene, its file in a folder of tables, and wait for it."""
+    file = folder / f"{name}.json"
+    file.write_text(json.dumps(scene.parameters()), encoding="utf-8")
+    return run("benchmarks.rung", [str(file), str(folder), str(LIMIT)], LIMIT)
+
+
+def _main(arguments: Sequence[str]) -> None:
+    limit_processor_time(float(arguments[2]))
+    from fingerpad import smooth
+
+    scene = from_data(json.loads(Path(arguments[0]).read_text(encoding="utf-8")))
+    print(json.dumps(kept(smooth.solve(scene, Path(arguments[1])))))
+
+
+if __name__ == "__main__":
+    _main(sys.argv[1:])
