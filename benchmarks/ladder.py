@@ -84,7 +84,7 @@ def collect(known: dict[str, Any], out: Path, rungs: Sequence[int], jobs: int, f
     missing = [key for key in scenes if 2 in rungs and "summary" not in known[key].get("2", {})]
     with progress() as bar:
         task = bar.add_task("rung 2", total=len(missing))
-        Pool[str, End](lambda key: ask(scenes[key], tables, key), jobs).run(missing, done)
+        Pool[str, End](lambda key: ask(scenes[key], tables), jobs).run(missing, done)
     file.write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
     return known
 

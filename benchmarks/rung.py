@@ -12,6 +12,7 @@ from typing import Any
 from fingerpad.processes import End, limit_processor_time, run
 from fingerpad.rungs import Answer
 from fingerpad.scene import Scene, from_data
+from fingerpad.sweep import key
 
 LIMIT = 300.0  # s of processor time; mostly it takes half a minute
 
@@ -21,9 +22,9 @@ def kept(answer: Answer) -> dict[str, Any]:
     return {"summary": answer.summary, "cost": vars(answer.cost), "more": answer.more}
 
 
-def ask(scene: Scene, folder: Path, name: str) -> End:
+def ask(scene: Scene, folder: Path) -> End:
     """Start the process for a scene, its file in a folder of tables, and wait for it."""
-    file = folder / f"{name}.json"
+    file = folder / f"{key(scene)}.json"
     file.write_text(json.dumps(scene.parameters()), encoding="utf-8")
     return run("benchmarks.rung", [str(file), str(folder), str(LIMIT)], LIMIT)
 
