@@ -1,6 +1,9 @@
 """Small meshes, shared by the tests, and tests on several ranks."""
 
+import os
+import tempfile
 from functools import partial
+from pathlib import Path
 
 import pytest
 from mpi4py import MPI
@@ -14,8 +17,15 @@ from variational import jit
 
 
 def pytest_sessionstart():
-    """Delete compiles that were killed, each of which would block its form."""
+    """Delete compiles that were killed, each of which would block its form; give each rank a folder of its own.
+
+    Ranks that share one delete its old runs under each other's hands.
+    """
     jit.sweep(MPI.COMM_WORLD)
+    if MPI.COMM_WORLD.size > 1:
+        root = Path(tempfile.gettempdir()) / f"fingerpad-tests-{os.getuid()}-{MPI.COMM_WORLD.rank}"
+        root.mkdir(mode=0o700, exist_ok=True)
+        os.environ["PYTEST_DEBUG_TEMPROOT"] = str(root)
 
 
 def pytest_collection_modifyitems(config, items):
