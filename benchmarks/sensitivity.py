@@ -19,7 +19,7 @@ from benchmarks.paper.style import BLUE, VERMILION, draw
 from benchmarks.runs import Run
 from fingerpad.command import positive
 from fingerpad.scene import Scene, SceneError, check, from_data
-from fingerpad.sweep import sweep
+from fingerpad.sweep import result, sweep
 
 _LAYERS = ("subcutis", "dermis", "viable_epidermis", "stratum_corneum")
 _DEFAULTS = Scene()
@@ -118,30 +118,37 @@ def collect(out: Path, size: float) -> list[Change]:
     return found
 
 
+def failures(out: Path, size: float) -> list[str]:
+    """Return the runs that failed, and how."""
+    found = {f"{choice} {way}": result(each, out) or {} for (choice, way), each in scenes(size).items()}
+    return [f"{name}: {summary['failure']}" for name, summary in found.items() if "failure" in summary]
+
+
 def tornado(figure: Figure, changes: Sequence[Change]) -> None:
     """Draw a bar for each choice and quantity, the choice that moves friction most at the top."""
     default, others = changes[0], changes[1:]
     names = list(dict.fromkeys(c.choice for c in others))
 
-    def span(name: str, k: int) -> list[float]:
+    def span(name: str, k: int) -> dict[str, float]:
         """Return how far the ways of a choice move a quantity; per cent of it, or what it is in per cent itself."""
         base = default.values[k] if k != 2 else 100.0
-        return [100 * (c.values[k] - default.values[k]) / base for c in others if c.choice == name]
+        return {c.way: 100 * (c.values[k] - default.values[k]) / base for c in others if c.choice == name}
 
-    names.sort(key=lambda name: max(abs(v) for v in span(name, 0)))
+    names.sort(key=lambda name: max(abs(v) for v in span(name, 0).values()))
     axes = figure.subplots(1, len(QUANTITIES), sharey=True)
     for k, (ax, quantity) in enumerate(zip(axes, QUANTITIES, strict=True)):
         for row, name in enumerate(names):
-            for value, colour in zip(span(name, k), (BLUE, VERMILION), strict=False):
-                ax.barh(row, value, color=colour, height=0.7, alpha=0.85)
+            for way, value in span(name, k).items():
+                first = way == next(iter(CHOICES[name]))
+                ax.barh(row, value, color=BLUE if first else VERMILION, height=0.7, alpha=0.85)
         ax.axvline(0, color="black", lw=0.8)
         ax.set_title(quantity)
         ax.set_xlabel("change (percentage points)" if k == 2 else "change (%)")
     axes[0].set_yticks(range(len(names)), names)
 
 
-def write(changes: Sequence[Change], total: int, size: float, docs: Path) -> None:
-    """Write page and picture from what has been run."""
+def write(changes: Sequence[Change], lost: Sequence[str], total: int, size: float, docs: Path) -> None:
+    """Write page and picture from what has been run, and what of it did not reach full slip."""
     head = ["choice", "changed to", *QUANTITIES]
     lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
     lines += [f"| {c.choice} | {c.way} | " + " | ".join(f"{v:.4g}" for v in c.values) + " |" for c in changes]
@@ -149,6 +156,7 @@ def write(changes: Sequence[Change], total: int, size: float, docs: Path) -> Non
         f"# What the open choices move\n\nMade by `environment/run python3 benchmarks/sensitivity.py`; do not edit. "
         f"75 N/m, 200 V, contact size {size * 1e6:g} µm, one thing changed at a time; {len(changes)} of {total} runs.",
         "\n".join(lines),
+        *(f"Not reached: {words}." for words in lost),
     ]
     if len(changes) > 1 and changes[0].choice == "default":
         draw(docs / "sensitivity.png", (12, 5.5), lambda figure: tornado(figure, changes))
@@ -170,7 +178,7 @@ def main(given: Sequence[str] | None = None) -> int:
     if not args.draw:
         sweep({f"{choice} {way}".strip(): each for (choice, way), each in wanted.items()}, args.out, args.jobs)
     changes = collect(args.out, args.contact_size)
-    write(changes, len(wanted), args.contact_size, args.docs)
+    write(changes, failures(args.out, args.contact_size), len(wanted), args.contact_size, args.docs)
     print(f"{len(changes)} of {len(wanted)} runs; {args.docs / 'sensitivity.md'}")
     return 0 if len(changes) == len(wanted) else 1
 

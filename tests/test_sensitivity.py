@@ -46,10 +46,11 @@ def test_values_of_a_run():
 def test_page(tmp_path):
     default = Change("default", "", (0.5, 1.8, 10.0, 800.0))
     changes = [default, Change("µ0", "0.2", (0.4, 1.8, 8.0, 700.0)), Change("h_rms", "+ 20 %", (0.45, 1.8, 9.0, 790.0))]
-    sensitivity.write(changes, 27, 10e-6, tmp_path)
+    sensitivity.write(changes, ["h_rms − 20 %: stuck"], 27, 10e-6, tmp_path)
     text = (tmp_path / "sensitivity.md").read_text(encoding="utf-8")
     assert "3 of 27 runs" in text
+    assert "Not reached: h_rms − 20 %: stuck." in text
     assert "| µ0 | 0.2 | 0.4 | 1.8 | 8 | 700 |" in text
     assert (tmp_path / "sensitivity.png").exists()
-    sensitivity.write(changes[1:], 27, 10e-6, tmp_path)
+    sensitivity.write(changes[1:], [], 27, 10e-6, tmp_path)
     assert "png" not in (tmp_path / "sensitivity.md").read_text(encoding="utf-8")
