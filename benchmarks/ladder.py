@@ -76,7 +76,7 @@ def collect(known: dict[str, Any], out: Path, rungs: Sequence[int], jobs: int, f
 
     def done(key: str, end: End, left: int) -> None:
         known[key]["2"] = {"failure": f"{end.reason}: {end.message}"} if end.reason else json.loads(end.stdout)
-        file.write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
+        _write(known, file)
         words = known[key]["2"].get("failure", "done")
         bar.console.print(f"{key}: {words}", highlight=False, markup=False, soft_wrap=True)
         bar.advance(task)
@@ -85,8 +85,15 @@ def collect(known: dict[str, Any], out: Path, rungs: Sequence[int], jobs: int, f
     with progress() as bar:
         task = bar.add_task("rung 2", total=len(missing))
         Pool[str, End](lambda key: ask(scenes[key], tables), jobs).run(missing, done)
-    file.write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
+    _write(known, file)
     return known
+
+
+def _write(known: dict[str, Any], file: Path) -> None:
+    """Replace the file as a whole: hours of answers are in it."""
+    part = file.with_suffix(".part")
+    part.write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
+    part.replace(file)
 
 
 def error(found: dict[str, Any], rung: int, key: str) -> float | None:

@@ -61,8 +61,8 @@ def _run(scene: Scene, folder: Path, comm: MPI.Comm, failed_starts: list[dict[st
                 interrupt.stop_if_asked(step.row["step"])
 
             present, needed, again = scene, plan(scene), True
-            search: Search | None = None
             while again:
+                search: Search | None = None  # one that was woken from is of another finger
                 simulation = Simulation(present, needed, comm, on_step, report.load_reached)
                 report.open(simulation)
                 keeper = Keeper(simulation) if scene.accuracy is not None else None

@@ -7,6 +7,7 @@ import pytest
 
 from benchmarks import ladder as page
 from fingerpad import closed_form, ladder
+from fingerpad.processes import End
 from fingerpad.report import _NAMED
 from fingerpad.rungs import NAMES
 from fingerpad.scene import SceneError, from_data
@@ -149,6 +150,30 @@ def test_command_prints_keys_and_notes(capsys):
 def test_command_refuses_half_a_footprint(capsys):
     assert ladder.main(["--rung", "1", "--ridges", "3"]) == 2
     assert "give both or none" in capsys.readouterr().err
+
+
+# -- the benchmark -----------------------------------------------------------------------------------------
+def test_answers_are_kept_and_failures_asked_again(monkeypatch, tmp_path):
+    """Of two scenes one fails: it says how, has no error, and is the only one that is run again."""
+    asked = []
+
+    def ask(scene, tables):
+        asked.append(scene.voltage)
+        if scene.voltage:
+            return End(1, "TIME_LIMIT", "not done", "")
+        return End(0, "", "", json.dumps({"summary": {"slip_mu_app": 0.25}, "cost": {}, "more": {}}))
+
+    monkeypatch.setattr(page, "grid", lambda size: {(75.0, u): scene(voltage=u) for u in (0.0, 200.0)})
+    monkeypatch.setattr(page, "ask", ask)
+    file = tmp_path / "ladder.json"
+    for _ in range(2):
+        known = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+        page.collect(known, tmp_path / "runs", [2], 1, file)
+    assert asked == [0.0, 200.0, 200.0]
+    known = json.loads(file.read_text(encoding="utf-8"))
+    assert known["75 N/m, 200 V"]["2"] == {"failure": "TIME_LIMIT: not done"}
+    assert known["75 N/m, 0 V"]["2"]["summary"] == {"slip_mu_app": 0.25}
+    assert page.error(known["75 N/m, 200 V"], 2, "slip_mu_app") is None
 
 
 # -- the page ----------------------------------------------------------------------------------------------
