@@ -202,3 +202,10 @@ def test_unknowns_spared_without_receptors(coarse):
         for wanted in (True, False)
     ]
     assert cells[1] < 11 / 12 * cells[0]
+
+
+def test_a_state_is_carried_whole():
+    """Pressed alone, half of the finger will do; not where its error is asked for, on other meshes."""
+    press = {"history": [{"name": "press", "f_ext": 1.0}]}
+    assert not plan(from_data(press)).both_halves
+    assert plan(from_data(press | {"accuracy": {}})).both_halves

@@ -1,0 +1,31 @@
+"""The chart of error over work, on points that are made up."""
+
+from benchmarks import chart
+from benchmarks.chart import QUANTITIES, Point
+from benchmarks.convergence import Limit
+
+
+def point(label, work, error):
+    return Point(label, "growth", dict.fromkeys(chart.STATES, work), dict.fromkeys(QUANTITIES, error))
+
+
+POINTS = [point("default", 2.0, 0.02), point("cheap", 1.0, 0.04), point("worse", 3.0, 0.03), point("dear", 4.0, 0.001)]
+
+
+def test_front_is_what_nothing_beats():
+    """What is dearer and no better is not on it."""
+    assert [p.label for p in chart.front(POINTS, "slip_f_t")] == ["cheap", "default", "dear"]
+
+
+def test_table_names_the_cheapest_run_that_will_do(tmp_path):
+    """5 % by the cheapest at half the default's work, 1 % and 0.2 % by the dearest at twice it."""
+    chart.write(POINTS, 9, dict.fromkeys(QUANTITIES, Limit(1.0, 0.001, None)), tmp_path)
+    text = (tmp_path / "chart.md").read_text(encoding="utf-8")
+    row = next(line for line in text.splitlines() if line.startswith("| f_T"))
+    assert row.split(" | ")[2:5] == ["cheap: 0.5", "dear: 2", "dear: 2"]
+    assert "4 of 9 runs" in text
+
+
+def test_every_scene_is_another():
+    scenes = chart.scenes()
+    assert len({str(scene.parameters()) for scene in scenes.values()}) == len(scenes)
