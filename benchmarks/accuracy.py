@@ -8,6 +8,7 @@ where there is one, of which the order is observed. That the state of full slip 
 whole run's there, so that whole runs can stand for it, is tests/test_transfer.py's.
 """
 
+import itertools
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -33,10 +34,10 @@ the error of µ_app is that of f_T."""
 
 
 def shares(found: Sequence[Mapping[str, float]], name: str) -> list[float]:
-    """Return the estimated error of a quantity in each run but the finest, in its unit."""
+    """Return the estimated error of a quantity in each run but the coarsest, in its unit."""
     knob, estimates = Knob(), []
-    for n, (coarse, fine) in enumerate(zip(found, found[1:], strict=False)):
-        knob.see(n, {name: coarse[name]}, {name: fine[name]})
+    for coarse, fine in itertools.pairwise(found):
+        knob.see({name: coarse[name]}, {name: fine[name]})
         estimates.append(knob.share(name))
     return estimates
 

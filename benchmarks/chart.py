@@ -3,14 +3,16 @@
 environment/run python3 benchmarks/chart.py [--jobs 2] [--draw]     also: make chart
 
 Each run is the default scene (press, charge, slide to full slip) with a setting of its own. Its error is the distance
-from the reference of benchmarks/errors.py; its work the factorisations up to a state times the unknowns. Writes
-docs/chart.md, docs/chart.png and docs/chart.json; runs are kept in results/traces, so that drawing anew takes seconds.
+from the reference of benchmarks/errors.py; its work the factorisations up to a state times the unknowns, or processor
+time. Writes docs/chart.md, docs/chart.png, docs/chart_time.png and docs/chart.json; runs are kept in results/traces, so
+that drawing anew takes seconds.
 """
 
 import json
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +32,8 @@ DEFAULT = "default"
 TARGETS = (5e-2, 1e-2, 2e-3)  # errors that the table tells the cost of
 STATES = {"press": "normal contact", "normal": "charged contact", "slip": "full slip"}
 KINDS = {"f_t": "f_T and µ_app", "contact_length": "contact length", "sed_0": "SED at the central Merkel site"}
+MEASURES = {"work": "factorisations × unknowns", "seconds": "processor time"}
+PICTURES = {"work": "chart.png", "seconds": "chart_time.png"}
 QUANTITIES = [f"{state}_{kind}" for kind in KINDS for state in STATES if kind != "f_t" or state == "slip"]
 
 
@@ -48,9 +52,9 @@ FAMILIES: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     },
     "all sizes": {
         "40 µm, growth 0.5, 40 µm at the sites": _mesh(40e-6, growth=0.5, receptor=40e-6),
-        "20 µm, growth 0.5": _mesh(20e-6, growth=0.5),
+        "20 µm, growth 0.5, 20 µm at the sites": _mesh(20e-6, growth=0.5, receptor=20e-6),
         "10 µm, growth 0.5, 10 µm at the sites": _mesh(growth=0.5, receptor=10e-6),
-        "5 µm, growth 0.125, 10 µm at the sites": {"mesh": errors.FINE},
+        "5 µm, growth 0.125, 10 µm at the sites": _mesh(5e-6, growth=0.125, receptor=10e-6),
     },
     "element": {name: _mesh() | {"numerics": {"element": name}} for name in ("P1", "P2 reduced", "P2-P1", "P3")}
     | {"P1, 5 µm": _mesh(5e-6) | {"numerics": {"element": "P1"}}},
@@ -68,6 +72,7 @@ FAMILIES: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
         "tolerance 1e-7": _mesh() | {"numerics": {"tolerance": 1e-7}},
         "coupling tolerance 1e-3": _mesh() | {"numerics": {"coupling_tolerance": 1e-3}},
     },
+    "steps": {f"steps × {scale:g}": _mesh() | {"numerics": {"step_scale": scale}} for scale in (0.5, 2.0)},
 }
 _LOOKS = {
     "contact size": (BLUE, "o"),
@@ -77,6 +82,7 @@ _LOOKS = {
     "element": (PURPLE, "D"),
     "formulation": ("#E69F00", "v"),
     "solver": (GREY, "X"),
+    "steps": ("#56B4E9", "<"),
 }
 
 
@@ -88,6 +94,8 @@ class Point:
     family: str
     work: Mapping[str, float]
     """Factorisations up to a state times unknowns, by state."""
+    seconds: Mapping[str, float]
+    """Processor time up to a state, set-up included, by state."""
     errors: Mapping[str, float]
     """Relative distance from the reference, by quantity."""
 
@@ -109,12 +117,14 @@ def collect(out: Path, reference: Mapping[str, Limit]) -> list[Point]:
             continue
         run = Run(scene, out)
         spent = np.cumsum(run.steps["factorisations"]) * run.summary["unknowns"]
+        seconds = run.steps["processor_seconds"]
         rows = {"press": run.pressed, "normal": run.normal, "slip": run.slip}
         points.append(
             Point(
                 label,
                 family,
                 {state: float(spent[row]) for state, row in rows.items()},
+                {state: float(seconds[row]) for state, row in rows.items()},
                 {name: abs(values[name] / reference[name].value - 1) for name in QUANTITIES},
             )
         )
@@ -126,31 +136,39 @@ def state_of(quantity: str) -> str:
     return quantity.split("_", 1)[0]
 
 
-def front(points: Sequence[Point], quantity: str) -> list[Point]:
+def cost(point: Point, quantity: str, measure: str) -> float:
+    """Return what a run cost up to the state of a quantity; ``measure`` is ``work`` or ``seconds``."""
+    return float(getattr(point, measure)[state_of(quantity)])
+
+
+def front(points: Sequence[Point], quantity: str, measure: str = "work") -> list[Point]:
     """Return Pareto's front from cheap to dear: no other run is both cheaper and nearer to the reference."""
-    state, found = state_of(quantity), list[Point]()
-    for point in sorted(points, key=lambda p: (p.work[state], p.errors[quantity])):
+    found = list[Point]()
+    for point in sorted(points, key=lambda p: (cost(p, quantity, measure), p.errors[quantity])):
         if not found or point.errors[quantity] < found[-1].errors[quantity]:
             found.append(point)
     return found
 
 
-def _panel(ax: Axes, points: Sequence[Point], quantity: str, reference: Limit) -> None:
-    state = state_of(quantity)
-    bar = reference.bar / abs(reference.value)
-    ax.axhspan(1e-6, bar, color="0.9", lw=0)
-    edge = front(points, quantity)
-    ax.step([p.work[state] for p in edge], [p.errors[quantity] for p in edge], "k-", where="post", lw=0.8)
+def _panel(ax: Axes, points: Sequence[Point], quantity: str, reference: Limit, measure: str) -> None:
+    base = cost(_default(points), quantity, measure)
+
+    def at(some: Sequence[Point]) -> tuple[list[float], list[float]]:
+        return [cost(p, quantity, measure) / base for p in some], [p.errors[quantity] for p in some]
+
+    ax.axhspan(1e-6, reference.bar / abs(reference.value), color="0.9", lw=0)
+    ax.step(*at(front(points, quantity, measure)), "k-", where="post", lw=0.8)
     for family, (colour, marker) in _LOOKS.items():
-        mine = [p for p in points if p.family == family and p.label != DEFAULT]
-        ax.plot([p.work[state] for p in mine], [p.errors[quantity] for p in mine], marker, color=colour, ms=5)
-    for p in points:
-        if p.label == DEFAULT:
-            ax.plot(p.work[state], p.errors[quantity], "*", color=BLUE, mec="black", mew=0.5, ms=13)
-    ax.set(xscale="log", yscale="log", title=f"{KINDS[quantity.split('_', 1)[1]]}, {STATES[state]}")
+        ax.plot(*at([p for p in points if p.family == family and p.label != DEFAULT]), marker, color=colour, ms=5)
+    ax.plot(*at([_default(points)]), "*", color=BLUE, mec="black", mew=0.5, ms=13)
+    ax.set(xscale="log", yscale="log", title=f"{KINDS[quantity.split('_', 1)[1]]}, {STATES[state_of(quantity)]}")
 
 
-def paint(figure: Figure, points: Sequence[Point], reference: Mapping[str, Limit]) -> None:
+def _default(points: Sequence[Point]) -> Point:
+    return next(p for p in points if p.label == DEFAULT)
+
+
+def paint(figure: Figure, points: Sequence[Point], reference: Mapping[str, Limit], measure: str) -> None:
     """Draw a panel for each quantity in each state; f_T is that of full slip, the free places hold the legend."""
     axes = figure.subplots(len(KINDS), len(STATES))
     for row, kind in enumerate(KINDS):
@@ -159,11 +177,11 @@ def paint(figure: Figure, points: Sequence[Point], reference: Mapping[str, Limit
             if quantity not in QUANTITIES:
                 ax.axis("off")
                 continue
-            _panel(ax, points, quantity, reference[quantity])
+            _panel(ax, points, quantity, reference[quantity], measure)
             smallest = min(p.errors[quantity] for p in points)
             ax.set_ylim(max(0.5 * smallest, 1e-5), 2 * max(p.errors[quantity] for p in points))
     for ax in axes[-1]:
-        ax.set_xlabel("factorisations × unknowns")
+        ax.set_xlabel(f"{MEASURES[measure]} / the default's")
     for ax in (axes[0, 2], axes[1, 0], axes[2, 0]):
         ax.set_ylabel("relative error")
     handles = [
@@ -175,9 +193,9 @@ def paint(figure: Figure, points: Sequence[Point], reference: Mapping[str, Limit
     axes[0, 0].legend(handles=handles, loc="upper left", ncols=2, bbox_to_anchor=(0.0, 1.0))
 
 
-def _costs(points: Sequence[Point], reference: Mapping[str, Limit]) -> str:
-    """Return what errors cost: the cheapest run for each, and its work over the default's."""
-    base = next(p for p in points if p.label == DEFAULT)
+def costs(points: Sequence[Point], reference: Mapping[str, Limit], measure: str) -> str:
+    """Return a table of what errors cost: the cheapest run for each, and its cost over the default's."""
+    base = _default(points)
     lines = [
         "| | reference's bar | " + " | ".join(f"{100 * t:g} %" for t in TARGETS) + " | default's error | on the front |"
     ]
@@ -187,9 +205,11 @@ def _costs(points: Sequence[Point], reference: Mapping[str, Limit]) -> str:
         cells = [f"{100 * reference[quantity].bar / abs(reference[quantity].value):.2g} %"]
         for target in TARGETS:
             good = [p for p in points if p.errors[quantity] <= target]
-            best = min(good, key=lambda p: p.work[state], default=None)
-            cells.append("none" if best is None else f"{best.label}: {best.work[state] / base.work[state]:.2g}")
-        cells += [f"{100 * base.errors[quantity]:.2g} %", "yes" if base in front(points, quantity) else "no"]
+            best = min(good, key=lambda p: cost(p, quantity, measure), default=None)
+            ratio = 0.0 if best is None else cost(best, quantity, measure) / cost(base, quantity, measure)
+            cells.append("none" if best is None else f"{best.label}: {ratio:.2g}")
+        on = base in front(points, quantity, measure)
+        cells += [f"{100 * base.errors[quantity]:.2g} %", "yes" if on else "no"]
         lines.append(f"| {KINDS[kind]}, {STATES[state]} | " + " | ".join(cells) + " |")
     return "\n".join(lines)
 
@@ -199,25 +219,27 @@ _HEADER = """# What accuracy costs
 Made by `make chart`; do not edit. The default scene with one setting after the other changed, around a contact size of
 10 µm unless said otherwise. An error is the relative distance from the limit of [errors.md](errors.md), whose error bar
 is grey: what lies in the grey is not resolved. Work is the number of factorisations up to the state times the number of
-unknowns. The reference has the default's penalty, so that what a formulation or another penalty changes of the contact
-length counts as error here. The data: [chart.json](chart.json).
+unknowns; processor time has the set-up in it, and shared its machine with other runs. The reference has the default's
+penalty, so that what a formulation or another penalty changes of the contact length counts as error here. The data:
+[chart.json](chart.json).
 """
-_TABLE = """The cheapest run for an error, and its work over that of the default scene:"""
+_TABLES = {
+    "work": "The cheapest run for an error, and its factorisations × unknowns over those of the default scene:",
+    "seconds": "The same by processor time:",
+}
 
 
 def write(points: Sequence[Point], total: int, reference: Mapping[str, Limit], docs: Path) -> None:
-    """Write page, picture and data."""
-    draw(docs / "chart.png", (12, 10), lambda figure: paint(figure, points, reference))
+    """Write page, pictures and data."""
+    for measure, name in PICTURES.items():
+        draw(docs / name, (12, 10), partial(paint, points=points, reference=reference, measure=measure))
     names = {quantity: ", ".join(p.label for p in front(points, quantity)) for quantity in QUANTITIES}
     fronts = "\n".join(f"- {KINDS[q.split('_', 1)[1]]}, {STATES[state_of(q)]}: {labels}" for q, labels in names.items())
-    parts = [
-        _HEADER,
-        f"{len(points)} of {total} runs.",
-        "![Relative error over work](chart.png)",
-        _TABLE,
-        _costs(points, reference),
-        f"Pareto's fronts, from cheap to dear:\n\n{fronts}",
-    ]
+    parts = [_HEADER, f"{len(points)} of {total} runs."]
+    for measure, words in _TABLES.items():
+        parts += [f"![Relative error over {MEASURES[measure]}]({PICTURES[measure]})"]
+        parts += [words, costs(points, reference, measure)]
+    parts.append(f"Pareto's fronts over factorisations × unknowns, from cheap to dear:\n\n{fronts}")
     (docs / "chart.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
     data = {"reference": {q: vars(reference[q]) for q in QUANTITIES}, "points": [asdict(p) for p in points]}
     (docs / "chart.json").write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")

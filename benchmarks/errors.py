@@ -1,10 +1,10 @@
 """The discretisation error of the default scene: what meshes and penalty change, and what the results tend to.
 
-environment/run python3 benchmarks/errors.py [--jobs 2] [--only contact growth receptor penalty check]
+environment/run python3 benchmarks/errors.py [--jobs 2] [--only contact growth receptor penalty reference]
 
-The default scene to full slip, with one setting changed at a time. Runs are kept with those of benchmarks/traces.py;
-what has been run is written to docs/errors.md, docs/errors.png and, as the reference later work is compared with,
-docs/errors.json.
+The default scene to full slip, with one setting changed at a time, and its limit: its states solved again on meshes
+with all sizes halved together (benchmarks/limits.py). Runs are kept with those of benchmarks/traces.py; what has been
+run is written to docs/errors.md, docs/errors.png and, as the reference later work is compared with, docs/errors.json.
 """
 
 import json
@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from benchmarks import arguments
+from benchmarks import arguments, limits
 from benchmarks.convergence import Limit, limit
 from benchmarks.runs import Run
+from benchmarks.traces import SITES as AT_SITES
 from fingerpad.accuracy import plus_minus
 from fingerpad.scene import Scene, from_data
 from fingerpad.sweep import sweep
@@ -30,7 +31,7 @@ GROWTH = (0.5, 0.25, 0.125)
 RECEPTOR = (40e-6, 20e-6, 10e-6, 5e-6, 2.5e-6)
 PENALTY = (0.5e12, 1.5e12, 5e12)
 SIZES = ("contact", "growth", "receptor")  # studies of the mesh
-FINE = {"contact": 5e-6, "growth": 0.125, "receptor": 10e-6}  # that the sum of the studies is checked with
+LEVELS = 4  # meshes of the reference
 SITES = (-5, 0, 5)  # ridges whose Merkel sites are looked at: trailing, central and leading ones in contact
 QUANTITIES: Mapping[str, tuple[str, float]] = {  # name: what it is, and what its unit is worth
     "press_contact_length": ("contact length, uncharged (mm)", 1e-3),
@@ -52,10 +53,10 @@ the scene of each run: [errors.json](errors.json).
 
 _REFERENCE = """## What the results tend to
 
-The limit over the contact size, and what growth and the size at the Merkel sites add on the way to theirs, each at its
-default value first. *Predicted* is that sum without extrapolation for contact 5 µm, growth 0.125 and 10 µm at the sites
-all at once, *found* the run with these. Error bars are the sum of the studies' and of the difference between the two:
-growth and the size at the sites refine the same elements, so that they do not simply add up there.
+The default scene's states, solved again on meshes of which each has half of all sizes of the one before: contact,
+growth, sites and junctions {first} on the first. *Solved again* is the same on the default mesh, from a path followed
+on a coarse one, beside the whole run there: full slip knows no path, and what normal contact keeps of the coarse one is
+in its error bar. {costs}
 """
 
 
@@ -67,11 +68,12 @@ of the last two changes (`benchmarks/convergence.py`)."""
 def study(name: str) -> dict[float, Scene]:
     """Return the scenes of a study by the value of its setting, from coarse to fine."""
     scenes: dict[str, Any] = {
-        "contact": {size: {"mesh": {"contact": size}} for size in CONTACT},
-        "growth": {growth: {"mesh": {"contact": AT, "growth": growth}} for growth in GROWTH},
+        "contact": {size: {"mesh": {"contact": size, "receptor": AT_SITES}} for size in CONTACT},
+        "growth": {growth: {"mesh": {"contact": AT, "growth": growth, "receptor": AT_SITES}} for growth in GROWTH},
         "receptor": {size: {"mesh": {"contact": AT, "receptor": size}} for size in RECEPTOR},
-        "penalty": {eps_n: {"mesh": {"contact": AT}, "contact": {"eps_n": eps_n}} for eps_n in PENALTY},
-        "check": {FINE["contact"]: {"mesh": FINE}},
+        "penalty": {
+            eps_n: {"mesh": {"contact": AT, "receptor": AT_SITES}, "contact": {"eps_n": eps_n}} for eps_n in PENALTY
+        },
     }
     return {value: from_data(data) for value, data in scenes[name].items()}
 
@@ -104,38 +106,22 @@ def _runs(name: str, out: Path) -> dict[float, dict[str, float] | None]:
     return {value: values(scene, out) for value, scene in study(name).items()}
 
 
-def _mesh_studies(out: Path) -> dict[str, dict[float, dict[str, float]]]:
-    """Return the studies of the mesh; none of them before all were run."""
-    studies = {name: {v: run for v, run in _runs(name, out).items() if run is not None} for name in SIZES}
-    return studies if all(len(runs) == len(study(name)) for name, runs in studies.items()) else {}
+def folder_of_limits(out: Path) -> Path:
+    """Return where the states solved again are kept, beside a folder of runs."""
+    return out.parent / "limits"
 
 
 def reference(out: Path) -> dict[str, Limit]:
-    """Return what the quantities tend to as all of the mesh is refined; empty before all of it was run.
+    """Return what the quantities tend to as all of the mesh is refined; empty before it was run.
 
-    To first order the errors that contact size, growth and the size at the sites leave add up: the limit over one, and
-    what each other adds between its default and its limit. By how much they do not is seen on the mesh :data:`FINE`,
-    and part of the error bar.
+    The error bar is that of the extrapolation and what the path on a coarse mesh changes on the default one.
     """
-    studies, (fine,) = _mesh_studies(out), _runs("check", out).values()
-    if not studies or fine is None:
+    found, whole = limits.kept(Scene(), LEVELS, folder_of_limits(out)), values(Scene(), out)
+    if found is None or whole is None:
         return {}
-    found = {}
-    for quantity in QUANTITIES:
-        value, bar = 0.0, abs(predicted(quantity, studies) - fine[quantity])
-        for name, runs in studies.items():
-            end = limit([run[quantity] for run in runs.values()])
-            value += end.value - (0.0 if name == "contact" else runs[getattr(Scene().mesh, name)][quantity])
-            bar += end.bar
-        found[quantity] = Limit(value, bar, None)
-    return found
-
-
-def predicted(quantity: str, studies: Mapping[str, Mapping[float, Mapping[str, float]]]) -> float:
-    """Return what the studies of the mesh add up to for :data:`FINE`."""
-    default = {name: getattr(Scene().mesh, name) for name in SIZES}
-    changes = (runs[FINE[name]][quantity] - runs[default[name]][quantity] for name, runs in studies.items())
-    return studies["contact"][default["contact"]][quantity] + sum(changes)
+    ends = limits.limits(found)
+    path = {name: abs(found["own"]["values"][name] - whole[name]) for name in QUANTITIES}
+    return {name: Limit(ends[name].value, ends[name].bar + path[name], ends[name].order) for name in QUANTITIES}
 
 
 def _bar(found: Limit, unit: float) -> str:
@@ -143,18 +129,27 @@ def _bar(found: Limit, unit: float) -> str:
 
 
 def _reference_table(out: Path) -> str:
-    studies, found, (fine,) = _mesh_studies(out), reference(out), _runs("check", out).values()
-    if not found or fine is None:
+    ends, found, whole = reference(out), limits.kept(Scene(), LEVELS, folder_of_limits(out)), values(Scene(), out)
+    if not ends or found is None or whole is None:
         return ""
-    default = studies["contact"][Scene().mesh.contact]
-    lines = ["| | default | limit | default's error | predicted | found |", "|---|---|---|---|---|---|"]
+    meshes = [level["mesh"]["contact"] for level in found["levels"]]
+    columns = ["default", "solved again", *(f"{size * 1e6:.3g} µm" for size in meshes), "limit", "order"]
+    lines = ["| | " + " | ".join([*columns, "default's error"]) + " |", "|---" * (len(columns) + 2) + "|"]
     for quantity, (words, unit) in QUANTITIES.items():
-        at, end = default[quantity] / unit, found[quantity]
-        cells = [f"{at:.5g}", _bar(end, unit)]
-        cells += [f"{100 * (at * unit / end.value - 1):.2g} %", f"{predicted(quantity, studies) / unit:.5g}"]
-        cells += [f"{fine[quantity] / unit:.5g}"]
+        end, again = ends[quantity], [found["own"], *found["levels"]]
+        cells = [f"{value / unit:.5g}" for value in (whole[quantity], *(s["values"][quantity] for s in again))]
+        cells += [_bar(end, unit), "–" if end.order is None else f"{end.order:.1f}"]
+        cells += [f"{100 * (whole[quantity] / end.value - 1):.2g} %"]
         lines.append(f"| {words} | " + " | ".join(cells) + " |")
-    return _REFERENCE + "\n" + "\n".join(lines)
+    for count in ("unknowns", "factorisations"):
+        cells = [f"{s[count]}" for s in (found["own"], *found["levels"])]
+        lines.append(f"| {count} | {whole[count]:.0f} | " + " | ".join([*cells, "", "", ""]) + " |")
+    m = found["levels"][0]["mesh"]
+    sizes = [f"{m[name] * 1e6:g} µm" for name in ("contact", "receptor", "interface")]
+    first = f"{sizes[0]}, {m['growth']:g}, {sizes[1]} and {sizes[2]}"
+    path = found["path"]
+    costs = f"The coarse path took {path['factorisations']} factorisations of {path['unknowns']} unknowns."
+    return _REFERENCE.format(first=first, costs=costs) + "\n" + "\n".join(lines)
 
 
 def _cells(name: str, runs: Mapping[float, dict[str, float] | None], unit: float) -> list[str]:
@@ -220,7 +215,7 @@ def draw(out: Path, path: Path) -> None:
 def write(out: Path, docs: Path) -> None:
     """Write page, picture and data from what has been run."""
     data: dict[str, Any] = {"made by": "benchmarks/errors.py", "unit": "SI", "studies": {}}
-    for name in (*STUDIES, "check"):
+    for name in STUDIES:
         scenes, runs = study(name), _runs(name, out)
         data["studies"][name] = [
             {"value": value, "quantities": run, "scene": scenes[value].parameters()}
@@ -241,15 +236,19 @@ def main(given: Sequence[str] | None = None) -> int:
     """Run what is missing of the studies asked for and write the page."""
     parser = arguments.parser(__doc__)
     parser.add_argument(
-        "--only", nargs="*", choices=[*STUDIES, "check"], default=[*STUDIES, "check"], help="studies to run"
+        "--only", nargs="*", choices=[*STUDIES, "reference"], default=[*STUDIES, "reference"], help="studies to run"
     )
     args = parser.parse_args(given)
-    scenes = {f"{name} {value:g}": scene for name in args.only for value, scene in study(name).items()}
+    studies = [name for name in args.only if name in STUDIES]
+    scenes = {f"{name} {value:g}": scene for name in studies for value, scene in study(name).items()}
     # The finest first: it takes longest.
-    summaries = sweep(dict(reversed(scenes.items())), args.out, args.jobs, _LIMIT)
+    summaries = dict[str, Any](sweep(dict(reversed(scenes.items())), args.out, args.jobs, _LIMIT))
+    if "reference" in args.only:
+        summaries |= sweep({"default": Scene()}, args.out, args.jobs, _LIMIT)
+        summaries["reference"] = limits.ask(Scene(), LEVELS, folder_of_limits(args.out))
     write(args.out, args.docs)
     failed = [name for name, summary in summaries.items() if "failure" in summary]
-    print(f"{len(scenes) - len(failed)} of {len(scenes)} reached their end; {args.docs / 'errors.md'}")
+    print(f"{len(summaries) - len(failed)} of {len(summaries)} reached their end; {args.docs / 'errors.md'}")
     return 1 if failed else 0
 
 

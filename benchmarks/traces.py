@@ -21,6 +21,7 @@ VOLTAGES = (0.0, 50.0, 100.0, 150.0, 200.0)
 FORCES = (5.0, 10.0, 25.0, 50.0, 75.0, 100.0, 120.0, 150.0)
 FINE_VOLTAGES, FINE_FORCES = (100.0, 200.0), (25.0, 75.0, 120.0)
 _COARSE, _FINE = 10e-6, 5e-6  # m, contact sizes
+SITES = 20e-6  # m, size at the Merkel sites, whose energies are not looked at: coarser than by default
 _LAYERS = ("subcutis", "dermis", "viable_epidermis", "stratum_corneum")
 _HEADER = """# Traces over forces and voltages
 
@@ -32,7 +33,7 @@ pseudo-transient continuation), the cut steps and the factorisations. **!** mark
 
 def trace(f_ext: float, voltage: float, size: float, **more: Any) -> Scene:
     """Return the scene of one trace; ``size`` is the contact size (m)."""
-    return from_data({"f_ext": f_ext, "voltage": voltage, "mesh": {"contact": size}} | more)
+    return from_data({"f_ext": f_ext, "voltage": voltage, "mesh": {"contact": size, "receptor": SITES}} | more)
 
 
 def grid(voltages: Sequence[float], forces: Sequence[float], size: float) -> dict[str, Scene]:
@@ -43,13 +44,14 @@ def grid(voltages: Sequence[float], forces: Sequence[float], size: float) -> dic
 
 def corners() -> dict[str, Scene]:
     """Return scenes at the ends of what a user would go to."""
+    at = {"mesh.contact": _COARSE, "mesh.receptor": SITES}
     stiff = {name: {"poisson": 0.499} for name in _LAYERS}
     return {
         "200 V at 2 N/m": trace(2.0, 200.0, _COARSE),
         "friction coefficient 1": trace(75.0, 200.0, _COARSE, friction=1.0),
         "Poisson's ratio 0.499": trace(75.0, 200.0, _COARSE, materials=stiff),
         "400 V at 10 N/m": trace(10.0, 400.0, _COARSE),
-        "unloaded at 200 V": load_scene(_ROOT / "demos" / "scenes" / "unload.toml", {"mesh.contact": _COARSE}),
+        "unloaded at 200 V": load_scene(_ROOT / "demos" / "scenes" / "unload.toml", at),
     }
 
 

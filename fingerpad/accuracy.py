@@ -1,19 +1,20 @@
 r"""Results with their discretisation error, and refined until that is within what a scene asks for.
 
 The whole path of the loads is run once, on the mesh that the scene gives (a coarse one where it asks for an accuracy
-and says nothing else). Two of its states are then carried to finer meshes and solved for again
-(:mod:`variational.transfer`): normal contact, the last state before the bone moves, and full slip. Halving one knob
+and says nothing else). Two of its states are then carried to other meshes and solved for again
+(:mod:`variational.transfer`): normal contact, the last state before the bone moves, and full slip. Turning one knob
 at a time gives each its share of the error (:mod:`fingerpad.estimate`):
 
 * ``contact``: size of the facets that can touch,
 * ``bulk``: growth of the elements, their size on the junctions, and the coarsest,
 * ``receptor``: size at the Merkel sites; left out where only other quantities are asked for,
-* ``steps``: of the loads, which matters where friction keeps a history, to normal contact; from a second path, up to
-  there, on the first mesh. Full slip knows no path.
+* ``steps``: of the loads, which matters where friction keeps a history, to normal contact; from a path with steps
+  twice as long, up to there, on the first mesh. Full slip knows no path.
 
-The knobs with the largest shares are halved, the states solved again, and those knobs' shares estimated anew. It ends
-when the estimate, which is always one of a real refinement, is within what is allowed, or says that it is not. A state
-in which another number of ridges touches is noted; it shows as a large share.
+Where errors are asked for, each knob is halved in turn and the states go on from there; then those with the largest
+shares again, until the estimate is within what is allowed, or the program says that it is not. Where only an estimate
+is wanted, the mesh stays and each size is doubled: that costs less than the states did. A state in which another
+number of ridges touches is noted; it shows as a large share.
 
 Not estimated: what a state of normal contact owes to its friction history having been that of the first mesh, and the
 penalty, which is part of the model here.
@@ -33,6 +34,7 @@ from fingerpad.needs import plan
 from fingerpad.scene import Load, Scene
 from fingerpad.simulation import Simulation, Step
 from geometry.parameters import MeshSize
+from geometry.profiles import GeometryError
 from variational.continuation import StepFailed
 from variational.receptors import Receptors
 from variational.transfer import Carried, carry
@@ -40,7 +42,7 @@ from variational.transfer import Carried, carry
 STILL = 1e-12  # m, below which the bone has not moved sideways
 _SIZES = {"contact": ("contact",), "bulk": ("growth", "interface", "coarsest"), "receptor": ("receptor",)}
 _ROUNDS = 6  # of refinement
-_WORDS = {"normal": "normal contact", "slip": "full slip"}
+_WORDS = {"press": "uncharged contact", "normal": "normal contact", "slip": "full slip"}
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,7 @@ class Solve:
         """Return the quantities of interest, by state and name."""
         found: dict[str, float] = {}
         for name, state in self.states.items():
-            wanted = ("contact_length",) if name == "normal" else ("f_t", "mu_app", "contact_length")
+            wanted = ("f_t", "mu_app", "contact_length") if name == "slip" else ("contact_length",)
             found |= {f"{name}_{quantity}": state.row[quantity] for quantity in wanted}
             found |= {f"{name}_sed_{j}": value for j, value in state.sed.items()}
         return found
@@ -112,7 +114,7 @@ class Keeper:
             "contact_length": float(loads.length.sum()),
         }
         sed = {j: float(density) for j, density in zip(s.problem.surface.names, self._sites.sed(), strict=True)}
-        direction = 0 if name == "normal" else 1 if f_t >= 0 else -1
+        direction = 0 if name != "slip" else 1 if f_t >= 0 else -1
         self.states[name] = State(carry(s.coupling, s.continuation.surface_state), direction, row, sed)
 
     def solve(self) -> Solve:
@@ -143,8 +145,8 @@ class Search:
 
     Attributes:
         base: the states whose errors are estimated.
-        halved: how often each knob has been halved for them.
-        knobs: what halving each once more changed.
+        halved: how often each size has been halved for them; of the steps, for their path.
+        knobs: what halving each changed.
         solves: all that was solved, the path first.
         notes: what a user should know.
         failure: why an accuracy was not reached, else empty.
@@ -168,21 +170,23 @@ class Search:
         assert scene.accuracy is not None
         self.scene, self.comm, self.say, self.pause = scene, comm, say, pause
         self.asked = scene.accuracy.tolerances()
-        self.base, self._path = path, path
+        self.base = self._path = self._stepped = path
         self.solves, self.failure = [path], ""
         self.notes: list[str] = []
-        sized = [key for key in _SIZES if key != "receptor" or not self.asked or "sed" in self.asked]
-        self.knobs = {key: Knob() for key in sized}
-        if scene.friction > 0 and "normal" in path.states:
-            self.knobs["steps"] = Knob()
-        self.halved = dict.fromkeys(self.knobs, 0)
-        self._cache = {self._key(self.halved): path}
         for name in {"mu_app", "f_t"} & set(self.asked) if "slip" not in path.states else ():
             raise StepFailed(
                 f"accuracy.{name} is {self.asked[name]:g}, which full slip decides, and that was not reached"
             )
         if not path.states:
             raise StepFailed("accuracy is given and the history has neither normal contact nor full slip")
+        self.knobs = {key: Knob() for key in _SIZES if key != "receptor" or "sed" in self.asked or self._looks()}
+        if scene.friction > 0 and "normal" in path.states and {"contact_length", "sed"} & set(self.asked):
+            self.knobs["steps"] = Knob()
+        self.halved = dict.fromkeys(self.knobs, 0)
+
+    def _looks(self) -> bool:
+        """Return whether errors are to be estimated and no more, of receptors too if they are in the output."""
+        return not self.asked and self.scene.output.receptors
 
     def run(self) -> None:
         """Estimate, and refine until what is asked for is met or cannot be.
@@ -190,23 +194,30 @@ class Search:
         Raises:
             Interrupted: ``pause`` was asked to.
         """
-        todo = list(self.knobs)
-        for round_ in range(_ROUNDS + 1):
-            try:
-                for key in todo:
-                    self._see(key)
-                todo = to_halve(self.knobs, self.allowed())
+        try:
+            if self.asked:
+                self._refine()
+            else:
+                for key in self.knobs:
+                    self._see(key, self._at(self._mesh({key: -1})), self.base)
                 self._tell()
-                if not todo:
-                    return
-                if round_ == _ROUNDS:
-                    break
-                halved = {key: n + (key in todo) for key, n in self.halved.items()}
-                self.base, self.halved = self._at(halved), halved
-            except Interrupted:
-                raise
-            except StepFailed as error:
+        except Interrupted:
+            raise
+        except (StepFailed, GeometryError) as error:
+            if self.asked:
                 self.failure = f"the accuracy asked for could not be established: {error}"
+            else:
+                self.notes.append(f"errors could not be estimated: {error}")
+                self.say(self.notes[-1])
+
+    def _refine(self) -> None:
+        todo = list(self.knobs)
+        for _ in range(1 + _ROUNDS):
+            for key in todo:
+                self._halve(key)
+            self._tell()
+            todo = to_halve(self.knobs, self.allowed())
+            if not todo:
                 return
         self.failure = f"the estimate is not within the accuracy asked for after {_ROUNDS} refinements"
 
@@ -223,67 +234,68 @@ class Search:
         return found
 
     def estimates(self) -> dict[str, float]:
-        """Return the estimated error of each quantity, in its unit; none before every knob was halved."""
+        """Return the estimated error of each quantity, in its unit; none before every knob was turned."""
         if not all(knob.changes for knob in self.knobs.values()):
             return {}
         return errors(self.knobs, list(self.base.values()))
 
-    def _see(self, key: str) -> None:
-        """Halve a knob and take note of what it changes."""
-        n = self.halved[key]
-        if key == "steps":  # on the first mesh
-            coarse, finer = self._with_steps(n), self._with_steps(n + 1)
-        else:
-            coarse, finer = self.base, self._at(self.halved | {key: n + 1})
-        self.knobs[key].see(n, coarse.values(), finer.values())
-        for name, state in finer.states.items():
-            before, now = (s.row["ridges_in_contact"] for s in (coarse.states[name], state))
+    def _halve(self, key: str) -> None:
+        """Halve a knob, take note of what it changes, and go on from there."""
+        if key == "steps" and not self.knobs[key].changes:
+            self._see(key, self._with_steps(-1), self._path)
+            return
+        self.halved[key] += 1
+        if key == "steps":
+            finer = self._with_steps(self.halved[key])
+            self._see(key, self._stepped, finer)
+            self._stepped = finer
+            self.base = self._at(self.base.mesh, finer.states)
+            return
+        finer = self._at(self._mesh(self.halved))
+        self._see(key, self.base, finer)
+        self.base = finer
+
+    def _see(self, key: str, coarse: Solve, finer: Solve) -> None:
+        self.knobs[key].see(coarse.values(), finer.values())
+        for name in sorted(coarse.states.keys() & finer.states.keys()):
+            before, now = (s.states[name].row["ridges_in_contact"] for s in (coarse, finer))
             if before != now:
                 self.notes.append(f"halving {key}: {now} ridges in contact at {_WORDS[name]} instead of {before}")
-
-    def _key(self, halved: Mapping[str, int]) -> tuple[int, ...]:
-        return tuple(halved[key] for key in self.knobs)
 
     def _mesh(self, halved: Mapping[str, int]) -> MeshSize:
         first = self.scene.mesh
         sizes = {size: getattr(first, size) / 2**n for key, n in halved.items() for size in _SIZES.get(key, ())}
         return first.model_copy(update=sizes)
 
-    def _at(self, halved: Mapping[str, int]) -> Solve:
-        """Return the states with knobs halved so often."""
-        found = self._cache.get(self._key(halved))
-        if found is not None:
-            return found
-        states = dict(self.base.states)
-        if halved.get("steps", 0) != self.halved.get("steps", 0):
-            states["normal"] = self._with_steps(halved["steps"]).states["normal"]
-        mesh = self._mesh(halved)
+    def _at(self, mesh: MeshSize, states: Mapping[str, State] | None = None) -> Solve:
+        """Return the states on a mesh, from those in use or from others where they are given."""
         self.pause()
-        found = self._cache[self._key(halved)] = solve_again(
-            self.scene.model_copy(update={"mesh": mesh}), states, self.comm
-        )
+        scene = self.scene.model_copy(update={"mesh": mesh})
+        found = solve_again(scene, {**self.base.states, **(states or {})}, self.comm)
         self._note(found)
         return found
 
     def _with_steps(self, n: int) -> Solve:
         """Return normal contact on the first mesh from a path whose steps are halved n times."""
-        key = self._key(dict.fromkeys(self.knobs, 0) | {"steps": n})
-        if key not in self._cache:
-            loads = loads_to_normal_contact(self.scene)
-            scene = self.scene.model_copy(update={"history": loads, "mesh": self._path.mesh})
-            self.pause()
-            keeper: Keeper | None = None
+        numerics = self.scene.numerics.model_copy(update={"step_scale": self._scale(n)})
+        loads = loads_to_normal_contact(self.scene)
+        scene = self.scene.model_copy(update={"history": loads, "mesh": self._path.mesh, "numerics": numerics})
+        self.pause()
+        keeper: Keeper | None = None
 
-            def on_step(step: Step, done: float) -> None:
-                assert keeper is not None
-                keeper.see(step)
+        def on_step(step: Step, done: float) -> None:
+            assert keeper is not None
+            keeper.see(step)
 
-            simulation = Simulation(scene, plan(self.scene), self.comm, on_step, lambda: None, step_scale=0.5**n)
-            keeper = Keeper(simulation)
-            simulation.run()
-            self._cache[key] = keeper.solve()
-            self._note(self._cache[key])
-        return self._cache[key]
+        simulation = Simulation(scene, plan(self.scene), self.comm, on_step, lambda: None)
+        keeper = Keeper(simulation)
+        simulation.run()
+        found = keeper.solve()
+        self._note(found)
+        return found
+
+    def _scale(self, halvings: int) -> float:
+        return self.scene.numerics.step_scale * 0.5**halvings
 
     def _note(self, solve: Solve) -> None:
         self.solves.append(solve)
@@ -309,8 +321,8 @@ class Search:
                 "value": values[name],
                 "error": error,
                 "allowed": allowed.get(name),
-                "shares": {k: knob.share(name) for k, knob in self.knobs.items() if name in knob.changes[-1][1]},
-                "orders": {k: knob.order(name) for k, knob in self.knobs.items() if name in knob.changes[-1][1]},
+                "shares": {k: knob.share(name) for k, knob in self.knobs.items() if knob.acts_on(name)},
+                "orders": {k: knob.order(name) for k, knob in self.knobs.items() if knob.acts_on(name)},
             }
             for name, error in found.items()
         }
@@ -323,7 +335,7 @@ class Search:
                 "accuracy": {
                     "reached": not self.failure,
                     "mesh": self.base.mesh.model_dump(),
-                    "step_scale": 0.5 ** self.halved.get("steps", 0),
+                    "step_scale": self._scale(self.halved.get("steps", 0)),
                     "quantities": quantities,
                     "notes": self.notes,
                     "solves": [

@@ -258,6 +258,8 @@ class Numerics(Part):
     """Relative change of d_eq at which the loop over the scales ends."""
     coupling_cap: Annotated[int, Field(strict=True, ge=1)] = 30
     """Most sweeps of that loop."""
+    step_scale: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=10)] = 1.0
+    """Factor on the largest steps of force, voltage and displacement."""
 
     @model_validator(mode="after")
     def _consistent(self) -> "Numerics":

@@ -48,6 +48,7 @@ class Report:
         self.rows: list[dict[str, Any]] = []
         self.seconds = 0.0
         self._start = self._begun = time.perf_counter()
+        self._processor = time.process_time()
         self._setup = 0.0
         self._simulation: Simulation | None = None
         self._profiles: list[dict[str, Any]] = []
@@ -136,7 +137,8 @@ class Report:
         """Report an accepted step; collective."""
         start = time.perf_counter()
         assert self._simulation is not None
-        self.rows.append(step.row)
+        row = step.row | {"processor_seconds": self._processor_seconds()}
+        self.rows.append(row)
         surface = self._simulation.problem.surface
         stacked = np.stack([getattr(step.surface, name) for name in _PROFILE])
         gathered, ridge = surface.gather(stacked), surface.gather(surface.ridge[None, :, None].astype(float))
@@ -146,8 +148,8 @@ class Report:
             values, where = gathered, ridge[0, :, 0].astype(int)
             if not self._simulation.plan.both_halves:
                 values, where = mirror.profile(_PROFILE, gathered, where)
-            self._profiles.append({"ridge": where, "values": values, "d_eq": step.d_eq, "row": step.row})
-            self._table("steps", step.row)
+            self._profiles.append({"ridge": where, "values": values, "d_eq": step.d_eq, "row": row})
+            self._table("steps", row)
             for k, j in enumerate(self._names):
                 if step.ridges.length[k] > 0:
                     self._table("ridges", self._ridge_row(step, k, j))
@@ -157,6 +159,10 @@ class Report:
                 self._table("coupling", {"step": step.row["step"], "sweep": sweep + 1, "change": change})
             self._print(step, done)
         self.seconds += time.perf_counter() - start
+
+    def _processor_seconds(self) -> float:
+        """Return the processor time (s) of all ranks since the start; collective."""
+        return float(self.comm.allreduce(time.process_time() - self._processor))
 
     def _print(self, step: Step, done: float) -> None:
         r = step.row
@@ -255,6 +261,7 @@ class Report:
             "factorisations": solver.counts.factorisations,
             "unknowns": self._simulation.unknowns,
             "wall_seconds": time.perf_counter() - self._start,
+            "processor_seconds": self._processor_seconds(),
             "steps": len(rows),
             "jumps": sum(row["jump"] for row in rows),
             "cutbacks": sum(row["cutbacks"] for row in rows),

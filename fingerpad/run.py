@@ -40,7 +40,7 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
         lost = "failure" in summary and "accuracy" not in summary and "interrupted" not in summary
         if not (asked and lost and finer >= _FINEST_START):
             return summary
-        starts.append({name: summary[name] for name in ("failure", "unknowns", "factorisations", "wall_seconds")})
+        starts.append({name: summary[name] for name in ("failure", "unknowns", "factorisations", "processor_seconds")})
         mesh = scene.mesh.model_copy(update={"contact": finer})
         scene = scene.model_copy(update={"mesh": mesh})
 

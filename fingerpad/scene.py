@@ -123,6 +123,8 @@ class Scene(Part):
         unused |= {"accuracy": True} if self.accuracy is None else {}
         if self.output == Output():  # not a word of it, so that runs made before it was a key are found
             unused["output"] = True
+        if self.numerics.step_scale == 1.0:  # likewise
+            unused["numerics"] = {"step_scale"}
         return self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
 
 
@@ -130,7 +132,7 @@ class Scene(Part):
 # at 46 N/m, 17 at 73 N/m); friction rolls the finger onto its leading side (ridge 10 touches at 1 before full slip).
 _FORCE, _WIDENS = 75.0, 0.27
 _FRICTION, _ROLLS = 0.25, 0.3
-_START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}  # of scenes that ask for accuracy
+START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}  # of scenes that ask for accuracy
 _DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 
 
@@ -190,7 +192,7 @@ def _coarse_start(data: Mapping[str, Any]) -> Mapping[str, Any]:
     mesh, accuracy = data.get("mesh", {}), data.get("accuracy")
     if not (isinstance(mesh, dict) and isinstance(accuracy, dict) and accuracy):
         return data
-    return {**data, "mesh": _START | mesh}
+    return {**data, "mesh": START | mesh}
 
 
 def _largest(values: Iterable[Any]) -> float:

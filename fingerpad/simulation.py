@@ -88,7 +88,6 @@ class Simulation:
         comm: MPI.Comm,
         on_step: Callable[[Step, float], None],
         on_load: Callable[[], None],
-        step_scale: float = 1.0,
     ) -> None:
         """Mesh the finger and set the solver up.
 
@@ -98,7 +97,6 @@ class Simulation:
             comm: communicator of the mesh.
             on_step: called on every rank after each accepted step with the part of the whole history that is done.
             on_load: called on every rank when a load has been reached.
-            step_scale: factor on the largest steps of the loads.
         """
         self.scene, self.on_step, self.on_load = scene, on_step, on_load
         self.profiles = Profiles(scene.geometry)
@@ -127,7 +125,7 @@ class Simulation:
             numerics.coupling_cap,
             by_gap=contact.length == "gap",
         )
-        self.continuation = Continuation(self.coupling, self._accepted, step_scale=step_scale)
+        self.continuation = Continuation(self.coupling, self._accepted, step_scale=numerics.step_scale)
         self.energy = EnergyBook(self.problem, *self._state(), copies=2 if half else 1)
         self.unknowns = self.solver.layout.global_size
         self.full_slip = False

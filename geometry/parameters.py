@@ -81,8 +81,9 @@ class MeshSize(BaseModel):
 
     contact: Length = 5e-6
     """Size of surface facets where ridges can touch."""
-    receptor: Length = 20e-6
-    """Size at the Merkel sites of the ridges that can touch."""
+    receptor: Length = 5e-6
+    """Size at the Merkel sites of the ridges that can touch: what they sense needs an element at the tips of the
+    intermediate ridges, of a radius of 6 µm, which friction and contact length hardly know of."""
     interface: Length = 80e-6
     """Largest size on wavy interfaces and on ridges that cannot touch."""
     coarsest: Length = 1e-3

@@ -55,31 +55,57 @@ def test_true_error_is_within_what_is_asked_for(monkeypatch, tolerance):
 
 
 def test_estimate_is_of_the_true_errors_size(monkeypatch):
-    """Magnitudes of two errors of other signs add up, and one halving takes second order for first: up to 3 / 2."""
+    """Magnitudes of two errors of other signs add up, and one halving takes second order for first: up to 3."""
     found = search(monkeypatch, {"mu_app": 0.01})
     mesh = found.base.mesh
     parts = EXACT * (0.08 * mesh.contact / 20e-6 + 0.02 * (mesh.growth / 0.5) ** 2)
-    assert parts * (1 - 1e-9) <= found.estimates()["slip_mu_app"] <= 1.5 * parts
+    assert parts * (1 - 1e-9) <= found.estimates()["slip_mu_app"] <= 3 * parts
 
 
 def test_only_what_costs_accuracy_is_refined(monkeypatch):
-    """0.1 is asked for; the contact's share, 0.08, is more than half of it, the growth's, estimated at 0.03, is not."""
-    found = search(monkeypatch, {"mu_app": 0.1})
-    assert found.halved == {"contact": 1, "bulk": 0}
+    """Each once, for its share; then 0.04 is asked for: the contact's, 0.04, is more than half of it, the growth's,
+    estimated at 0.015, is not."""
+    found = search(monkeypatch, {"mu_app": 0.04})
+    assert found.halved == {"contact": 2, "bulk": 1}
 
 
 def test_receptors_are_halved_where_energy_density_is_asked_for(monkeypatch):
     """What is allowed is a part of the largest site's; the second site's own twentieth is never asked for."""
     found = search(monkeypatch, {"sed": 0.05})
-    assert found.halved["receptor"] > 0
-    assert found.halved["contact"] == 0
+    assert found.halved["receptor"] > 1
+    assert found.halved["contact"] == 1
     assert found.allowed()["slip_sed_1"] == found.allowed()["slip_sed_0"]
 
 
 def test_estimate_alone_refines_nothing(monkeypatch):
-    found = search(monkeypatch, {})
-    assert set(found.halved.values()) == {0}
-    assert found.estimates()["slip_mu_app"] > 0
+    """Coarser meshes tell the error: none is finer than the scene's."""
+    sizes = []
+
+    def noted(scene, states, comm):
+        sizes.append(scene.mesh)
+        return known(scene, states, comm)
+
+    found = search(monkeypatch, {}, noted)
+    own = found.scene.mesh
+    assert found.base.mesh == own
+    assert [(m.contact / own.contact, m.growth / own.growth, m.receptor / own.receptor) for m in sizes] == [
+        (2, 1, 1),
+        (1, 2, 1),
+        (1, 1, 2),
+    ]
+    parts = EXACT * (0.08 * own.contact / 20e-6 + 0.02 * (own.growth / 0.5) ** 2)
+    assert parts * (1 - 1e-9) <= found.estimates()["slip_mu_app"] <= 3 * parts
+
+
+def test_estimate_alone_that_is_lost_is_no_failure(monkeypatch):
+    """The run is what was asked for; that it comes without its error is said."""
+
+    def lost(scene, states, comm):
+        raise StepFailed("full slip found no equilibrium")
+
+    found = search(monkeypatch, {}, lost)
+    assert not found.failure
+    assert found.notes == ["errors could not be estimated: full slip found no equilibrium"]
 
 
 def test_says_when_the_accuracy_is_out_of_reach(monkeypatch):
@@ -180,7 +206,9 @@ def test_starts_again_finer_where_the_path_is_lost(monkeypatch, tmp_path, asked,
     def once(scene, folder, comm, failed_starts):
         sizes.append(scene.mesh.contact)
         lost = scene.mesh.contact != 10e-6
-        end = {"failure": "no equilibrium", "unknowns": 1, "factorisations": 2, "wall_seconds": 3.0} if lost else {}
+        end = (
+            {"failure": "no equilibrium", "unknowns": 1, "factorisations": 2, "processor_seconds": 3.0} if lost else {}
+        )
         return end | {"failed_starts": list(failed_starts)}
 
     monkeypatch.setattr(running, "_run", once)
@@ -202,14 +230,14 @@ SMALL = {
 
 @pytest.mark.slow
 def test_small_finger_comes_with_its_error(tmp_path: Path):
-    """From scene to summary: estimated from three re-solved meshes, within what was asked for, and as JSON on disk."""
+    """From scene to summary: estimated from two re-solved meshes, within what was asked for, and as JSON on disk."""
     running.run(from_data(SMALL), tmp_path, MPI.COMM_WORLD)
     summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
     assert "failure" not in summary
     found = summary["accuracy"]
     assert found["reached"]
     assert 0 < summary["slip_mu_app_error"] <= 0.5 * summary["slip_mu_app"]
-    assert set(found["quantities"]["normal_contact_length"]["shares"]) == {"contact", "bulk", "steps"}
+    assert set(found["quantities"]["normal_contact_length"]["shares"]) == {"contact", "bulk"}
     assert set(found["quantities"]["slip_mu_app"]["shares"]) == {"contact", "bulk"}
     again = found["solves"][1]
     assert again["factorisations"] < found["solves"][0]["factorisations"] / 2

@@ -5,16 +5,27 @@ from benchmarks.chart import QUANTITIES, Point
 from benchmarks.convergence import Limit
 
 
-def point(label, work, error):
-    return Point(label, "growth", dict.fromkeys(chart.STATES, work), dict.fromkeys(QUANTITIES, error))
+def point(label, work, seconds, error):
+    costs = (dict.fromkeys(chart.STATES, spent) for spent in (work, seconds))
+    return Point(label, "growth", *costs, dict.fromkeys(QUANTITIES, error))
 
 
-POINTS = [point("default", 2.0, 0.02), point("cheap", 1.0, 0.04), point("worse", 3.0, 0.03), point("dear", 4.0, 0.001)]
+POINTS = [
+    point("default", 2.0, 20.0, 0.02),
+    point("cheap", 1.0, 30.0, 0.04),
+    point("worse", 3.0, 10.0, 0.03),
+    point("dear", 4.0, 40.0, 0.001),
+]
 
 
 def test_front_is_what_nothing_beats():
     """What is dearer and no better is not on it."""
     assert [p.label for p in chart.front(POINTS, "slip_f_t")] == ["cheap", "default", "dear"]
+
+
+def test_front_over_time_is_another():
+    """What takes least time comes first, however many factorisations it needs."""
+    assert [p.label for p in chart.front(POINTS, "slip_f_t", "seconds")] == ["worse", "default", "dear"]
 
 
 def test_table_names_the_cheapest_run_that_will_do(tmp_path):

@@ -1,0 +1,119 @@
+"""What scenes tend to: states of a coarse path solved again on meshes with all sizes halved together.
+
+python3 -m benchmarks.limits SCENE.json LEVELS LIMIT    one scene, as :func:`ask` starts it; JSON on standard output
+
+The path is run on the coarse mesh that an ``[accuracy]`` starts from. Its states (uncharged and charged normal contact,
+full slip) are solved again on the scene's own mesh and then on each of :func:`meshes`. Full slip knows no path, so that
+it is that of the whole run there; normal contact keeps the friction history of the path, which the comparison of the
+scene's own mesh with a whole run on it tells the worth of (``docs/errors.md``).
+"""
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from benchmarks.convergence import Limit, limit
+from fingerpad.processes import run
+from fingerpad.scene import Scene, from_data
+from fingerpad.sweep import key
+from geometry.parameters import MeshSize
+
+_FIRST = {"contact": 10e-6, "growth": 0.5, "receptor": 10e-6, "interface": 120e-6}
+_HALVED = ("contact", "growth", "receptor", "interface", "coarsest")
+_LIMIT = 14400.0  # s of processor time for one scene
+
+
+def meshes(mesh: MeshSize, levels: int) -> list[MeshSize]:
+    """Return meshes of one family, each with half the sizes of the one before, that touch where a given one can."""
+    first = mesh.model_copy(update=_FIRST)
+    return [first.model_copy(update={s: getattr(first, s) / 2**n for s in _HALVED}) for n in range(levels)]
+
+
+def kept(scene: Scene, levels: int, folder: Path) -> dict[str, Any] | None:
+    """Return what was solved of a scene, None if nothing was."""
+    file = folder / f"{key(scene)}-{levels}.json"
+    return dict(json.loads(file.read_text(encoding="utf-8"))) if file.exists() else None
+
+
+def ask(scene: Scene, levels: int, folder: Path) -> dict[str, Any]:
+    """Solve a scene in a process of its own, or return what was kept of it.
+
+    Returns:
+        ``path``, ``own`` (the scene's mesh) and ``levels``, each a mesh, its cost and its values; or ``failure``.
+    """
+    known = kept(scene, levels, folder)
+    if known is not None:
+        return known
+    folder.mkdir(parents=True, exist_ok=True)
+    file = folder / f"{key(scene)}.scene.json"
+    file.write_text(json.dumps(scene.parameters()), encoding="utf-8")
+    end = run("benchmarks.limits", [str(file), str(levels), str(_LIMIT)], _LIMIT)
+    if end.reason:
+        return {"failure": f"{end.reason}: {end.message}"}
+    (folder / f"{key(scene)}-{levels}.json").write_text(end.stdout, encoding="utf-8")
+    return dict(json.loads(end.stdout))
+
+
+def limits(found: Mapping[str, Any]) -> dict[str, Limit]:
+    """Return what the quantities tend to as the meshes are refined; of at least three of them."""
+    levels = [level["values"] for level in found["levels"]]
+    return {name: limit([values[name] for values in levels]) for name in levels[-1]}
+
+
+# -- in a process of its own -------------------------------------------------------------------------------
+def _solve(scene: Scene, levels: int) -> dict[str, Any]:
+    from mpi4py import MPI
+
+    from fingerpad.accuracy import Keeper, Solve, solve_again
+    from fingerpad.needs import plan
+    from fingerpad.scene import START
+    from fingerpad.simulation import Simulation, Step
+
+    def on_step(step: Step, done: float) -> None:
+        keeper.see(step)
+
+    def on_load() -> None:
+        if "press" not in keeper.states:
+            keeper.keep("press")
+
+    comm = MPI.COMM_WORLD
+    coarse = scene.model_copy(update={"mesh": scene.mesh.model_copy(update=START)})
+    # As where an accuracy is asked for: a state is carried whole.
+    simulation = Simulation(coarse, plan(coarse), comm, on_step, on_load)
+    keeper = Keeper(simulation)
+    simulation.run()
+    path = solve = keeper.solve()
+    solves = []
+    for mesh in [scene.mesh, *meshes(scene.mesh, levels)]:
+        solve = solve_again(scene.model_copy(update={"mesh": mesh}), solve.states, comm)
+        solves.append(solve)
+        print(mesh, solve.unknowns, solve.factorisations, solve.processor_seconds, file=sys.stderr)
+
+    def told(solve: Solve) -> dict[str, Any]:
+        ridges = {f"{name}_ridges_in_contact": s.row["ridges_in_contact"] for name, s in solve.states.items()}
+        return {
+            "mesh": solve.mesh.model_dump(),
+            "unknowns": solve.unknowns,
+            "factorisations": solve.factorisations,
+            "processor_seconds": solve.processor_seconds,
+            "values": solve.values() | ridges,
+        }
+
+    return {"path": told(path), "own": told(solves[0]), "levels": [told(solve) for solve in solves[1:]]}
+
+
+def _main(arguments: Sequence[str]) -> None:
+    import petsc4py
+
+    petsc4py.init([sys.argv[0]])
+    from fingerpad.processes import limit_processor_time
+
+    limit_processor_time(float(arguments[2]))
+    scene = from_data(json.loads(Path(arguments[0]).read_text(encoding="utf-8")))
+    print(json.dumps(_solve(scene, int(arguments[1]))))
+
+
+if __name__ == "__main__":
+    _main(sys.argv[1:])
