@@ -20,6 +20,7 @@ from benchmarks import arguments
 from benchmarks.convergence import Limit, limit
 from benchmarks.runs import Run
 from fingerpad.accuracy import plus_minus
+from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, from_data
 from fingerpad.sweep import sweep
 
@@ -73,7 +74,7 @@ def study(name: str) -> dict[float, Scene]:
         "penalty": {eps_n: {"mesh": {"contact": AT}, "contact": {"eps_n": eps_n}} for eps_n in PENALTY},
         "check": {FINE["contact"]: {"mesh": FINE}},
     }
-    return {value: from_data(data) for value, data in scenes[name].items()}
+    return {value: by_rule(from_data(data)) for value, data in scenes[name].items()}
 
 
 STUDIES = {  # name: heading, the setting's unit

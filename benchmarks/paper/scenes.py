@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.traces import FORCES, VOLTAGES, trace
+from fingerpad.reach import by_rule
 from fingerpad.scene import Scene
 
 SIZE = 10e-6  # m, contact size
@@ -56,4 +57,4 @@ def rougher(size: float, mu_app: float) -> Scene:
 def _scene(size: float, **data: Any) -> Scene:
     from fingerpad.scene import from_data
 
-    return from_data({"mesh": {"contact": size}} | data)
+    return by_rule(from_data({"mesh": {"contact": size}} | data))
