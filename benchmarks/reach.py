@@ -58,7 +58,7 @@ def collect(known: Mapping[str, Any], out: Path, file: Path) -> dict[str, Any]:
                 found[name] = {"coarse": said.last, "factorisations": said.factorisations, "unknowns": said.unknowns}
             found[name]["touched"] = full
             file.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
-    return found
+    return {name: each for name, each in found.items() if "touched" in each}
 
 
 def page(found: Mapping[str, Any]) -> str:

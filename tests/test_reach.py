@@ -136,8 +136,8 @@ def test_run_says_what_was_left_out_and_what_that_took(lean):
 def test_same_answer_with_fewer_unknowns(lean, tmp_path):
     """As with ridges -10 to 10, on meshes that differ from ridge 4 on.
 
-    Tolerance: they grow by 0.8 a distance, and the finer skin of the other gives by 1.4e-3 of the force. Facets of 30 um
-    are few: a twelfth of the unknowns is spared.
+    Tolerance: they grow by 0.8 a distance, and the finer skin of the other gives by 1.4e-3 of the force. Facets of
+    30 um are few: a twelfth of the unknowns is spared.
     """
     whole = run(by_rule(from_data({"mesh": MESH, "history": [PRESS]})), tmp_path, COMM)
     for name in ("f_contact", "contact_length"):
