@@ -28,7 +28,7 @@ _HEADER = f"""# Which ridges touch
 Made by `environment/run python3 benchmarks/reach.py`; do not edit. *Meshed*: the last ridge that can touch on a mesh
 that a run chooses, {MARGIN} beyond the last one that the coarse finger reaches (`fingerpad/reach.py`,
 `fingerpad/coarse.py`). *Touched*: the last one, on either side, that is in contact in any step of the full run. If it
-is the last one meshed, the run begins again with more ridges. Numbers unrounded: [reach.json](reach.json).
+is the last one meshed, the run begins again with more ridges. With its cost: [reach.json](reach.json).
 """
 
 
