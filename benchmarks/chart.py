@@ -24,6 +24,7 @@ from benchmarks import arguments, errors
 from benchmarks.convergence import Limit
 from benchmarks.paper.style import BLUE, GREEN, GREY, PURPLE, VERMILION, draw
 from benchmarks.runs import Run
+from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, from_data
 from fingerpad.sweep import sweep
 
@@ -102,9 +103,9 @@ class Point:
 
 def scenes() -> dict[tuple[str, str], Scene]:
     """Return all scenes by family and label, the default one first."""
-    found = {("contact size", DEFAULT): Scene()}
+    found = {("contact size", DEFAULT): by_rule(Scene())}
     for family, settings in FAMILIES.items():
-        found |= {(family, label): from_data(data) for label, data in settings.items()}
+        found |= {(family, label): by_rule(from_data(data)) for label, data in settings.items()}
     return found
 
 

@@ -21,6 +21,7 @@ from benchmarks.convergence import Limit, limit
 from benchmarks.runs import Run
 from benchmarks.traces import SITES as AT_SITES
 from fingerpad.accuracy import plus_minus
+from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, from_data
 from fingerpad.sweep import sweep
 
@@ -75,7 +76,7 @@ def study(name: str) -> dict[float, Scene]:
             eps_n: {"mesh": {"contact": AT, "receptor": AT_SITES}, "contact": {"eps_n": eps_n}} for eps_n in PENALTY
         },
     }
-    return {value: from_data(data) for value, data in scenes[name].items()}
+    return {value: by_rule(from_data(data)) for value, data in scenes[name].items()}
 
 
 STUDIES = {  # name: heading, the setting's unit

@@ -18,6 +18,7 @@ from benchmarks import arguments, traces
 from benchmarks.paper.style import BLUE, VERMILION, draw
 from benchmarks.runs import Run
 from fingerpad.command import positive
+from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, SceneError, check, from_data
 from fingerpad.sweep import result, sweep
 
@@ -81,7 +82,7 @@ class Change:
 def scene(size: float, changed: Mapping[str, Any]) -> Scene:
     """Return the default scene at a contact size (m), some of it changed."""
     mesh = {"contact": size, "receptor": traces.SITES} | changed.get("mesh", {})
-    return from_data({**changed, "mesh": mesh})
+    return by_rule(from_data({**changed, "mesh": mesh}))
 
 
 def scenes(size: float) -> dict[tuple[str, str], Scene]:

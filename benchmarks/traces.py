@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks import arguments
+from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene import load as load_scene
 from fingerpad.sweep import Summary, result, sweep
@@ -32,8 +33,9 @@ pseudo-transient continuation), the cut steps and the factorisations. **!** mark
 
 
 def trace(f_ext: float, voltage: float, size: float, **more: Any) -> Scene:
-    """Return the scene of one trace; ``size`` is the contact size (m)."""
-    return from_data({"f_ext": f_ext, "voltage": voltage, "mesh": {"contact": size, "receptor": SITES}} | more)
+    """Return the scene of one trace; ``size`` is the contact size (m). All of one force have the same mesh."""
+    mesh = {"contact": size, "receptor": SITES}
+    return by_rule(from_data({"f_ext": f_ext, "voltage": voltage, "mesh": mesh} | more))
 
 
 def grid(voltages: Sequence[float], forces: Sequence[float], size: float) -> dict[str, Scene]:
@@ -51,7 +53,7 @@ def corners() -> dict[str, Scene]:
         "friction coefficient 1": trace(75.0, 200.0, _COARSE, friction=1.0),
         "Poisson's ratio 0.499": trace(75.0, 200.0, _COARSE, materials=stiff),
         "400 V at 10 N/m": trace(10.0, 400.0, _COARSE),
-        "unloaded at 200 V": load_scene(_ROOT / "demos" / "scenes" / "unload.toml", at),
+        "unloaded at 200 V": by_rule(load_scene(_ROOT / "demos" / "scenes" / "unload.toml", at)),
     }
 
 

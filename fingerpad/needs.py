@@ -1,7 +1,8 @@
 """What a scene needs of the model, decided from the scene alone.
 
 What cannot change any number asked for is left out, and each omission comes with its reason. Nothing here is an
-approximation but what the finite elements make of it: the numbers stay those of the whole model.
+approximation but what the finite elements make of it: the numbers stay those of the whole model. Ridges that cannot
+touch are another matter: a solve decides (:mod:`fingerpad.reach`).
 """
 
 from dataclasses import asdict, dataclass, replace
@@ -43,7 +44,13 @@ class Plan:
         """Return the plan for the whole finger."""
         return replace(self, both_halves=True, omitted=tuple(o for o in self.omitted if o != _HALF))
 
+    def with_ridges(self, last: int, reason: str) -> "Plan":
+        """Return the plan with ridges -last to last alone on the mesh as such, whatever ridges it had before."""
+        others = (o for o in self.omitted if not o.what.startswith(_RIDGES))
+        return replace(self, omitted=(*others, Omission(f"{_RIDGES} ±{last}", reason)))
 
+
+_RIDGES = "contact of the ridges beyond"
 _HALF = Omission(
     "the half at x < 0, but in tables and pictures (displacement.bp, stress.bp and sed.bp hold the other)",
     "no load moves the bone sideways, and the finger is its own mirror image",

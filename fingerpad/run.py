@@ -10,6 +10,7 @@ from fingerpad.accuracy import Keeper, Search, plus_minus
 from fingerpad.advice import advice
 from fingerpad.interrupt import Interrupt, Interrupted
 from fingerpad.needs import plan
+from fingerpad.reach import decide
 from fingerpad.report import Report
 from fingerpad.scene import Scene
 from fingerpad.simulation import Simulation, Step
@@ -25,8 +26,9 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
 
     A scene that asks for an accuracy starts coarse. Where the path cannot be followed so, it starts again finer.
 
-    Where what was left out turns out to matter, all loads are gone through again with it: ridges that come near the
-    screen and could not touch, the other half of a finger that may not stay symmetric.
+    Where the scene does not say how many ridges can touch, a coarse finger does. Where what was left out turns out to
+    matter, all loads are gone through again with it: ridges that come near the screen and could not touch, the other
+    half of a finger that may not stay symmetric.
 
     Returns:
         The summary, the same on every rank; with a key ``failure`` if a load or an accuracy could not be reached, in
@@ -60,10 +62,11 @@ def _run(scene: Scene, folder: Path, comm: MPI.Comm, failed_starts: list[dict[st
                     keeper.see(step)
                 interrupt.stop_if_asked(step.row["step"])
 
-            present, needed, again = scene, plan(scene), True
+            decision = decide(scene, comm)
+            present, needed, again = decision.scene, plan(scene), True
             while again:
                 search: Search | None = None  # one that was woken from is of another finger
-                simulation = Simulation(present, needed, comm, on_step, report.load_reached)
+                simulation = Simulation(present, decision.plan(needed, present), comm, on_step, report.load_reached)
                 report.open(simulation)
                 keeper = Keeper(simulation) if scene.accuracy is not None else None
                 again = False
@@ -82,6 +85,7 @@ def _run(scene: Scene, folder: Path, comm: MPI.Comm, failed_starts: list[dict[st
                         ended["interrupted"] = True
             if search is not None:
                 ended = search.summary() | ({"failure": search.failure} if search.failure else {}) | ended
+            ended["coarse_solve"] = decision.cost or None
             if failed_starts:
                 ended["failed_starts"] = failed_starts
             if "failure" in ended:

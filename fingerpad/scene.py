@@ -1,10 +1,9 @@
 """Scenes: everything a run needs, read from TOML and the command line, and refused in one sentence if impossible."""
 
 import json
-import math
 import re
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -128,10 +127,6 @@ class Scene(Part):
         return self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
 
 
-# The default mesh is wide enough for this force (N/m) and friction. Ridges in contact grow as the force to the 0.27 (15
-# at 46 N/m, 17 at 73 N/m); friction rolls the finger onto its leading side (ridge 10 touches at 1 before full slip).
-_FORCE, _WIDENS = 75.0, 0.27
-_FRICTION, _ROLLS = 0.25, 0.3
 START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}  # of scenes that ask for accuracy
 _DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 
@@ -168,23 +163,9 @@ def from_data(data: Mapping[str, Any]) -> Scene:
     """
     try:
         # As JSON, because there a list is a tuple and a table is a model even under strict rules.
-        return Scene.model_validate_json(json.dumps(_coarse_start(_wide_enough(data)), default=str), strict=True)
+        return Scene.model_validate_json(json.dumps(_coarse_start(data), default=str), strict=True)
     except ValidationError as error:
         raise SceneError(first_error(error, Scene)) from None
-
-
-def _wide_enough(data: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Mesh more ridges to touch under a larger force or friction, if the scene does not say how many."""
-    mesh, history = data.get("mesh", {}), data.get("history")
-    if not isinstance(mesh, dict) or "touching_half_arc" in mesh:
-        return data
-    loads = [data, *(history if isinstance(history, list | tuple) else ())]
-    force = _largest(load.get("f_ext") for load in loads if isinstance(load, Mapping)) / _FORCE
-    rolling = _largest([data.get("friction")]) / _FRICTION
-    wider = max(force, 1.0) ** _WIDENS * max(rolling, 1.0) ** _ROLLS
-    if wider == 1.0:
-        return data
-    return {**data, "mesh": {**mesh, "touching_half_arc": MeshSize().touching_half_arc * wider}}
 
 
 def _coarse_start(data: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -193,11 +174,6 @@ def _coarse_start(data: Mapping[str, Any]) -> Mapping[str, Any]:
     if not (isinstance(mesh, dict) and isinstance(accuracy, dict) and accuracy):
         return data
     return {**data, "mesh": START | mesh}
-
-
-def _largest(values: Iterable[Any]) -> float:
-    """Return the largest finite number among values that may be anything; zero if there is none."""
-    return max((float(v) for v in values if isinstance(v, float | int) and 0 < v < math.inf), default=0.0)
 
 
 def check(scene: Scene) -> None:

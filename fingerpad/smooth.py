@@ -16,6 +16,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from fingerpad import ridge_cell
+from fingerpad.reach import by_rule
 from fingerpad.rungs import Answer, Cost, Stopwatch, at_rest, at_slip, refuse_history
 from fingerpad.scene import Scene, SceneError
 from fingerpad.simulation import solids
@@ -53,7 +54,7 @@ def sizes(scene: Scene) -> MeshSize:
     quarter = scene.geometry.ridge_wavelength / 4
     return MeshSize(
         contact=quarter, receptor=quarter, interface=quarter, coarsest=_COARSEST, growth=_GROWTH,
-        touching_half_arc=scene.mesh.touching_half_arc, touching_fraction=1.0,
+        touching_half_arc=by_rule(scene).mesh.touching_half_arc, touching_fraction=1.0,
     )  # fmt: skip
 
 

@@ -14,7 +14,13 @@ _SHARP_SAMPLES = 128  # of the VE-D junction, whose tips have a radius of some u
 
 
 def touching_ridges(finger: Fingertip, size: MeshSize) -> range:
-    """Return the numbers of the ridges that are meshed finely enough to touch the screen."""
+    """Return the numbers of the ridges that are meshed finely enough to touch the screen.
+
+    Raises:
+        GeometryError: it was not decided how many.
+    """
+    if size.touching_half_arc is None:
+        raise GeometryError("touching_half_arc is not given; it must be a length, or be decided by a run")
     last = int(size.touching_half_arc / finger.ridge_wavelength + 0.5)
     last = min(last, (finger.ridge_count - 1) // 2)
     return range(-last, last + 1)
@@ -49,7 +55,7 @@ def build(finger: Fingertip, size: MeshSize, receptors: bool = True, half: bool 
         The length of gmsh's unit in m.
 
     Raises:
-        GeometryError: see :func:`check`.
+        GeometryError: see :func:`check` and :func:`touching_ridges`.
     """
     profiles = check(finger, size)
     touching = [j for j in touching_ridges(finger, size) if j >= 0 or not half]

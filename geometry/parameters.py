@@ -89,9 +89,9 @@ class MeshSize(BaseModel):
     coarsest: Length = 1e-3
     growth: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 0.25
     """Increase of the element size per distance."""
-    touching_half_arc: Length = 5e-3
+    touching_half_arc: Length | None = None
     """Arc length on either side of the centre within which ridges can touch; a run that finds contact at
-    its end says so and begins again with more. Enough for 75 N/m and a friction coefficient of 0.25; a scene
-    with more of either, and no word of this, takes more."""
+    its end says so and begins again with more. Without it the run asks a coarse finger
+    (:mod:`fingerpad.reach`); a finger is meshed with a number only."""
     touching_fraction: Annotated[float, Field(gt=0, le=1)] = 0.4
     """Part of a ridge's period, about its tip, that can touch; the grooves are coarser."""

@@ -345,21 +345,3 @@ def test_history_and_a_default_load_s_value(key, value):
 def test_package_imports_nothing():
     code = "import sys; import fingerpad; sys.exit(any(m in sys.modules for m in ('numpy', 'pydantic', 'gmsh')))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
-
-
-@pytest.mark.parametrize(
-    ("data", "widened"),
-    [
-        ({"f_ext": 75}, False),
-        ({"f_ext": 150}, True),
-        ({"friction": 1.0}, True),
-        ({"friction": 0.1, "f_ext": 20}, False),
-        ({"history": [{"name": "a", "f_ext": 10}, {"name": "b", "f_ext": 150.0}]}, True),
-        ({"f_ext": 150, "mesh": {"touching_half_arc": 5e-3}}, False),
-    ],
-)
-def test_larger_force_may_touch_more_ridges(data, widened):
-    """Unless the scene says how many; what was chosen is among the parameters, so that they give the same run again."""
-    scene = scenes.from_data(data)
-    assert (scene.mesh.touching_half_arc > 5e-3) == widened
-    assert scenes.from_data(scene.parameters()) == scene

@@ -35,6 +35,12 @@ def test_scenes_differ():
     assert len({key(scene) for scene in scenes}) == len(scenes)
 
 
+def test_mesh_is_given():
+    """All traces of one force share their mesh, which no coarse solve decides, and keep their keys."""
+    scenes = [scene for group in traces.GROUPS.values() for scene in group().values()]
+    assert all(scene.mesh.touching_half_arc is not None for scene in scenes)
+
+
 def test_page_counts_what_arrived(tmp_path):
     keep(tmp_path, traces.trace(75.0, 200.0, 10e-6))
     keep(tmp_path, traces.trace(5.0, 200.0, 10e-6), full_slip=False, slip_mu_app=None, failure="step 9: stuck")

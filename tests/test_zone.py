@@ -1,14 +1,21 @@
 """Ridges that were not expected to touch are woken when they might, and the run is the one that had them all along."""
 
 import csv
+from dataclasses import replace
 
+import numpy as np
 import pytest
 from mpi4py import MPI
 
+from fingerpad import needs
+from fingerpad import run as run_module
+from fingerpad.needs import plan
 from fingerpad.run import run
 from fingerpad.scene import from_data
-from fingerpad.zone import Zone
+from fingerpad.simulation import Simulation
+from fingerpad.zone import Woken, Zone, ZoneExceeded
 from geometry import fingertip
+from variational.stability import Stability, StabilityCheck
 
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8}
 WAVELENGTH = 483e-6
@@ -70,3 +77,77 @@ def test_how_many_are_woken(half_arc, more):
         return
     before, after = (fingertip.touching_ridges(s.geometry, s.mesh)[-1] for s in (scene, wider))
     assert after - before == more
+
+
+# -- skin beyond the last ridge ----------------------------------------------------------------------------
+def brought_near(half_arc: float, clearance: float) -> Simulation:
+    """Return a finger that touches nowhere, rolled onto its side so that ridge 6 is lowest, at a height (m)."""
+    scene = from_data({"mesh": MESH | {"touching_half_arc": half_arc}, "geometry": {"ridge_count": 15}})
+    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
+    problem, (tip, before) = simulation.problem, simulation.profiles.point(np.array([6.0, 5.99]) * WAVELENGTH, 0.0)
+    slope = -np.arctan2(*(tip - before)[::-1])
+    turn = np.array([[np.cos(slope), -np.sin(slope)], [np.sin(slope), np.cos(slope)]])
+    problem.u.interpolate(lambda x: turn @ (x[:2] - tip[:, None]) + [[tip[0]], [clearance]] - x[:2])
+    return simulation
+
+
+def look(simulation: Simulation) -> None:
+    simulation._zone.check(simulation.ridges, simulation.observer.ridge_loads())
+
+
+def test_skin_that_comes_near_is_woken():
+    """Ridge 6 is at 8 um, where the voltage reaches, and none of the ridges meshed to touch does."""
+    simulation = brought_near(4 * WAVELENGTH, 8e-6)
+    assert not simulation.observer.ridge_loads().length.any()
+    with pytest.raises(
+        Woken, match="skin beyond the ridges that are meshed to touch is at a height of 8e-06 m"
+    ) as wake:
+        look(simulation)
+    assert fingertip.touching_ridges(wake.value.scene.geometry, wake.value.scene.mesh)[-1] == 6
+
+
+def test_skin_that_stays_clear_is_not_woken():
+    look(brought_near(4 * WAVELENGTH, 12e-6))
+
+
+@pytest.mark.parametrize(("clearance", "exceeded"), [(8e-6, False), (-1e-6, True)])
+def test_skin_beyond_all_ridges_may_come_near_but_not_touch(clearance, exceeded):
+    """There are no more ridges to wake: 15 can touch, and skin between their tips is the lowest here."""
+    simulation = brought_near(7 * WAVELENGTH, 1e-3)
+    simulation._zone._lowest_outside = lambda: clearance
+    if not exceeded:
+        return look(simulation)
+    with pytest.raises(ZoneExceeded, match="the finger has no more ridges"):
+        look(simulation)
+
+
+# -- the other half ----------------------------------------------------------------------------------------
+@pytest.fixture(scope="module")
+def half(tmp_path_factory):
+    """A finger pressed alone, whose half is said not to be stable; nothing is said of the whole."""
+    folder, check = tmp_path_factory.mktemp("half"), StabilityCheck.check
+
+    def unstable(self):
+        return Stability(-1.0, True) if self.solver.antisymmetric_rows() is not None else check(self)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(StabilityCheck, "check", unstable)
+        return folder, press(folder, 1.3e-3)
+
+
+def test_half_that_is_not_stable_is_made_whole(half):
+    folder, summary = half
+    (wake,) = summary["woken"]
+    assert wake["both_halves"] is True and wake["touching_half_arc"] == 1.3e-3
+    assert wake["reason"] == "the half of the finger is not stable, so that the whole may not be symmetric"
+    assert not [omission for omission in summary["omitted"] if "half" in omission["what"]]
+    assert "1.3e-3 m and both halves" in (folder / "run.log").read_text(encoding="utf-8").replace("0.0013", "1.3e-3")
+
+
+def test_finger_made_whole_is_the_one_that_was_whole(half, tmp_path, monkeypatch):
+    """Step for step and digit for digit."""
+    folder, summary = half
+    monkeypatch.setattr(run_module, "plan", lambda scene: replace(needs.plan(scene), both_halves=True))
+    assert press(tmp_path, 1.3e-3)["unknowns"] == summary["unknowns"]
+    for name in ("steps", "ridges", "receptors", "coupling"):
+        assert columns(folder, name) == columns(tmp_path, name), name

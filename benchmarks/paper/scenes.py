@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.traces import FORCES, VOLTAGES, trace
+from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, from_data
 
 SIZE = 10e-6  # m, contact size
@@ -59,4 +60,4 @@ def felt(size: float, voltage: float) -> Scene:
 
 
 def _scene(size: float, **data: Any) -> Scene:
-    return from_data({"mesh": {"contact": size}} | data)
+    return by_rule(from_data({"mesh": {"contact": size}} | data))

@@ -1,0 +1,150 @@
+r"""A cheap coarse finger: which ridge is the last one that the screen reaches.
+
+The smooth layered finger of rung 2 (:mod:`fingerpad.smooth`) with plane junctions and linear elements of half a ridge
+is pressed on springs. For a ridge's law they have one number, the mean pressure that flattens a wave of a half-space
+over its amplitude (Westergaard 1939, doi 10.1115/1.4008919; :math:`E^* = 2 G_0 / (1 - \nu)` of the stratum corneum):
+
+.. math:: p_n = \frac{\pi E^*}{\lambda} \langle -y \rangle_+ .
+
+Friction rolls the finger onto its leading side. At full slip the traction is :math:`-\mu p_n` whatever the way
+there, so that one more solve has it, with all anchors far behind. A voltage draws ridges to the screen, which bears
+both what presses and what attracts: the bone feels it as friction alone,
+
+.. math:: \mu = \mu_0 (1 + f_{el} / f_{ext}),
+
+with the attraction :math:`f_{el}` of as many equal charged cylinders (:mod:`variational.cylinder`) as ridges touch.
+The ridge law's tables would take ten times as long as all of this.
+
+A ridge counts where the smooth skin is in contact over more than half of its period. Ridges that barely touch are
+missed, which the margin of :mod:`fingerpad.reach` is for.
+"""
+
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from mpi4py import MPI
+
+from fingerpad.closed_form import tip_radius
+from fingerpad.ridge_cell import flat_junction
+from fingerpad.rungs import Stopwatch
+from fingerpad.scene import Scene
+from fingerpad.simulation import solids
+from fingerpad.smooth import smoothed
+from geometry import fingertip, tags
+from geometry.mesh import TaggedMesh, load
+from geometry.parameters import MeshSize
+from variational.contact import History
+from variational.continuation import Continuation, StepFailed, Target
+from variational.coupling import Coupling
+from variational.cylinder import Cylinder
+from variational.penalty import Penalty
+from variational.problem import Interface, Problem
+from variational.quantities import Observer
+from variational.solver import Solver
+from variational.surface import Surface
+
+_GROWTH, _COARSEST = 0.5, 1e-3  # m
+_TOLERANCE = 1e-6
+_STEPS = 8.0  # largest steps of the loads, over those with which ridges are followed
+_BEHIND = 1.0  # m, farther than any finger slides
+
+
+class NoCoarseSolution(RuntimeError):
+    """The coarse finger says nothing of the scene; why, in a few words."""
+
+
+@dataclass(frozen=True)
+class Reach:
+    """What the coarse finger says."""
+
+    last: int
+    """Largest number, on either side, of a ridge that the screen reaches."""
+    unknowns: int
+    factorisations: int
+    seconds: float
+    """Processor time of this rank, compiled forms and mesh included (s)."""
+
+
+def solve(scene: Scene, comm: MPI.Comm) -> Reach:
+    """Press the coarse finger with the largest load of a scene, and slide it if the bone moves; collective.
+
+    Raises:
+        NoCoarseSolution: no equilibrium was found, or it is beyond the ridges there are.
+    """
+    clock = Stopwatch()
+    try:
+        skin = flat_junction(smoothed(scene.geometry))
+        half = skin.ridge_wavelength / 2
+        size = MeshSize(
+            contact=half / 2, receptor=half, interface=half, coarsest=_COARSEST, growth=_GROWTH,
+            touching_half_arc=skin.ridge_count * half, touching_fraction=1.0,
+        )  # fmt: skip
+        body = load(comm, partial(fingertip.build, skin, size, False), tags.LAYERS.values())
+        pressed = _Finger(scene, body, scene.friction)
+        pressed.press()
+        fingers, touched = [pressed], pressed.touched()
+        if scene.friction > 0 and any(load.bone_x for load in scene.loads()):
+            dragged = _Finger(scene, body, scene.friction * pressed.weight(len(touched)))
+            dragged.drag(pressed)
+            fingers.append(dragged)
+            touched |= dragged.touched()
+    except (StepFailed, ValueError) as error:  # or a scene that is no finger of this kind
+        raise NoCoarseSolution(str(error)) from error
+    last = max(map(abs, touched))
+    if last == (skin.ridge_count - 1) // 2:
+        raise NoCoarseSolution(f"it reaches the last of the ridges, {last}")
+    factorisations = sum(finger.solver.counts.factorisations for finger in fingers)
+    return Reach(last, pressed.solver.layout.global_size, factorisations, clock.seconds())
+
+
+class _Finger:
+    """The coarse finger under a friction coefficient."""
+
+    def __init__(self, scene: Scene, body: TaggedMesh, mu_f: float) -> None:
+        self.scene, self.loads = scene, scene.loads()
+        self.force = max((load.f_ext for load in self.loads if load.f_ext), default=0.0)
+        period, horny = scene.geometry.ridge_wavelength, scene.materials.stratum_corneum
+        self.modulus = 2 * horny.shear_modulus / (1 - horny.poisson)
+        stiffness = np.pi * self.modulus / period
+        self.surface = Surface(body.mesh, body.facet_tags, {j: tags.ridge(j) for j in body.ridges()})
+        interface = Interface(Penalty(stiffness, stiffness), mu_f, scene.h_0, attraction=None)
+        self.problem = Problem(body.mesh, body.cell_tags, self.surface, solids(scene), interface, "P1")
+        rim = body.facet_tags.find(tags.BONE_RIM)
+        self.solver = Solver(self.problem, rim, self.force or 1.0, _TOLERANCE)
+        self.walk = Continuation(Coupling(self.solver, Observer(self.problem), None), step_scale=_STEPS)
+
+    def press(self) -> None:
+        """Press with the largest force, and on to the lowest height of the bone."""
+        if self.force:
+            self.walk.run(Target("press", f_ext=self.force))
+        depth = min((load.bone_height for load in self.loads if load.bone_height is not None), default=0.0)
+        if depth < self.solver.bone[1] or not self.force:
+            self.walk.run(Target("press", bone_height=depth))
+
+    def drag(self, pressed: "_Finger") -> None:
+        """Bring a pressed finger to full slip, in one step."""
+        mine, other = self.solver, pressed.solver
+        mine.x.array_w[:] = other.x.array_r
+        mine.to_fields(mine.x)
+        mine.control, mine.reaction = replace(other.control), other.reaction.copy()
+        h = pressed.problem.history
+        self.problem.set_history(History(h.anchor - _BEHIND, h.pressure, h.x))
+        self.walk.adopt("full slip")
+
+    def touched(self) -> set[int]:
+        """Return the numbers of the ridges that the screen reaches, the central one among them."""
+        lengths = self.walk.observer.ridge_loads(self.walk.surface_state).length
+        half = self.scene.geometry.ridge_wavelength / 2
+        return {0} | {j for j, length in zip(self.surface.names, lengths, strict=True) if length > half}
+
+    def weight(self, ridges: int) -> float:
+        """Return what the screen bears at the largest voltage over what presses."""
+        voltage = max((load.voltage for load in self.loads if load.voltage), default=0.0)
+        f_ext = float(self.solver.reaction[1])
+        if not (voltage and f_ext > 0):
+            return 1.0
+        scene = self.scene
+        closure = scene.roughness.bearing_area(scene.h_0)
+        ridge = Cylinder(tip_radius(scene.geometry), self.modulus, scene.h_0, closure)
+        return ridge.under_load(f_ext / ridges, voltage).f_contact * ridges / f_ext

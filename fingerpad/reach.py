@@ -1,0 +1,81 @@
+"""How many ridges a mesh needs: decided before the finger is meshed, where the scene does not say.
+
+A coarse finger (:mod:`fingerpad.coarse`) says which ridge the screen reaches last, and the mesh has :data:`MARGIN`
+ridges more on either side. Against the full runs the coarse finger is at most one ridge short (``docs/reach.md``), and
+the last ridge that is meshed must stay clear of the screen for the run to go on (:mod:`fingerpad.zone`): two, then.
+Where the coarse finger finds no equilibrium there is a rule of thumb, from full runs of the default finger.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+from mpi4py import MPI
+
+from fingerpad.needs import Plan
+from fingerpad.scene import Scene
+
+MARGIN = 2
+# What the rule of thumb knows: 5 mm are enough for this force (N/m) and friction. Ridges in contact grow as the force
+# to the 0.27 (15 at 46 N/m, 17 at 73 N/m); friction rolls the finger onto its leading side (ridge 10 touches at 1).
+_HALF_ARC = 5e-3
+_FORCE, _WIDENS = 75.0, 0.27
+_FRICTION, _ROLLS = 0.25, 0.3
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What was decided of a scene's mesh, the same on every rank."""
+
+    scene: Scene
+    """With a ``mesh.touching_half_arc``."""
+    reason: str
+    """Why so many ridges; empty where the scene gave the number."""
+    cost: dict[str, Any]
+    """Of the coarse solve, ready for JSON; empty where there was none."""
+
+    def plan(self, needed: Plan, scene: Scene) -> Plan:
+        """Return a plan that says which ridges are left out of the decision's scene, or of a wider one."""
+        from geometry import fingertip  # gmsh: not for those who only read scenes
+
+        last = fingertip.touching_ridges(scene.geometry, scene.mesh)[-1]
+        if not self.reason or last == (scene.geometry.ridge_count - 1) // 2:
+            return needed
+        return needed.with_ridges(last, self.reason)
+
+
+def decide(scene: Scene, comm: MPI.Comm) -> Decision:
+    """Decide how many ridges can touch; collective."""
+    from fingerpad import coarse  # dolfinx: not for those who want the rule alone
+
+    if scene.mesh.touching_half_arc is not None:
+        return Decision(scene, "", {})
+    try:
+        found = coarse.solve(scene, comm)
+    except coarse.NoCoarseSolution as failure:
+        reason = f"a rule of thumb says so, since a coarse solve failed: {failure}"
+        return Decision(by_rule(scene), reason, {"failure": str(failure)})
+    half_arc = (found.last + MARGIN) * scene.geometry.ridge_wavelength
+    reason = f"a coarse solve shows ridge {found.last} to be the last that the screen reaches"
+    cost = {
+        "last_ridge": found.last,
+        "unknowns": found.unknowns,
+        "factorisations": found.factorisations,
+        "processor_seconds": found.seconds,
+    }
+    return Decision(_with(scene, half_arc), reason, cost)
+
+
+def by_rule(scene: Scene) -> Scene:
+    """Return the scene with so many ridges as the rule of thumb says, if it does not say itself.
+
+    A series of runs over voltages shares a mesh so, whatever a coarse solve would say of each.
+    """
+    if scene.mesh.touching_half_arc is not None:
+        return scene
+    force = max((load.f_ext for load in scene.loads() if load.f_ext), default=0.0) / _FORCE
+    wider = max(force, 1.0) ** _WIDENS * max(scene.friction / _FRICTION, 1.0) ** _ROLLS
+    return _with(scene, _HALF_ARC * wider)
+
+
+def _with(scene: Scene, half_arc: float) -> Scene:
+    return scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"touching_half_arc": half_arc})})

@@ -1,0 +1,75 @@
+"""Accuracy asked for, judged: the scenes drawn, and what the page says of made-up answers."""
+
+import json
+
+import pytest
+
+from benchmarks import accuracy, limits, untuned
+from benchmarks.convergence import Limit
+from fingerpad.scene import START, Scene
+from fingerpad.sweep import key
+
+
+def test_the_same_scenes_are_drawn_each_time():
+    first, again = untuned.scenes(), untuned.scenes()
+    assert first == again
+    assert len({key(scene) for scene in first.values()}) == untuned.COUNT
+
+
+def test_nothing_of_the_mesh_is_chosen_where_an_accuracy_is_asked():
+    """It starts from the sizes any such scene starts from."""
+    scene = untuned.asked(next(iter(untuned.scenes().values())), mu_app=0.01)
+    assert {name: getattr(scene.mesh, name) for name in START} == START
+    assert scene.accuracy is not None
+
+
+def summary(**quantities):
+    """Made-up ends: value, error and what was allowed, by name."""
+    rows = {
+        n: {"value": v, "error": e, "allowed": a, "shares": {}, "orders": {}} for n, (v, e, a) in quantities.items()
+    }
+    mesh = Scene().mesh.model_dump()
+    solve = {"mesh": mesh, "unknowns": 100, "factorisations": 7, "processor_seconds": 1.0}
+    found = {"reached": True, "mesh": mesh, "quantities": rows, "solves": [solve], "unknowns_times_factorisations": 700}
+    return {"accuracy": found}
+
+
+ENDS = {
+    "slip_mu_app": Limit(0.5, 0.001, 1.0),
+    "slip_f_t": Limit(37.5, 0.1, 1.0),
+    "slip_sed_0": Limit(10.0, 0.1, 1.0),
+    "slip_sed_1": Limit(100.0, 0.1, 1.0),
+}
+
+
+def test_errors_are_those_against_the_limit():
+    """0.51 +- 0.02 against 0.5: an error of 2 %, an estimate of 4 %, an effectivity of 2."""
+    (found,) = accuracy.judged(summary(slip_mu_app=(0.51, 0.02, 0.005)), ENDS)
+    assert (found.error, found.estimate, found.allowed) == pytest.approx((0.02, 0.04, 0.01), rel=1e-12)
+    assert found.effectivity == pytest.approx(2, rel=1e-12)
+
+
+def test_energy_density_counts_over_the_largest_site():
+    """And only where an accuracy of it is asked for; friction force is friction over a given force."""
+    found = accuracy.judged(
+        summary(slip_sed_0=(11.0, 2.0, 5.0), slip_sed_1=(100.0, 1.0, None), slip_f_t=(37.0, 1.0, None)), ENDS
+    )
+    assert [(row.name, row.error) for row in found] == [("slip_sed_0", pytest.approx(0.01, rel=1e-12))]
+
+
+@pytest.mark.parametrize(("value", "words"), [(0.502, "Met in 1 of the 1"), (0.508, "Met in 0 of the 1")])
+def test_page_counts_the_scenes_that_met_it(tmp_path, value, words):
+    """One of the scenes drawn was run, and is off by 0.4 or by 1.6 % of 1 %."""
+    out = tmp_path / "traces"
+    name, (scene, plain, levels) = list(accuracy.loops().items())[-1]
+    folder = out / key(scene)
+    folder.mkdir(parents=True)
+    (folder / "summary.json").write_text(json.dumps(summary(slip_mu_app=(value, 0.003, 0.005))), encoding="utf-8")
+    assert words not in accuracy.loop_tables(out), "its limit is not there yet"
+    (tmp_path / "limits").mkdir()
+    told = {"levels": [{"values": {"slip_mu_app": 0.5 + d}} for d in (0.004, 0.002, 0.001)]}
+    (tmp_path / "limits" / f"{key(plain)}-{levels}.json").write_text(json.dumps(told), encoding="utf-8")
+    assert limits.limits(told)["slip_mu_app"].value == pytest.approx(0.5, rel=1e-12)
+    page = accuracy.loop_tables(out)
+    assert words in page
+    assert f"| {name} | slip mu app | 1 | 0.6 |" in page
