@@ -103,7 +103,7 @@ class Point:
 
 def scenes() -> dict[tuple[str, str], Scene]:
     """Return all scenes by family and label, the default one first."""
-    found = {("contact size", DEFAULT): by_rule(Scene())}
+    found = {("contact size", DEFAULT): errors.DEFAULT}
     for family, settings in FAMILIES.items():
         found |= {(family, label): by_rule(from_data(data)) for label, data in settings.items()}
     return found

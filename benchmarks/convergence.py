@@ -6,7 +6,8 @@ With values :math:`f_k` on meshes of size :math:`h_k`, each half of the one befo
 
 and Roache's grid convergence index the error bar, :math:`1.25\,|f - f_2|` (Roache 1994, doi 10.1115/1.2910291). Where
 the changes do not shrink, or not with the same sign, there is no order to extrapolate with; the last value is then the
-estimate, and the bar three times the largest of the last two changes, the index's factor for what is not known.
+estimate. The bar is three times, the index's factor for what is not known, the last change where they shrink from side
+to side, else the larger of the last two.
 """
 
 from collections.abc import Sequence
@@ -43,7 +44,8 @@ def limit(values: Sequence[float]) -> Limit:
     before, last = np.diff(np.asarray(values, dtype=float)[-3:])
     finest = float(values[-1])
     if last == 0 or before / last <= 1:
-        return Limit(finest, _UNSAFE * float(max(abs(before), abs(last))), None)
+        sides = last != 0 and before / last < -1
+        return Limit(finest, _UNSAFE * float(abs(last) if sides else max(abs(before), abs(last))), None)
     order = float(np.log2(before / last))
     correction = float(last / (2 ** min(order, _HIGHEST) - 1))
     return Limit(finest + correction, _SAFETY * abs(correction), order)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from fingerpad.parameters import Accuracy
+from fingerpad.reach import by_rule
 from fingerpad.scene import START, Scene, SceneError, check, from_data
 
 SEED, COUNT = 2023, 10
@@ -40,7 +41,7 @@ def scenes() -> dict[str, Scene]:
             for table in tables:
                 place = place.setdefault(table, {})
             place[last] = float(f"{value:.3g}")
-        scene = from_data(data)
+        scene = by_rule(from_data(data))
         try:
             check(scene)
         except SceneError:

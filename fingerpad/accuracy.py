@@ -30,7 +30,7 @@ from mpi4py import MPI
 
 from fingerpad.estimate import Knob, errors, to_halve
 from fingerpad.interrupt import Interrupted
-from fingerpad.needs import plan
+from fingerpad.needs import Plan
 from fingerpad.scene import Load, Scene
 from fingerpad.simulation import Simulation, Step
 from geometry.parameters import MeshSize
@@ -102,11 +102,11 @@ class Keeper:
     def keep(self, name: str) -> None:
         """Keep the present state; collective."""
         s = self._simulation
-        loads = s.observer.ridge_loads(s.continuation.surface_state)
-        f_ext, f_t = float(s.solver.reaction[1]), -float(s.solver.reaction[0])
+        loads = s.ridge_loads()
+        f_ext, f_t = float(s.solver.reaction[1]), 0.0 - float(s.solver.reaction[0])  # no negative zero
         row = {
             "f_t": f_t,
-            "mu_app": f_t / f_ext,
+            "mu_app": f_t / f_ext if name == "slip" else 0.0,
             "f_electrostatic": float(loads.f_attraction.sum()),
             "f_contact": float(loads.f_contact.sum()),
             "bone_height": float(s.solver.bone[1]),
@@ -125,13 +125,13 @@ class Keeper:
         return Solve(self.states, s.scene.mesh, s.unknowns, s.solver.counts.factorisations, seconds)
 
 
-def solve_again(scene: Scene, states: Mapping[str, State], comm: MPI.Comm) -> Solve:
+def solve_again(scene: Scene, needed: Plan, states: Mapping[str, State], comm: MPI.Comm) -> Solve:
     """Solve for states of a scene's finger on the scene's mesh; collective.
 
     Raises:
         StepFailed: see :meth:`fingerpad.simulation.Simulation.adopt`.
     """
-    simulation = Simulation(scene, plan(scene), comm, lambda step, done: None, lambda: None)
+    simulation = Simulation(scene, needed, comm, lambda step, done: None, lambda: None)
     keeper = Keeper(simulation)
     for name, state in states.items():
         simulation.adopt(state.carried, _WORDS[name], state.direction)
@@ -153,12 +153,19 @@ class Search:
     """
 
     def __init__(
-        self, scene: Scene, path: Solve, comm: MPI.Comm, say: Callable[[str], None], pause: Callable[[], None]
+        self,
+        scene: Scene,
+        needed: Plan,
+        path: Solve,
+        comm: MPI.Comm,
+        say: Callable[[str], None],
+        pause: Callable[[], None],
     ) -> None:
         """Start from a path.
 
         Args:
-            scene: with an ``accuracy``.
+            scene: with an ``accuracy``, or only an estimate is made.
+            needed: the parts of the model that its states have.
             path: its states.
             comm: communicator of the meshes.
             say: prints a line.
@@ -167,9 +174,8 @@ class Search:
         Raises:
             StepFailed: the path has no state in which what is asked for is known.
         """
-        assert scene.accuracy is not None
-        self.scene, self.comm, self.say, self.pause = scene, comm, say, pause
-        self.asked = scene.accuracy.tolerances()
+        self.scene, self._needed, self.comm, self.say, self.pause = scene, needed, comm, say, pause
+        self.asked = {} if scene.accuracy is None else scene.accuracy.tolerances()
         self.base = self._path = self._stepped = path
         self.solves, self.failure = [path], ""
         self.notes: list[str] = []
@@ -177,7 +183,7 @@ class Search:
             raise StepFailed(
                 f"accuracy.{name} is {self.asked[name]:g}, which full slip decides, and that was not reached"
             )
-        if not path.states:
+        if self.asked and not path.states:
             raise StepFailed("accuracy is given and the history has neither normal contact nor full slip")
         self.knobs = {key: Knob() for key in _SIZES if key != "receptor" or "sed" in self.asked or self._looks()}
         if scene.friction > 0 and "normal" in path.states and {"contact_length", "sed"} & set(self.asked):
@@ -197,7 +203,7 @@ class Search:
         try:
             if self.asked:
                 self._refine()
-            else:
+            elif self.base.states:
                 for key in self.knobs:
                     self._see(key, self._at(self._mesh({key: -1})), self.base)
                 self._tell()
@@ -271,7 +277,7 @@ class Search:
         """Return the states on a mesh, from those in use or from others where they are given."""
         self.pause()
         scene = self.scene.model_copy(update={"mesh": mesh})
-        found = solve_again(scene, {**self.base.states, **(states or {})}, self.comm)
+        found = solve_again(scene, self._needed, {**self.base.states, **(states or {})}, self.comm)
         self._note(found)
         return found
 
@@ -287,7 +293,7 @@ class Search:
             assert keeper is not None
             keeper.see(step)
 
-        simulation = Simulation(scene, plan(self.scene), self.comm, on_step, lambda: None)
+        simulation = Simulation(scene, self._needed, self.comm, on_step, lambda: None)
         keeper = Keeper(simulation)
         simulation.run()
         found = keeper.solve()

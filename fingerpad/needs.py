@@ -34,6 +34,8 @@ class Plan:
     """Receptor sites, and elements small enough for them."""
     both_halves: bool
     """The finger on both sides of x = 0."""
+    errors: bool
+    """Discretisation errors, from states solved again on other meshes."""
     omitted: tuple[Omission, ...]
 
     def table(self) -> list[dict[str, str]]:
@@ -68,8 +70,12 @@ def plan(scene: Scene) -> Plan:
         omitted.append(Omission("friction and its history", "the friction coefficient is 0"))
     if not receptors:
         omitted.append(Omission("receptor sites and their fine elements", "output.receptors is false"))
-    # A state is carried to another mesh whole.
-    both_halves = scene.accuracy is not None or any(load.bone_x for load in scene.loads())
+    carried, errors = scene.numerics.element != "P2-P1", scene.output.errors or scene.accuracy is not None
+    if not carried:
+        omitted.append(Omission("discretisation errors", "the pressure of P2-P1 cannot be carried to another mesh"))
+    elif not errors:
+        omitted.append(Omission("discretisation errors", "output.errors is false"))
+    both_halves = any(load.bone_x for load in scene.loads())
     if not both_halves:
         omitted.append(_HALF)
-    return Plan(voltage, friction, receptors, both_halves, tuple(omitted))
+    return Plan(voltage, friction, receptors, both_halves, carried and errors, tuple(omitted))

@@ -68,7 +68,7 @@ class Load(Part):
 
 
 class Accuracy(Part):
-    """Discretisation errors that are asked for, relative; without any, errors are estimated and nothing is refined.
+    """Discretisation errors that are asked for, relative.
 
     See :mod:`fingerpad.estimate` and :mod:`fingerpad.accuracy`. Friction is that of full slip, lengths and energy
     densities are those of normal contact and of full slip.
@@ -79,6 +79,12 @@ class Accuracy(Part):
     contact_length: Tolerance | None = None
     sed: Tolerance | None = None
     """At the Merkel sites of the ridges that can touch, over the largest of them."""
+
+    @model_validator(mode="after")
+    def _asks(self) -> "Accuracy":
+        if not self.tolerances():
+            raise ValueError(f"accuracy is empty; give at least one of {', '.join(type(self).model_fields)}")
+        return self
 
     def tolerances(self) -> dict[str, float]:
         """Return what is asked for, by quantity."""
@@ -243,6 +249,9 @@ class Output(Part):
 
     receptors: Annotated[bool, Field(strict=True)] = True
     """Strain energy density at the Merkel and Meissner sites, with elements of ``mesh.receptor`` at them."""
+    errors: Annotated[bool, Field(strict=True)] = True
+    """Discretisation errors of the results; see :mod:`fingerpad.accuracy`. Where an accuracy is asked for they are
+    estimated in any case."""
 
 
 class Numerics(Part):

@@ -38,7 +38,7 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
     while True:
         summary = _run(scene, folder, comm, starts)
         finer = scene.mesh.contact / 2
-        asked = scene.accuracy is not None and bool(scene.accuracy.tolerances())
+        asked = scene.accuracy is not None
         lost = "failure" in summary and "accuracy" not in summary and "interrupted" not in summary
         if not (asked and lost and finer >= _FINEST_START):
             return summary
@@ -68,13 +68,13 @@ def _run(scene: Scene, folder: Path, comm: MPI.Comm, failed_starts: list[dict[st
                 search: Search | None = None  # one that was woken from is of another finger
                 simulation = Simulation(present, decision.plan(needed, present), comm, on_step, report.load_reached)
                 report.open(simulation)
-                keeper = Keeper(simulation) if scene.accuracy is not None else None
+                keeper = Keeper(simulation) if needed.errors else None
                 again = False
                 try:
                     simulation.run()
                     if keeper is not None:
                         pause = partial(interrupt.stop_if_asked, simulation.continuation.steps)
-                        search = Search(present, keeper.solve(), comm, report.say, pause)
+                        search = Search(present, needed, keeper.solve(), comm, report.say, pause)
                         search.run()
                 except Woken as wake:
                     present, needed, again = wake.scene, wake.needed, True

@@ -126,7 +126,7 @@ class Simulation:
             by_gap=contact.length == "gap",
         )
         self.continuation = Continuation(self.coupling, self._accepted, step_scale=numerics.step_scale)
-        self.energy = EnergyBook(self.problem, *self._state(), copies=2 if half else 1)
+        self.energy = EnergyBook(self.problem, *self._state(), copies=self._copies)
         self.unknowns = self.solver.layout.global_size
         self.full_slip = False
         self.checks: dict[int, Checked] = {}
@@ -153,6 +153,11 @@ class Simulation:
                 self._check_stability()
             self.on_load()
 
+    def ridge_loads(self) -> RidgeLoads:
+        """Return the resultants of all ridges that can touch, of the whole finger; collective."""
+        loads = self.observer.ridge_loads(self.continuation.surface_state)
+        return loads if self.plan.both_halves else mirror.loads(loads)
+
     def adopt(self, carried: Carried, name: str, direction: int = 0) -> None:
         """Solve again for a state that was reached on another mesh of the same finger.
 
@@ -176,8 +181,9 @@ class Simulation:
         give(carried, self.coupling, direction * _SLIDE_ON)
         self._load = name
         self.continuation.adopt(name)
-        self.energy = EnergyBook(self.problem, *self._state())  # what was dissipated on the way is not known
-        loads = self.observer.ridge_loads(self.continuation.surface_state)
+        # What was dissipated on the way is not known.
+        self.energy = EnergyBook(self.problem, *self._state(), copies=self._copies)
+        loads = self.ridge_loads()
         self._check_balance(loads)
         self._zone.check(self.ridges, loads)
         if direction and not self._slides_on(Load(name=name, bone_x=self.solver.control.x + direction)):
@@ -210,6 +216,10 @@ class Simulation:
                 reason = "the half of the finger is not stable, so that the whole may not be symmetric"
                 raise Woken(reason, self.scene, self.plan.with_both_halves())
 
+    @property
+    def _copies(self) -> int:
+        return 1 if self.plan.both_halves else 2
+
     # -- reports ---------------------------------------------------------------------------------------
     def _state(self) -> tuple[SurfaceState, Array, Array, Array]:
         solver = self.solver
@@ -217,9 +227,9 @@ class Simulation:
 
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
         state = self.continuation.surface_state
-        loads, d_eq = self.observer.ridge_loads(state), self.coupling.d_eq
+        loads, d_eq = self.ridge_loads(), self.coupling.d_eq
         if not self.plan.both_halves:
-            loads, d_eq = mirror.loads(loads), np.array(mirror.values(list(d_eq)))
+            d_eq = np.array(mirror.values(list(d_eq)))
         if _jumped(attempt):
             self._check_stability()
         states = [self.closure.state(float(p), self._voltage) if self.closure else "" for p in loads.p_c]

@@ -11,6 +11,7 @@ from fingerpad import accuracy
 from fingerpad import run as running
 from fingerpad.accuracy import Search, Solve, State, plus_minus
 from fingerpad.interrupt import Interrupted
+from fingerpad.needs import plan
 from fingerpad.scene import SceneError, from_data
 from fingerpad.sweep import key
 from variational.continuation import StepFailed
@@ -27,7 +28,7 @@ def mu_app(mesh) -> float:
     return EXACT * (1 + 0.08 * mesh.contact / 20e-6 - 0.02 * (mesh.growth / 0.5) ** 2)
 
 
-def known(scene, states, comm) -> Solve:
+def known(scene, needed, states, comm) -> Solve:
     row = {
         "f_t": 75 * mu_app(scene.mesh),
         "mu_app": mu_app(scene.mesh),
@@ -39,9 +40,9 @@ def known(scene, states, comm) -> Solve:
 
 
 def search(monkeypatch, asked, solve=known, pause=lambda: None) -> Search:
-    scene = from_data({"accuracy": asked})
+    scene = from_data({"accuracy": asked} if asked else {})
     monkeypatch.setattr(accuracy, "solve_again", solve)
-    found = Search(scene, known(scene, {}, MPI.COMM_SELF), MPI.COMM_SELF, lambda text: None, pause)
+    found = Search(scene, plan(scene), known(scene, None, {}, MPI.COMM_SELF), MPI.COMM_SELF, lambda text: None, pause)
     found.run()
     return found
 
@@ -81,9 +82,9 @@ def test_estimate_alone_refines_nothing(monkeypatch):
     """Coarser meshes tell the error: none is finer than the scene's."""
     sizes = []
 
-    def noted(scene, states, comm):
+    def noted(scene, needed, states, comm):
         sizes.append(scene.mesh)
-        return known(scene, states, comm)
+        return known(scene, needed, states, comm)
 
     found = search(monkeypatch, {}, noted)
     own = found.scene.mesh
@@ -100,7 +101,7 @@ def test_estimate_alone_refines_nothing(monkeypatch):
 def test_estimate_alone_that_is_lost_is_no_failure(monkeypatch):
     """The run is what was asked for; that it comes without its error is said."""
 
-    def lost(scene, states, comm):
+    def lost(scene, needed, states, comm):
         raise StepFailed("full slip found no equilibrium")
 
     found = search(monkeypatch, {}, lost)
@@ -111,8 +112,8 @@ def test_estimate_alone_that_is_lost_is_no_failure(monkeypatch):
 def test_says_when_the_accuracy_is_out_of_reach(monkeypatch):
     """An error that no refinement lowers."""
 
-    def stubborn(scene, states, comm):
-        solve = known(scene, states, comm)
+    def stubborn(scene, needed, states, comm):
+        solve = known(scene, needed, states, comm)
         sign = 1 if round(np.log2(20e-6 / scene.mesh.contact)) % 2 else -1
         solve.states["slip"].row["mu_app"] = EXACT * (1 + 0.1 * sign)
         return solve
@@ -123,7 +124,7 @@ def test_says_when_the_accuracy_is_out_of_reach(monkeypatch):
 
 
 def test_says_when_a_state_is_lost(monkeypatch):
-    def lost(scene, states, comm):
+    def lost(scene, needed, states, comm):
         raise StepFailed("full slip found no equilibrium")
 
     found = search(monkeypatch, {"mu_app": 0.01}, lost)
@@ -142,8 +143,8 @@ def test_stops_when_it_is_asked_to(monkeypatch):
 
 
 def test_says_where_a_ridge_comes_or_goes(monkeypatch):
-    def fewer(scene, states, comm):
-        solve = known(scene, states, comm)
+    def fewer(scene, needed, states, comm):
+        solve = known(scene, needed, states, comm)
         solve.states["slip"].row["ridges_in_contact"] = 16 if scene.mesh.contact < 20e-6 else 17
         return solve
 
@@ -153,22 +154,21 @@ def test_says_where_a_ridge_comes_or_goes(monkeypatch):
 
 def test_friction_without_full_slip_is_refused():
     scene = from_data({"accuracy": {"mu_app": 0.01}})
-    path = Solve({"normal": known(scene, {}, None).states["slip"]}, scene.mesh, 1000, 10, 1.0)
+    path = Solve({"normal": known(scene, None, {}, None).states["slip"]}, scene.mesh, 1000, 10, 1.0)
     with pytest.raises(StepFailed, match="accuracy.mu_app is 0.01, which full slip decides"):
-        Search(scene, path, MPI.COMM_SELF, lambda text: None, lambda: None)
+        Search(scene, plan(scene), path, MPI.COMM_SELF, lambda text: None, lambda: None)
 
 
 # -- scenes ------------------------------------------------------------------------------------------------
 def test_scene_without_accuracy_keeps_its_key():
     """What sweeps have run is found again."""
     assert "accuracy" not in from_data({}).parameters()
-    assert key(from_data({"accuracy": {}})) != key(from_data({}))
+    assert key(from_data({"accuracy": {"f_t": 0.1}})) != key(from_data({}))
 
 
 def test_scene_that_asks_starts_coarse_where_it_gives_no_size():
     mesh = from_data({"accuracy": {"mu_app": 0.01}, "mesh": {"growth": 0.3}}).mesh
     assert (mesh.contact, mesh.growth) == (20e-6, 0.3)
-    assert from_data({"accuracy": {}}).mesh == from_data({}).mesh
 
 
 def test_parameters_in_use_give_the_same_scene():
@@ -181,7 +181,8 @@ def test_parameters_in_use_give_the_same_scene():
     [
         ({"accuracy": {"mu_app": 1.5}}, "accuracy.mu_app is 1.5; it must be less than 1"),
         ({"accuracy": {"f_n": 0.1}}, "accuracy.f_n is not a key of accuracy"),
-        ({"accuracy": {}, "numerics": {"element": "P2-P1"}}, "cannot be carried to another mesh"),
+        ({"accuracy": {}}, "accuracy is empty; give at least one of accuracy.mu_app, accuracy.f_t"),
+        ({"accuracy": {"f_t": 0.1}, "numerics": {"element": "P2-P1"}}, "cannot be carried to another mesh"),
     ],
 )
 def test_impossible_accuracy_is_refused(given, words):
@@ -212,7 +213,7 @@ def test_starts_again_finer_where_the_path_is_lost(monkeypatch, tmp_path, asked,
         return end | {"failed_starts": list(failed_starts)}
 
     monkeypatch.setattr(running, "_run", once)
-    scene = from_data({"accuracy": asked, "mesh": {"contact": 20e-6}})
+    scene = from_data(({"accuracy": asked} if asked else {}) | {"mesh": {"contact": 20e-6}})
     summary = running.run(scene, tmp_path, MPI.COMM_SELF)
     assert sizes == tried
     assert len(summary["failed_starts"]) == len(tried) - 1

@@ -23,9 +23,16 @@ def test_bar_covers_a_second_power():
     assert abs(found.value - 1) < found.bar
 
 
-@pytest.mark.parametrize("values", [[1.0, 1.2, 1.1, 1.15], [1.0, 1.1, 1.2, 1.3], [1.0, 1.0, 1.1, 1.1]])
+def test_swings_that_shrink():
+    """Three times the last change, here of a value that swings about 1 with half the distance each time. Roundoff."""
+    found = limit([1.4, 0.8, 1.1, 0.95])
+    assert found.order is None
+    assert (found.value, found.bar) == (0.95, pytest.approx(3 * 0.15, rel=1e-14))
+
+
+@pytest.mark.parametrize("values", [[1.0, 1.05, 1.2, 1.05], [1.0, 1.1, 1.2, 1.3], [1.0, 1.0, 1.1, 1.1]])
 def test_no_order(values):
-    """Values that swing, or whose changes do not shrink, or vanish: three times the largest of the last two changes.
+    """Changes that swing as far as before, do not shrink, or vanish: three times the largest of the last two.
 
     Tolerance: roundoff.
     """

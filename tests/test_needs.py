@@ -74,7 +74,7 @@ def test_what_matters_for_a_while_stays(data):
 def test_wanted_output_is_no_new_name_for_old_runs():
     """A scene that wants everything has the parameters it had before the key was there, and finds its runs again."""
     assert "output" not in Scene().parameters()
-    assert from_data({"output": {"receptors": False}}).parameters()["output"] == {"receptors": False}
+    assert not from_data({"output": {"receptors": False}}).parameters()["output"]["receptors"]
 
 
 # -- forms -------------------------------------------------------------------------------------------------
@@ -204,8 +204,17 @@ def test_unknowns_spared_without_receptors(coarse):
     assert cells[1] < 11 / 12 * cells[0]
 
 
-def test_a_state_is_carried_whole():
-    """Pressed alone, half of the finger will do; not where its error is asked for, on other meshes."""
-    press = {"history": [{"name": "press", "f_ext": 1.0}]}
-    assert not plan(from_data(press)).both_halves
-    assert plan(from_data(press | {"accuracy": {}})).both_halves
+@pytest.mark.parametrize(
+    ("data", "reason"),
+    [
+        ({"output": {"errors": False}}, "output.errors is false"),
+        ({"numerics": {"element": "P2-P1"}}, "the pressure of P2-P1 cannot be carried to another mesh"),
+        ({}, None),
+        ({"output": {"errors": False}, "accuracy": {"mu_app": 0.01}}, None),
+    ],
+)
+def test_errors_are_estimated_where_they_can_be(data, reason):
+    found = plan(from_data(data))
+    reasons = [o.reason for o in found.omitted if o.what == "discretisation errors"]
+    assert reasons == ([reason] if reason else [])
+    assert found.errors == (reason is None)

@@ -12,6 +12,7 @@ from geometry.mesh import load
 from tests.test_contact import MU_F, make
 from variational.continuation import Continuation, StepFailed, Target
 from variational.coupling import Coupling
+from variational.failure import NotConverged
 from variational.quantities import Observer
 from variational.roughness.bam import BearingArea
 from variational.transfer import carry, give, interpolate
@@ -111,6 +112,41 @@ def test_full_slip_stays_when_it_slides_on(bodies, reached):
     path.run(Target("slide", bone_x=path.solver.control.x + SLIDE))
     assert path.slip == (1.0, True)
     assert path.solver.reaction[0] == pytest.approx(before, rel=1e-6)
+
+
+def test_forces_held_balance_any_state(bodies, reached):
+    """As put in, a state is an equilibrium under them, and none when half of them are let go. Tolerance: roundoff."""
+    path = prepare(bodies[FINE])
+    give(reached[COARSE][1], path.coupling, SLIDE)
+    solver = path.solver
+    solver.hold()
+    before = solver.x.array_r.copy()
+    solver.solve()
+    np.testing.assert_array_equal(solver.x.array_r, before)
+    solver.held = 0.5
+    solver.solve()
+    assert MPI.COMM_WORLD.allreduce(float(np.abs(solver.x.array_r - before).max()), op=MPI.MAX) > 1e-9
+
+
+def test_what_is_out_of_balance_is_let_go_bit_by_bit(bodies, reached, monkeypatch):
+    """Where Newton's method fails at once, the same state is found so. Tolerance: two ends of the loop at 1e-6."""
+    path = prepare(bodies[FINE])
+    give(reached[COARSE][1], path.coupling, SLIDE)
+    solve, calls = path.coupling.solve, []
+
+    def fails_once(creep):
+        calls.append(path.solver.counts.newton)
+        if len(calls) == 1:
+            raise NotConverged("DIVERGED_LOCAL_MIN", False)
+        solve(creep)
+
+    monkeypatch.setattr(path.coupling, "solve", fails_once)
+    attempt = path.adopt("full slip")
+    assert attempt.cutbacks == ["DIVERGED_LOCAL_MIN"]
+    assert attempt.pseudo_transient == 0
+    assert calls[1] > calls[0], "nothing was solved for in between"
+    assert path.solver.held == 0
+    assert -path.solver.reaction[0] == pytest.approx(reached[FINE][2], rel=2e-6)
 
 
 def test_failure_names_the_state(bodies, reached):

@@ -61,14 +61,14 @@ def test_energy_density_counts_over_the_largest_site():
 def test_page_counts_the_scenes_that_met_it(tmp_path, value, words):
     """One of the scenes drawn was run, and is off by 0.4 or by 1.6 % of 1 %."""
     out = tmp_path / "traces"
-    name, (scene, plain, levels) = list(accuracy.loops().items())[-1]
+    name, (scene, plain) = list(accuracy.loops().items())[-1]
     folder = out / key(scene)
     folder.mkdir(parents=True)
     (folder / "summary.json").write_text(json.dumps(summary(slip_mu_app=(value, 0.003, 0.005))), encoding="utf-8")
     assert words not in accuracy.loop_tables(out), "its limit is not there yet"
     (tmp_path / "limits").mkdir()
     told = {"levels": [{"values": {"slip_mu_app": 0.5 + d}} for d in (0.004, 0.002, 0.001)]}
-    (tmp_path / "limits" / f"{key(plain)}-{levels}.json").write_text(json.dumps(told), encoding="utf-8")
+    (tmp_path / "limits" / f"{key(plain)}-{accuracy.LEVELS}.json").write_text(json.dumps(told), encoding="utf-8")
     assert limits.limits(told)["slip_mu_app"].value == pytest.approx(0.5, rel=1e-12)
     page = accuracy.loop_tables(out)
     assert words in page

@@ -43,6 +43,7 @@ _FORCE, _VOLTAGE, _SINK, _SLIDE = 0.067, 0.25, 40e-6, 60e-6
 _SMALLEST = 1e-3  # step below which a load is given up, over the largest
 _MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on when the bone moves
 _LEAP = 1.5  # step tried where the loop over the scales cycles, over the one that led there
+_SMALLEST_BIT = 1 / 64  # of the forces that a state from elsewhere is out of balance by
 _FEW = 6  # factorisations; a step that took no more lets the next one grow
 
 
@@ -245,6 +246,9 @@ class Continuation:
     def adopt(self, name: str) -> Attempt:
         """Solve at the present loads from fields and history that were put in from outside, and accept the state.
 
+        Where Newton's method does not find an equilibrium from there at once, what is out of balance is let go bit by
+        bit; then pseudo-transient continuation is tried.
+
         Args:
             name: what the state is called in a failure.
 
@@ -253,8 +257,10 @@ class Continuation:
         """
         self._now = self._snapshot()
         attempt = Attempt()
-        for creep in (False, True):
+        for creep, bit_by_bit in ((False, False), (False, True), (True, False)):
             try:
+                if bit_by_bit:
+                    self._let_go()
                 self._try((replace(self._now.control), self._now.voltage), attempt, creep)
                 self._accept()
                 return attempt
@@ -263,6 +269,28 @@ class Continuation:
                 attempt.cutbacks.append(str(failure))
                 last = failure
         raise StepFailed(self._describe(Target(name), 0.0, last)) from last
+
+    def _let_go(self) -> None:
+        """Let go bit by bit, at frozen air gaps, of the forces by which the present state is out of balance.
+
+        Raises:
+            NotConverged: not even the smallest bit could be.
+        """
+        solver, bit = self.solver, 0.5
+        solver.new_load(replace(self._now.control), self._now.voltage, slipping=True)
+        solver.hold()
+        try:
+            while solver.held > 0:
+                before, held = solver.x.array_r.copy(), solver.held
+                solver.held = max(held - bit, 0.0)
+                try:
+                    solver.solve()
+                except NotConverged:
+                    solver.x.array_w[:], solver.held, bit = before, held, bit / 2
+                    if bit < _SMALLEST_BIT:
+                        raise
+        finally:
+            solver.held = 0.0
 
     # -- one step --------------------------------------------------------------------------------------
     def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool) -> None:

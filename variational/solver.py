@@ -86,6 +86,7 @@ class Solver:
         force_scale: force per length (N/m) in which residuals are measured.
         stiffness: what a prescribed row's metre is worth in N/m (Pa).
         counts: work done so far.
+        held: part of the forces :meth:`hold` took note of that still acts.
     """
 
     def __init__(
@@ -140,7 +141,8 @@ class Solver:
         self._skin = 2 * nodes + 1  # vertical displacements of the skin that can touch
         self._skin_height = problem.V.tabulate_dof_coordinates()[nodes, 1]
         self.x = self.layout.create_vector()
-        self._f, self._next_x, self._next_f = (self.layout.create_vector() for _ in range(3))
+        self._f, self._next_x, self._next_f, self._unbalanced = (self.layout.create_vector() for _ in range(4))
+        self.held = 0.0
         self._A = self.layout.create_matrix()
         self._snes = self._create_snes(force_scale * tolerance)
 
@@ -204,6 +206,8 @@ class Solver:
             self.reaction = -self._copies * self.layout.rigid_part(f)
             if self.layout.owns_rigid and self.control.y is None:
                 f.array_w[-1] += self.control.force / self._copies[1]
+            if self.held:
+                f.axpy(-self.held, self._unbalanced)
             rows, values = self._prescribed()
             local = rows - self._first_row
             f.array_w[local] = self.stiffness * (x.array_r[local] - values)
@@ -314,6 +318,17 @@ class Solver:
         self.control, self.problem.voltage.value = control, voltage
         self.problem.guess.value = SLIPS if slipping else STICKS
         self._stale = True
+
+    def hold(self) -> None:
+        """Let forces act that balance the present state; :attr:`held` says how much of them.
+
+        Lowered from one to zero bit by bit it leads from any state to an equilibrium (Newton's homotopy; Allgower and
+        Georg 1990, doi 10.1007/978-3-642-61257-2).
+        """
+        self.held = 0.0
+        self._residual(None, self.x, self._f)
+        self._f.copy(self._unbalanced)
+        self.held = 1.0
 
     def solve(self, creep: bool = False) -> None:
         """Find the equilibrium near ``x`` for the current loads and leave it in ``x`` and the problem's u.
