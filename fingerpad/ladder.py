@@ -1,11 +1,12 @@
 """A ladder of models of one scene, the cheapest first: the same keys, side by side, with what each of them cost.
 
-    environment/run python3 -m fingerpad.ladder [--scene scene.toml] [--rung 1 2 3]
+    environment/run python3 -m fingerpad.ladder [--scene scene.toml] [--rung 1 2 3] [--from-rung 2]
         [--contact-length M --ridges N | --run DIR] [--f-ext 75] [--voltage 200] [--out results]
 
     rung 1   ridges as charged cylinders, for a contact length that is known (:mod:`fingerpad.closed_form`)
     rung 2   a smooth finger with one ridge's law as its contact (:mod:`fingerpad.smooth`); tables in DIR/ridge_tables
-    rung 3   the whole cross-section with every ridge (:mod:`fingerpad.run`), left in DIR/full
+    rung 3   the whole cross-section with every ridge (:mod:`fingerpad.run`), left in DIR/full; with --from-rung 2 its
+             full slip alone, from rung 2's (:mod:`fingerpad.start`), nothing left, or else the run as without
 
 Where each rung is good enough: ``docs/ladder.md``.
 """
@@ -13,6 +14,7 @@ Where each rung is good enough: ``docs/ladder.md``.
 import argparse
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +36,22 @@ def full(scene: Scene, folder: Path) -> Answer:
 
     clock = Stopwatch()
     return from_summary(run(scene, folder, MPI.COMM_WORLD), clock.seconds())
+
+
+def started(scene: Scene, folder: Path) -> Answer:
+    """Return rung 3's full slip from rung 2's, or its answer along the path with a note why; collective."""
+    from mpi4py import MPI
+
+    from fingerpad import start
+    from variational.continuation import StepFailed
+
+    clock = Stopwatch()
+    try:
+        return start.answer(scene, folder / "ridge_tables", MPI.COMM_WORLD)
+    except StepFailed as error:
+        found = full(scene, folder / "full")
+        notes = (*found.notes, f"{error}; the path was followed instead")
+        return replace(found, cost=replace(found.cost, seconds=clock.seconds()), notes=notes)
 
 
 def smooth(scene: Scene, folder: Path) -> Answer:
@@ -79,6 +97,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python3 -m fingerpad.ladder", description="Compare models of a scene.")
     add_arguments(parser)
     parser.add_argument("--rung", type=int, nargs="+", choices=(1, 2, 3), default=[1, 2], help="rungs to climb")
+    parser.add_argument("--from-rung", type=int, choices=(2,), help="start rung 3 from this one's full slip")
     parser.add_argument("--contact-length", type=positive(float), metavar="M", help="for rung 1, at the voltage given")
     parser.add_argument("--ridges", type=positive(int), metavar="N", help="on so many ridges")
     parser.add_argument("--run", type=Path, metavar="DIR", help="for rung 1: contact lengths of this full run")
@@ -87,7 +106,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     climb: dict[int, Callable[[], Answer]] = {
         1: lambda: closed_form.solve(scene, _footprint(scene, args)),
         2: lambda: smooth(scene, args.out / "ridge_tables"),
-        3: lambda: full(scene, args.out / "full"),
+        3: lambda: started(scene, args.out) if args.from_rung else full(scene, args.out / "full"),
     }
     try:
         answers = [climb[rung]() for rung in sorted(set(args.rung))]

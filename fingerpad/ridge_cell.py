@@ -40,11 +40,12 @@ from variational.ridge_law import RidgeTable
 from variational.surface import Surface
 
 Array = NDArray[np.float64]
-_VERSION = 1  # of the tables; another one makes the old ones forgotten
+VERSION = 2  # of the tables; another one makes the old ones forgotten
 _DERMIS = 100e-6  # m, of the cell: none of it matters
 _LIGHT = 0.02  # N/m, at which the cell is charged
 _NUDGE = 0.5e-6  # m, over which the tangential stiffness is taken
 _LIFTS = 16  # heights at which the sliding ridge is recorded
+_SNAP = 2e-6  # m, height over which a ridge's forces fall when it lets go
 _APART = np.array([12e-6, 20e-6, 40e-6, 80e-6, 160e-6])  # m, heights of a ridge that has let go
 _NOWHERE = 500e-6  # m, height at which the attraction is no more
 
@@ -101,7 +102,7 @@ def _made_of(scene: Scene) -> dict[str, Any]:
     skin = ("sc_thickness", "ve_thickness", "ridge_wavelength", "ridge_amplitude", "ridge_profile")
     layers = ("stratum_corneum", "viable_epidermis", "dermis", "exponent")
     return {
-        "version": _VERSION,
+        "version": VERSION,
         "voltage": scene.voltage,
         "friction": scene.friction,
         "f_max": _largest(scene.f_ext),
@@ -198,8 +199,9 @@ class _Cell:
         found = np.array(sorted(rows))[:, :4]
         found = found[np.concatenate([[True], np.diff(found[:, 0]) > 1e-9])]
         last = found[-1, 0]
-        # It lets go within a tenth of the way over which it was held, or a micrometre of it.
-        apart = np.concatenate([[last + max(0.5e-6, 0.1 * abs(last))], _APART[_APART > last + 2e-6]])
+        # It lets go at once. On the smooth skin, whose Gauss points are micrometres of height apart at the edge of
+        # contact, a fall steeper than that would leave each of them on or off, with no equilibrium between.
+        apart = np.concatenate([[last + _SNAP], _APART[_APART > last + 2 * _SNAP]])
         pull = [_unpressed(self.finger, self.closure(0.0).d_eq, self.scene, y) for y in apart]
         free = np.stack([apart, 0 * apart, pull, 0 * apart], axis=1)
         everything = np.concatenate([found, free, [[_NOWHERE, 0.0, 0.0, 0.0]]])

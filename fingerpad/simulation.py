@@ -23,6 +23,7 @@ from variational.failure import NotConverged
 from variational.problem import Interface, Ogden, Problem, SaintVenant
 from variational.quantities import Observer, RidgeLoads, SurfaceState
 from variational.solver import Solver
+from variational.squeeze import squeeze
 from variational.stability import Stability, StabilityCheck
 from variational.surface import Surface
 from variational.transfer import Carried, give
@@ -158,29 +159,35 @@ class Simulation:
         loads = self.observer.ridge_loads(self.continuation.surface_state)
         return loads if self.plan.both_halves else mirror.loads(loads)
 
-    def adopt(self, carried: Carried, name: str, direction: int = 0) -> None:
-        """Solve again for a state that was reached on another mesh of the same finger.
+    def adopt(
+        self, carried: Carried, name: str, direction: int = 0, squeezed: tuple[float, float] | None = None
+    ) -> None:
+        """Solve again for a state that was reached on another mesh of the same finger, or of a model of it.
 
         Args:
             carried: the state.
             name: what it is called in a failure.
             direction: 1 or -1 for a state of full slip, the way the bone slides; zero for another.
+            squeezed: depth and reach (m) of :func:`variational.squeeze.squeeze`, for a state of another model, in which
+                the skin is not where it is here; such a state must be stable, too.
 
         Raises:
             StepFailed: no equilibrium was found from there, or it is none (forces out of balance, skin where it was not
-                expected to touch), or full slip is no longer full or not steady.
+                expected to touch), or full slip is no longer full or not steady, or the state is not stable.
         """
         try:
-            self._adopt(carried, name, direction)
+            self._adopt(carried, name, direction, squeezed)
         except (Woken, ZoneExceeded) as error:
             raise StepFailed(
                 f"{name}, solved again with a contact size of {self.scene.mesh.contact:g} m: {error}"
             ) from error
 
-    def _adopt(self, carried: Carried, name: str, direction: int) -> None:
+    def _adopt(self, carried: Carried, name: str, direction: int, squeezed: tuple[float, float] | None) -> None:
         give(carried, self.coupling, direction * _SLIDE_ON)
+        if squeezed is not None:
+            squeeze(self.solver, *squeezed)
         self._load = name
-        self.continuation.adopt(name)
+        self.continuation.adopt(name, bit_by_bit=squeezed is None)
         # What was dissipated on the way is not known.
         self.energy = EnergyBook(self.problem, *self._state(), copies=self._copies)
         loads = self.ridge_loads()
@@ -190,6 +197,11 @@ class Simulation:
             raise StepFailed(
                 f"{name}, solved again with a contact size of {self.scene.mesh.contact:g} m, is not steady"
             )
+        if squeezed is not None:
+            self._check_stability()
+            found = self.checks[self.continuation.steps]
+            if not found.stable:
+                raise StepFailed(f"{name} from another model is {found}")
 
     def _slides_on(self, load: Load) -> bool:
         """Slide a little further: full slip is steady, since the screen looks the same everywhere."""

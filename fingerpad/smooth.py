@@ -7,6 +7,7 @@ at the scene's voltage once it is charged, and of sliding from the moment the bo
 no strain energy at receptors, since near the skin the field is not that of ridges.
 """
 
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -30,6 +31,7 @@ from variational.quantities import Observer
 from variational.ridge_law import RidgeLaw, RidgeTable
 from variational.solver import Solver
 from variational.surface import Surface
+from variational.transfer import Carried, carry
 
 Array = NDArray[np.float64]
 _GROWTH = 0.5
@@ -92,8 +94,52 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Answer
         summary["full_slip"] = False
     else:
         summary |= at_slip(scene.f_ext, scene.friction, slip)
-    more = {"table_seconds": made_in, "table_factorisations": sum(tables.factorisations for tables in used)}
+    more = {
+        "table_seconds": made_in,
+        "table_factorisations": sum(tables.factorisations for tables in used),
+        "table_version": ridge_cell.VERSION,
+    }
     return Answer(2, summary, Cost(took, counts.factorisations, finger.solver.layout.global_size), tuple(notes), more)
+
+
+@dataclass(frozen=True)
+class Slipping:
+    """Rung 2's full slip, as a guess of the ridged finger's."""
+
+    carried: Carried
+    """In the ridged finger's place, by its ridges and at its voltage."""
+    ridges: int
+    """In contact."""
+    factorisations: int
+    unknowns: int
+
+
+def full_slip(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Slipping:
+    """Return rung 2's full slip for the full model to start from; collective.
+
+    Args:
+        scene: press, charge and slide.
+        folder: of the ridges' tables, which are kept.
+        comm: communicator of the mesh.
+
+    Raises:
+        StepFailed: there is none, or rung 2 does not come to it.
+    """
+    if scene.history is not None or scene.numerics.element == "P2-P1" or scene.friction == 0:
+        raise StepFailed("rung 2 has no full slip of a scene with a history, without friction or with element 'P2-P1'")
+    charged = ridge_cell.tables(scene, folder)
+    uncharged = ridge_cell.tables(scene.model_copy(update={"voltage": 0.0}), folder)
+    finger = _SmoothFinger(scene, uncharged, charged, comm)
+    finger.press()
+    found = finger.slide()
+    if found is None:
+        raise StepFailed(f"rung 2 does not come to full slip within {scene.slide_length:g} m of sliding")
+    return Slipping(
+        finger.carried(),
+        found["ridges_in_contact"],
+        finger.solver.counts.factorisations,
+        finger.solver.layout.global_size,
+    )
 
 
 class _SmoothFinger:
@@ -130,6 +176,28 @@ class _SmoothFinger:
         self.walk.run(Target("slide", bone_x=self.scene.slide_length, until_full_slip=True))
         return self._contact() if self.walk.slip[1] else None
 
+    def carried(self) -> Carried:
+        """Return the present state in the ridged finger's place, its air gaps those of the law's mean pressures."""
+        found = carry(self.walk.coupling, self.walk.surface_state)
+        force, _, length = self.law.table.at(self._mean_height())
+        pressure = np.divide(force, length, out=np.zeros_like(force), where=length > 0)
+        closure = self.scene.roughness.bearing_area(self.scene.h_0)
+        d_eq = closure(pressure).d_eq if self.scene.voltage else np.full_like(pressure, np.nan)
+        up = np.array([0.0, ridge_cell.mean_depth(self.scene.geometry)])
+        return replace(
+            found,
+            corners=found.corners + up,
+            skin={j: replace(ridge, origin=ridge.origin + up) for j, ridge in found.skin.items()},
+            d_eq=dict(zip(found.d_eq, map(float, d_eq), strict=True)),
+            gain=dict.fromkeys(found.gain, np.nan),
+            voltage=self.scene.voltage,
+        )
+
+    def _mean_height(self) -> Array:
+        """Return each ridge's mean height (m), shape (ridges,)."""
+        surface, y = self.observer.surface, self.walk.surface_state.y
+        return np.asarray(surface.per_ridge(y) / surface.per_ridge(np.ones_like(y)))
+
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
         """Stop where the law ends."""
         comm = self.solver.layout.comm
@@ -145,7 +213,7 @@ class _SmoothFinger:
         contact, attraction, length = (
             surface.per_ridge(np.asarray(value / period, dtype=float)) for value in self.law.table.at(y)
         )
-        mean = surface.per_ridge(y) / surface.per_ridge(np.ones_like(y))
+        mean = self._mean_height()
         if mean[0] < 0 or mean[-1] < 0:
             raise StepFailed("the skin touches beyond mesh.touching_half_arc, which must be larger")
         return {

@@ -6,11 +6,12 @@ from pathlib import Path
 import pytest
 
 from benchmarks import ladder as page
-from fingerpad import closed_form, ladder
+from fingerpad import closed_form, ladder, ridge_cell, start
 from fingerpad.processes import End
 from fingerpad.report import _NAMED
 from fingerpad.rungs import NAMES
 from fingerpad.scene import SceneError, from_data
+from variational.continuation import StepFailed
 
 
 def scene(**data):
@@ -147,12 +148,28 @@ def test_command_prints_keys_and_notes(capsys):
     assert "rung 1: uncharged contact length interpolated" in printed
 
 
+def test_full_model_without_a_start_follows_the_path(monkeypatch, tmp_path):
+    """Rung 2's state does not serve: the answer is the path's, and a note says why."""
+
+    def lost(*_):
+        raise StepFailed("full slip was not found")
+
+    monkeypatch.setattr(start, "answer", lost)
+    monkeypatch.setattr(ladder, "full", lambda scene, folder: ladder.from_summary(keep(tmp_path)))
+    answer = ladder.started(scene(), tmp_path)
+    assert answer.missing() == []
+    assert answer.notes == ("full slip was not found; the path was followed instead",)
+
+
 def test_command_refuses_half_a_footprint(capsys):
     assert ladder.main(["--rung", "1", "--ridges", "3"]) == 2
     assert "give both or none" in capsys.readouterr().err
 
 
 # -- the benchmark -----------------------------------------------------------------------------------------
+MORE = {"table_version": ridge_cell.VERSION}
+
+
 def test_answers_are_kept_and_failures_asked_again(monkeypatch, tmp_path):
     """Of two scenes one fails: it says how, has no error, and is the only one that is run again."""
     asked = []
@@ -161,7 +178,7 @@ def test_answers_are_kept_and_failures_asked_again(monkeypatch, tmp_path):
         asked.append(scene.voltage)
         if scene.voltage:
             return End(1, "TIME_LIMIT", "not done", "")
-        return End(0, "", "", json.dumps({"summary": {"slip_mu_app": 0.25}, "cost": {}, "more": {}}))
+        return End(0, "", "", json.dumps({"summary": {"slip_mu_app": 0.25}, "cost": {}, "more": MORE}))
 
     monkeypatch.setattr(page, "grid", lambda size: {(75.0, u): scene(voltage=u) for u in (0.0, 200.0)})
     monkeypatch.setattr(page, "ask", ask)

@@ -243,7 +243,7 @@ class Continuation:
         )
 
     # -- a state from elsewhere ------------------------------------------------------------------------
-    def adopt(self, name: str) -> Attempt:
+    def adopt(self, name: str, bit_by_bit: bool = True) -> Attempt:
         """Solve at the present loads from fields and history that were put in from outside, and accept the state.
 
         Where Newton's method does not find an equilibrium from there at once, what is out of balance is let go bit by
@@ -251,15 +251,17 @@ class Continuation:
 
         Args:
             name: what the state is called in a failure.
+            bit_by_bit: whether the second way is worth trying; from a state of another model it leads nowhere.
 
         Raises:
             StepFailed: no equilibrium was found from there.
         """
         self._now = self._snapshot()
         attempt = Attempt()
-        for creep, bit_by_bit in ((False, False), (False, True), (True, False)):
+        ways = (False, False), (False, True), (True, False)
+        for creep, held in ways if bit_by_bit else ways[::2]:
             try:
-                if bit_by_bit:
+                if held:
                     self._let_go()
                 self._try((replace(self._now.control), self._now.voltage), attempt, creep)
                 self._accept()

@@ -1,0 +1,96 @@
+"""The full model's full slip from rung 2's, without its path.
+
+Full slip does not know the path that led there: every point in contact slips one way, and the screen looks the same
+everywhere. So it can be solved for from any guess near enough. Rung 2 has one for the whole finger, less its ridges:
+its displacement, bone and air gaps are put onto the ridged finger, whose ridges then reach some 20 um into the screen;
+they are squeezed out of it (:mod:`variational.squeeze`), evenly over half a ridge or more, and the state is solved for
+at once, in the end by pseudo-transient continuation. What is found is an equilibrium of the unchanged equations, and is
+checked: in balance, at full slip, steady when it slides on, stable.
+
+Not every guess is near enough; where it is not, the path is to be followed. Nor need an equilibrium be the one that the
+path comes to: where ridges jump there are several, and a note says so if rung 2 had another number of them in contact.
+
+Normal contact is left out, since friction makes it depend on the path, of which rung 2 knows nothing.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from mpi4py import MPI
+
+from fingerpad import smooth
+from fingerpad.accuracy import Keeper, Solve
+from fingerpad.needs import plan
+from fingerpad.reach import by_rule
+from fingerpad.rungs import Answer, Cost, Stopwatch, at_slip
+from fingerpad.scene import Scene
+from fingerpad.simulation import Simulation
+from variational.continuation import StepFailed
+
+# Depth (m) and reach (in ridges) of the squeezes to try; found by trial.
+_SQUEEZES = ((0.1e-6, 0.5), (0.3e-6, 5 / 6))
+
+
+@dataclass(frozen=True)
+class Started:
+    """A state of full slip without its path."""
+
+    solve: Solve
+    """Its state ``slip``; factorisations of guesses that were of no use are counted."""
+    smooth: smooth.Slipping
+    """What it was started from."""
+    notes: tuple[str, ...]
+
+
+def full_slip(scene: Scene, folder: Path, comm: MPI.Comm) -> Started:
+    """Return the full model's full slip from rung 2's; collective.
+
+    Args:
+        scene: press, charge and slide.
+        folder: of the ridges' tables, which are kept.
+        comm: communicator of the mesh.
+
+    Raises:
+        StepFailed: rung 2 does not come to full slip, or the full model's was not found from there.
+    """
+    scene = by_rule(scene)  # rung 2 has these ridges
+    guess = smooth.full_slip(scene, folder, comm)
+    simulation = Simulation(scene, plan(scene), comm, lambda step, done: None, lambda: None)
+    keeper = Keeper(simulation)
+    failures = []
+    for depth, reach in _SQUEEZES:
+        squeezed = depth, reach * scene.geometry.ridge_wavelength
+        direction = int(np.sign(scene.slide_length))
+        try:
+            simulation.adopt(guess.carried, "full slip", direction, squeezed)
+            break
+        except StepFailed as error:
+            failures.append(str(error))
+    else:
+        raise StepFailed(f"full slip was not found from rung 2's: {failures[-1]}")
+    keeper.keep("slip")
+    found = int(keeper.states["slip"].row["ridges_in_contact"])
+    notes = ["full slip was solved for from rung 2's; normal contact depends on the path, which was not followed"]
+    if found != guess.ridges:
+        notes.append(
+            f"{found} ridges are in contact, rung 2 had {guess.ridges}: where ridges come and go, the path may end in "
+            "another equilibrium"
+        )
+    return Started(keeper.solve(), guess, tuple(notes))
+
+
+def answer(scene: Scene, folder: Path, comm: MPI.Comm) -> Answer:
+    """Return rung 3's answer from rung 2's state; collective.
+
+    Raises:
+        StepFailed: see :func:`full_slip`.
+    """
+    clock = Stopwatch()
+    found = full_slip(scene, folder, comm)
+    row = found.solve.states["slip"].row
+    names = ("f_contact", "f_electrostatic", "bone_height", "ridges_in_contact", "contact_length")
+    summary = at_slip(scene.f_ext, scene.friction, {name: row[name] for name in names})
+    more = {"rung_2_factorisations": found.smooth.factorisations, "rung_2_unknowns": found.smooth.unknowns}
+    cost = Cost(clock.seconds(), found.solve.factorisations, found.solve.unknowns)
+    return Answer(3, summary, cost, found.notes, more)

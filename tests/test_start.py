@@ -1,0 +1,65 @@
+"""Full slip from rung 2's state, on a finger of few ridges: that of the path, checked, or else the path itself."""
+
+import pytest
+from mpi4py import MPI
+
+from fingerpad import smooth, start
+from fingerpad.accuracy import Keeper
+from fingerpad.needs import plan
+from fingerpad.scene import from_data
+from fingerpad.simulation import Simulation
+from variational.continuation import StepFailed
+
+SCENE = {
+    "f_ext": 1.0,
+    "voltage": 100.0,
+    "geometry": {"ridge_count": 9},
+    "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
+}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("tables")
+
+
+@pytest.fixture(scope="module")
+def started(folder):
+    return start.full_slip(from_data(SCENE), folder, MPI.COMM_WORLD)
+
+
+@pytest.fixture(scope="module")
+def path():
+    scene = from_data(SCENE)
+    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: keeper.see(step), lambda: None)
+    keeper = Keeper(simulation)
+    simulation.run()
+    return keeper.solve()
+
+
+@pytest.mark.slow
+def test_full_slip_is_that_of_the_path(started, path):
+    """Tolerance: two loops over the scales that end at 1e-6 of d_eq, whose gain is below one half here."""
+    found, known = started.solve.states["slip"].row, path.states["slip"].row
+    assert found["ridges_in_contact"] == known["ridges_in_contact"]
+    assert found["f_t"] == pytest.approx(known["f_t"], rel=1e-6)
+
+
+@pytest.mark.slow
+def test_it_costs_less_than_the_path(started, path):
+    """Factorisations of both meshes, times unknowns; the ridge's tables, made once, are left out."""
+    own = started.solve.factorisations * started.solve.unknowns
+    spent = own + started.smooth.factorisations * started.smooth.unknowns
+    assert spent < path.factorisations * path.unknowns
+
+
+def test_state_that_is_not_full_slip_is_refused(folder):
+    """A micrometre of sliding leaves most points sticking."""
+    with pytest.raises(StepFailed, match="does not come to full slip within 1e-06 m"):
+        smooth.full_slip(from_data(SCENE | {"slide_length": 1e-6}), folder)
+
+
+@pytest.mark.parametrize("other", [{"friction": 0.0}, {"numerics": {"element": "P2-P1"}}])
+def test_scene_without_a_full_slip_to_carry_is_refused(folder, other):
+    with pytest.raises(StepFailed, match="rung 2 has no full slip of a scene"):
+        start.full_slip(from_data(SCENE | other), folder, MPI.COMM_WORLD)
