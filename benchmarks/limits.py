@@ -16,14 +16,21 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from mpi4py import MPI
+
 from benchmarks.convergence import Limit, limit
-from fingerpad.processes import run
-from fingerpad.scene import Scene, from_data
+from fingerpad.accuracy import Keeper, Solve, solve_again
+from fingerpad.needs import plan
+from fingerpad.processes import limit_processor_time, run
+from fingerpad.scene import START, Scene, from_data
+from fingerpad.simulation import Simulation, Step
 from fingerpad.sweep import key
 from geometry.parameters import MeshSize
+from variational.continuation import StepFailed
 
 _FIRST = {"contact": 10e-6, "growth": 0.5, "receptor": 10e-6, "interface": 120e-6}
 _HALVED = ("contact", "growth", "receptor", "interface", "coarsest")
+_STARTS = (20e-6, 10e-6, 5e-6)  # m, contact sizes of the path, the next where one fails
 _LIMIT = 14400.0  # s of processor time for one scene
 
 
@@ -65,13 +72,8 @@ def limits(found: Mapping[str, Any]) -> dict[str, Limit]:
 
 
 # -- in a process of its own -------------------------------------------------------------------------------
-def _solve(scene: Scene, levels: int) -> dict[str, Any]:
-    from mpi4py import MPI
-
-    from fingerpad.accuracy import Keeper, Solve, solve_again
-    from fingerpad.needs import plan
-    from fingerpad.scene import START
-    from fingerpad.simulation import Simulation, Step
+def _path(scene: Scene, comm: MPI.Comm) -> Solve:
+    """Return the states of a scene's path on the coarsest mesh on which it can be followed."""
 
     def on_step(step: Step, done: float) -> None:
         keeper.see(step)
@@ -80,19 +82,27 @@ def _solve(scene: Scene, levels: int) -> dict[str, Any]:
         if "press" not in keeper.states and scene.output.receptors:
             keeper.keep("press")
 
+    for contact in _STARTS:
+        sizes = START | {"receptor": 2 * _FIRST["receptor"], "contact": contact}
+        coarse = scene.model_copy(update={"mesh": scene.mesh.model_copy(update=sizes)})
+        simulation = Simulation(coarse, plan(scene), comm, on_step, on_load)
+        keeper = Keeper(simulation)
+        try:
+            simulation.run()
+            return keeper.solve()
+        except StepFailed as error:
+            failure = error
+    raise failure
+
+
+def _solve(scene: Scene, levels: int) -> dict[str, Any]:
     comm = MPI.COMM_WORLD
-    first = START | {"receptor": 2 * _FIRST["receptor"]}
-    coarse = scene.model_copy(update={"mesh": scene.mesh.model_copy(update=first)})
-    needed = plan(coarse)
-    simulation = Simulation(coarse, needed, comm, on_step, on_load)
-    keeper = Keeper(simulation)
-    simulation.run()
-    path = keeper.solve()
+    path = _path(scene, comm)
     solves = [path]
     for mesh in meshes(scene.mesh, levels):
-        solves.append(solve_again(scene.model_copy(update={"mesh": mesh}), needed, solves[-1].states, comm))
+        solves.append(solve_again(scene.model_copy(update={"mesh": mesh}), plan(scene), solves[-1].states, comm))
         print(mesh, solves[-1].unknowns, solves[-1].factorisations, file=sys.stderr)
-    own = solve_again(scene, needed, solves[1].states, comm)
+    own = solve_again(scene, plan(scene), solves[1].states, comm)
 
     def told(solve: Solve) -> dict[str, Any]:
         ridges = {f"{name}_ridges_in_contact": s.row["ridges_in_contact"] for name, s in solve.states.items()}
@@ -108,11 +118,6 @@ def _solve(scene: Scene, levels: int) -> dict[str, Any]:
 
 
 def _main(arguments: Sequence[str]) -> None:
-    import petsc4py
-
-    petsc4py.init([sys.argv[0]])
-    from fingerpad.processes import limit_processor_time
-
     limit_processor_time(float(arguments[2]))
     scene = from_data(json.loads(Path(arguments[0]).read_text(encoding="utf-8")))
     print(json.dumps(_solve(scene, int(arguments[1]))))
