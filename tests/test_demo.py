@@ -112,6 +112,14 @@ def test_surface_array_bears_the_contact_force(coarse, summary, state):
     assert force == pytest.approx(summary[f"{state}_f_contact"], rel=0.1)
 
 
+def test_results_come_with_their_errors(summary):
+    """Of friction, contact lengths and the sites' energy densities, none of them nothing or larger than the value."""
+    quantities = summary["accuracy"]["quantities"]
+    assert {"normal_contact_length", "slip_contact_length", "slip_f_t", "slip_mu_app", "slip_sed_0"} <= set(quantities)
+    for name in ("normal_contact_length", "slip_contact_length", "slip_f_t", "slip_mu_app"):
+        assert 0 < summary[f"{name}_error"] == quantities[name]["error"] < quantities[name]["value"]
+
+
 def test_receptor_sites(coarse):
     """Under a central ridge the stiff epidermis holds more energy than the soft papillae beside it."""
     with (coarse / "receptors.csv").open(encoding="utf-8", newline="") as file:
