@@ -222,8 +222,8 @@ Made by `make chart`; do not edit. The default scene with one setting after the 
 10 µm unless said otherwise. An error is the relative distance from the limit of [errors.md](errors.md), whose error bar
 is grey: what lies in the grey is not resolved. Work is the number of factorisations up to the state times the number of
 unknowns; processor time has the set-up in it, and shared its machine with other runs. The reference has the default's
-penalty, so that what a formulation or another penalty changes of the contact length counts as error here. *Not resolved*: cheaper runs come out nearer, but the default's error is below the bar. The data:
-[chart.json](chart.json).
+penalty, so that what a formulation or another penalty changes of the contact length counts as error here. *Not
+resolved*: cheaper runs come out nearer, but the default's error is below the bar. The data: [chart.json](chart.json).
 """
 _TABLES = {
     "work": "The cheapest run for an error, and its factorisations × unknowns over those of the default scene:",
