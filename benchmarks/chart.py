@@ -96,7 +96,7 @@ class Point:
     work: Mapping[str, float]
     """Factorisations up to a state times unknowns, by state."""
     seconds: Mapping[str, float]
-    """Processor time up to a state, set-up included, by state."""
+    """Processor time up to a state, set-up included, by state; empty for runs of versions that did not keep it."""
     errors: Mapping[str, float]
     """Relative distance from the reference, by quantity."""
 
@@ -118,14 +118,14 @@ def collect(out: Path, reference: Mapping[str, Limit]) -> list[Point]:
             continue
         run = Run(scene, out)
         spent = np.cumsum(run.steps["factorisations"]) * run.summary["unknowns"]
-        seconds = run.steps["processor_seconds"]
+        seconds = run.steps.get("processor_seconds")
         rows = {"press": run.pressed, "normal": run.normal, "slip": run.slip}
         points.append(
             Point(
                 label,
                 family,
                 {state: float(spent[row]) for state, row in rows.items()},
-                {state: float(seconds[row]) for state, row in rows.items()},
+                {} if seconds is None else {state: float(seconds[row]) for state, row in rows.items()},
                 {name: abs(values[name] / reference[name].value - 1) for name in QUANTITIES},
             )
         )
@@ -142,16 +142,22 @@ def cost(point: Point, quantity: str, measure: str) -> float:
     return float(getattr(point, measure)[state_of(quantity)])
 
 
+def known(points: Sequence[Point], measure: str) -> list[Point]:
+    """Return the runs whose cost is known."""
+    return [p for p in points if getattr(p, measure)]
+
+
 def front(points: Sequence[Point], quantity: str, measure: str = "work") -> list[Point]:
     """Return Pareto's front from cheap to dear: no other run is both cheaper and nearer to the reference."""
     found = list[Point]()
-    for point in sorted(points, key=lambda p: (cost(p, quantity, measure), p.errors[quantity])):
+    for point in sorted(known(points, measure), key=lambda p: (cost(p, quantity, measure), p.errors[quantity])):
         if not found or point.errors[quantity] < found[-1].errors[quantity]:
             found.append(point)
     return found
 
 
 def _panel(ax: Axes, points: Sequence[Point], quantity: str, reference: Limit, measure: str) -> None:
+    points = known(points, measure)
     base = cost(_default(points), quantity, measure)
 
     def at(some: Sequence[Point]) -> tuple[list[float], list[float]]:
@@ -205,7 +211,7 @@ def costs(points: Sequence[Point], reference: Mapping[str, Limit], measure: str)
         state, kind = quantity.split("_", 1)
         cells = [f"{100 * reference[quantity].bar / abs(reference[quantity].value):.2g} %"]
         for target in TARGETS:
-            good = [p for p in points if p.errors[quantity] <= target]
+            good = [p for p in known(points, measure) if p.errors[quantity] <= target]
             best = min(good, key=lambda p: cost(p, quantity, measure), default=None)
             ratio = 0.0 if best is None else cost(best, quantity, measure) / cost(base, quantity, measure)
             cells.append("none" if best is None else f"{best.label}: {ratio:.2g}")

@@ -67,11 +67,8 @@ def make(out: Path, docs: Path, size: float, measured: friction.Measured | None)
     def at(force: float, voltage: float) -> Run:
         return run(scenes.grid(size)[force, voltage])
 
-    def felt(voltage: float) -> Run:
-        return run(scenes.felt(size, voltage))
-
     def rougher() -> Run:
-        high = felt(200.0)
+        high = at(scenes.MAP, 200.0)
         return run(scenes.rougher(size, float(high.steps["mu_app"][high.slip])))
 
     force, voltage = scenes.SECTION
@@ -97,8 +94,8 @@ def make(out: Path, docs: Path, size: float, measured: friction.Measured | None)
         "fig9a",
         f"Fig. 9A: strain energy density at {scenes.MAP:g} N/m; circles: Merkel sites",
         (9, 5.5),
-        lambda figure: sed.figure_9a(figure, felt(0.0), felt(200.0)),
-        lambda: sed.statements(felt(200.0)),
+        lambda figure: sed.figure_9a(figure, at(scenes.MAP, 0.0), at(scenes.MAP, 200.0)),
+        lambda: sed.statements(at(scenes.MAP, 200.0)),
     )
     book.add(
         "fig9b",
@@ -111,8 +108,8 @@ def make(out: Path, docs: Path, size: float, measured: friction.Measured | None)
         "claim",
         "Section 5: energy density at the Merkel sites, electroadhesion against friction",
         (7, 3.5),
-        lambda figure: sed.figure_claim(figure, felt(200.0), rougher()),
-        lambda: [sed.claim_statement(felt(200.0), rougher())],
+        lambda figure: sed.figure_claim(figure, at(scenes.MAP, 200.0), rougher()),
+        lambda: [sed.claim_statement(at(scenes.MAP, 200.0), rougher())],
     )
     missing = f"**Not run yet:** {', '.join(book.missing)}." if book.missing else ""
     book.moved = page.moved(docs, size, book.statements)
@@ -135,10 +132,9 @@ def main(given: Sequence[str] | None = None) -> int:
         parser.error(str(error))
     if not args.draw:
         named = {f"{f:g} N/m, {u:g} V": scene for (f, u), scene in scenes.grid(size).items()}
-        named |= {f"Fig. 9A, {u:g} V": scenes.felt(size, u) for u in (0.0, 200.0)}
         sweep({"sine": scenes.sine(size)} | named, args.out, args.jobs, _LIMIT)
         try:
-            high = Run(scenes.felt(size, 200.0), args.out)
+            high = Run(scenes.grid(size)[scenes.MAP, 200.0], args.out)
             mimic = scenes.rougher(size, float(high.steps["mu_app"][high.slip]))
             sweep({f"friction {mimic.friction:g}": mimic}, args.out, args.jobs, _LIMIT)
         except FileNotFoundError as missing:

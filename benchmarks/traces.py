@@ -22,7 +22,7 @@ VOLTAGES = (0.0, 50.0, 100.0, 150.0, 200.0)
 FORCES = (5.0, 10.0, 25.0, 50.0, 75.0, 100.0, 120.0, 150.0)
 FINE_VOLTAGES, FINE_FORCES = (100.0, 200.0), (25.0, 75.0, 120.0)
 _COARSE, _FINE = 10e-6, 5e-6  # m, contact sizes
-SITES = 20e-6  # m, size at the Merkel sites, whose energies are not looked at: coarser than by default
+SITES = 20e-6  # m, size at the Merkel sites: coarser than by default, by which their energies come out 13 % low
 _LAYERS = ("subcutis", "dermis", "viable_epidermis", "stratum_corneum")
 _HEADER = """# Traces over forces and voltages
 

@@ -28,6 +28,12 @@ def test_front_over_time_is_another():
     assert [p.label for p in chart.front(POINTS, "slip_f_t", "seconds")] == ["worse", "default", "dear"]
 
 
+def test_run_without_its_time_is_in_the_chart_of_work_alone():
+    more = [*POINTS, Point("old", "growth", dict.fromkeys(chart.STATES, 0.5), {}, dict.fromkeys(QUANTITIES, 1e-5))]
+    assert [p.label for p in chart.front(more, "slip_f_t")] == ["old"]
+    assert [p.label for p in chart.front(more, "slip_f_t", "seconds")] == ["worse", "default", "dear"]
+
+
 def test_table_names_the_cheapest_run_that_will_do(tmp_path):
     """5 % by the cheapest at half the default's work, 1 % and 0.2 % by the dearest at twice it."""
     chart.write(POINTS, 9, dict.fromkeys(QUANTITIES, Limit(1.0, 0.001, None)), tmp_path)

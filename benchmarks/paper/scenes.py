@@ -1,10 +1,10 @@
-"""The runs behind the figures, by name; those of Figs. 2 and 6 to 8 are the grid of ``benchmarks/traces.py``."""
+"""The runs behind the figures, by name; those of Figs. 6 to 8 are the grid of ``benchmarks/traces.py``."""
 
 from typing import Any
 
 import numpy as np
 
-from benchmarks.traces import FORCES, VOLTAGES, trace
+from benchmarks.traces import FORCES, SITES, VOLTAGES, trace
 from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, from_data
 
@@ -20,7 +20,7 @@ PHASES = np.linspace(0, np.pi, 13)  # of one half period, of which the square of
 
 
 def grid(size: float) -> dict[tuple[float, float], Scene]:
-    """Return the scenes of Figs. 2, 6, 7 and 8 by force (N/m) and voltage (V)."""
+    """Return the scenes of Figs. 2, 6, 7, 8 and 9A by force (N/m) and voltage (V)."""
     return {(f, u): trace(f, u, size) for f in FORCES for u in VOLTAGES}
 
 
@@ -51,13 +51,8 @@ def rougher(size: float, mu_app: float) -> Scene:
         size: contact size (m).
         mu_app: apparent friction coefficient with voltage.
     """
-    return _scene(size, f_ext=MAP, voltage=0.0, friction=round(mu_app, 4))
-
-
-def felt(size: float, voltage: float) -> Scene:
-    """Return a scene of Fig. 9A, with elements at the receptors small enough for what they sense."""
-    return _scene(size, f_ext=MAP, voltage=voltage)
+    return trace(MAP, 0.0, size, friction=round(mu_app, 4))
 
 
 def _scene(size: float, **data: Any) -> Scene:
-    return by_rule(from_data({"mesh": {"contact": size}} | data))
+    return by_rule(from_data({"mesh": {"contact": size, "receptor": SITES}} | data))
