@@ -8,7 +8,8 @@ at once, in the end by pseudo-transient continuation. What is found is an equili
 checked: in balance, at full slip, steady when it slides on, stable.
 
 Not every guess is near enough; where it is not, the path is to be followed. Nor need an equilibrium be the one that the
-path comes to: where ridges jump there are several, and a note says so if rung 2 had another number of them in contact.
+path comes to: where a voltage makes ridges jump there are several, and full slip knows of the path by the ridges that
+hang on. The notes say so.
 
 Normal contact is left out, since friction makes it depend on the path, of which rung 2 knows nothing.
 """
@@ -71,12 +72,11 @@ def full_slip(scene: Scene, folder: Path, comm: MPI.Comm) -> Started:
         raise StepFailed(f"full slip was not found from rung 2's: {failures[-1]}")
     keeper.keep("slip")
     found = int(keeper.states["slip"].row["ridges_in_contact"])
-    notes = ["full slip was solved for from rung 2's; normal contact depends on the path, which was not followed"]
-    if found != guess.ridges:
-        notes.append(
-            f"{found} ridges are in contact, rung 2 had {guess.ridges}: where ridges come and go, the path may end in "
-            "another equilibrium"
-        )
+    notes = [
+        "full slip was solved for from rung 2's; normal contact depends on the path, which was not followed",
+        f"{found} ridges are in contact, in rung 2 {guess.ridges}: where a voltage makes ridges jump, the path may end "
+        "in another equilibrium, with a ridge more or less",
+    ]
     return Started(keeper.solve(), guess, tuple(notes))
 
 
