@@ -36,6 +36,12 @@ def test_one_halving_of_second_order_overestimates_three_times():
     assert knob(law(2.0), 0).share("q") == pytest.approx(3 * 0.1 / 4, rel=1e-12)
 
 
+def test_energy_density_is_taken_for_second_order():
+    found = Knob()
+    found.see({"slip_sed_0": 1.3}, {"slip_sed_0": 1.0})
+    assert found.share("slip_sed_0") == pytest.approx(0.1, rel=1e-12)
+
+
 def test_accidentally_small_change_is_not_believed():
     """A change of nothing at all counts as the quarter of the one before it that second order leaves."""
     found = Knob()
