@@ -24,7 +24,7 @@ EXACT = 0.5
 
 # -- the search, on a finger whose errors are known -----------------------------------------------------------
 def mu_app(mesh) -> float:
-    """An error of first order in the contact size and second in the growth, nothing from receptors."""
+    """An error of first order in the contact size and second in the growth; sites have one of second in theirs."""
     return EXACT * (1 + 0.08 * mesh.contact / 20e-6 - 0.02 * (mesh.growth / 0.5) ** 2)
 
 
@@ -35,7 +35,7 @@ def known(scene, needed, states, comm) -> Solve:
         "contact_length": 1e-3,
         "ridges_in_contact": 17,
     }
-    sed = {0: 1e3 * (1 + scene.mesh.receptor / 200e-6), 1: 10.0}
+    sed = {0: 1e3 * (1 + (scene.mesh.receptor / 60e-6) ** 2), 1: 10.0}
     return Solve({"slip": State(NOTHING, 1, row, sed)}, scene.mesh, 1000, 10, 1.0)
 
 
