@@ -72,4 +72,4 @@ def test_page_counts_the_scenes_that_met_it(tmp_path, value, words):
     assert limits.limits(told)["slip_mu_app"].value == pytest.approx(0.5, rel=1e-12)
     page = accuracy.loop_tables(out)
     assert words in page
-    assert f"| {name} | slip mu app | 1 | 0.6 |" in page
+    assert f"| {name} | µ_app, full slip | 1 | 0.6 |" in page
