@@ -30,6 +30,7 @@ from fingerpad.sweep import sweep
 
 _LIMIT = 10800.0  # s of processor time for one run
 DEFAULT = "default"
+_TICKS = (0.2, 0.5, 1.0, 2.0)
 TARGETS = (5e-2, 1e-2, 2e-3)  # errors that the table tells the cost of
 STATES = {"press": "normal contact", "normal": "charged contact", "slip": "full slip"}
 KINDS = {"f_t": "f_T and µ_app", "contact_length": "contact length", "sed_0": "SED at the central Merkel site"}
@@ -168,7 +169,10 @@ def _panel(ax: Axes, points: Sequence[Point], quantity: str, reference: Limit, m
     for family, (colour, marker) in _LOOKS.items():
         ax.plot(*at([p for p in points if p.family == family and p.label != DEFAULT]), marker, color=colour, ms=5)
     ax.plot(*at([_default(points)]), "*", color=BLUE, mec="black", mew=0.5, ms=13)
-    ax.set(xscale="log", yscale="log", title=f"{KINDS[quantity.split('_', 1)[1]]}, {STATES[state_of(quantity)]}")
+    ax.set(xscale="log", yscale="log")
+    ax.set_xticks(_TICKS, [f"{tick:g}" for tick in _TICKS])
+    ax.minorticks_off()
+    ax.set(title=f"{KINDS[quantity.split('_', 1)[1]]}, {STATES[state_of(quantity)]}")
 
 
 def _default(points: Sequence[Point]) -> Point:
