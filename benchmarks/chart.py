@@ -26,7 +26,7 @@ from benchmarks.paper.style import BLUE, GREEN, GREY, PURPLE, VERMILION, draw
 from benchmarks.runs import Run
 from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, from_data
-from fingerpad.sweep import sweep
+from fingerpad.sweep import result, sweep
 
 _LIMIT = 10800.0  # s of processor time for one run
 DEFAULT = "default"
@@ -131,6 +131,12 @@ def collect(out: Path, reference: Mapping[str, Limit]) -> list[Point]:
             )
         )
     return points
+
+
+def lost(out: Path) -> list[str]:
+    """Return the runs that did not reach full slip, and why."""
+    found = {label: result(scene, out) or {} for (_, label), scene in scenes().items()}
+    return [f"{label}: {summary['failure']}" for label, summary in found.items() if "failure" in summary]
 
 
 def state_of(quantity: str) -> str:
@@ -241,13 +247,15 @@ _TABLES = {
 }
 
 
-def write(points: Sequence[Point], total: int, reference: Mapping[str, Limit], docs: Path) -> None:
+def write(
+    points: Sequence[Point], total: int, reference: Mapping[str, Limit], docs: Path, failures: Sequence[str] = ()
+) -> None:
     """Write page, pictures and data."""
     for measure, name in PICTURES.items():
         draw(docs / name, (12, 10), partial(paint, points=points, reference=reference, measure=measure))
     names = {quantity: ", ".join(p.label for p in front(points, quantity)) for quantity in QUANTITIES}
     fronts = "\n".join(f"- {KINDS[q.split('_', 1)[1]]}, {STATES[state_of(q)]}: {labels}" for q, labels in names.items())
-    parts = [_HEADER, f"{len(points)} of {total} runs."]
+    parts = [_HEADER, f"{len(points)} of {total} runs.", *(f"Not reached: {words}." for words in failures)]
     for measure, words in _TABLES.items():
         parts += [f"![Relative error over {MEASURES[measure]}]({PICTURES[measure]})"]
         parts += [words, costs(points, reference, measure)]
@@ -269,7 +277,7 @@ def main(given: Sequence[str] | None = None) -> int:
     if not reference:
         parser.error("the reference is missing; run benchmarks/errors.py first")
     points = collect(args.out, reference)
-    write(points, len(wanted), reference, args.docs)
+    write(points, len(wanted), reference, args.docs, lost(args.out))
     print(f"{len(points)} of {len(wanted)} runs; {args.docs / 'chart.md'}")
     return 0 if len(points) == len(wanted) else 1
 

@@ -36,11 +36,12 @@ def test_run_without_its_time_is_in_the_chart_of_work_alone():
 
 def test_table_names_the_cheapest_run_that_will_do(tmp_path):
     """5 % by the cheapest at half the default's work, 1 % and 0.2 % by the dearest at twice it."""
-    chart.write(POINTS, 9, dict.fromkeys(QUANTITIES, Limit(1.0, 0.001, None)), tmp_path)
+    chart.write(POINTS, 9, dict.fromkeys(QUANTITIES, Limit(1.0, 0.001, None)), tmp_path, ["40 µm: stuck"])
     text = (tmp_path / "chart.md").read_text(encoding="utf-8")
     row = next(line for line in text.splitlines() if line.startswith("| f_T"))
     assert row.split(" | ")[2:5] == ["cheap: 0.5", "dear: 2", "dear: 2"]
     assert "4 of 9 runs" in text
+    assert "Not reached: 40 µm: stuck." in text
 
 
 def test_every_scene_is_another():
