@@ -111,7 +111,7 @@ class Judged:
 
 
 def judged(summary: Mapping[str, Any], ends: Mapping[str, Limit]) -> list[Judged]:
-    """Return the quantities of friction and contact, and the energy densities where an accuracy of them is asked."""
+    """Return the quantities of friction and contact, and where it is asked for the worst energy density of a state."""
     found = []
     for name, q in summary["accuracy"]["quantities"].items():
         if name not in ends or name == "slip_f_t" or ("_sed_" in name and q["allowed"] is None):
@@ -123,7 +123,11 @@ def judged(summary: Mapping[str, Any], ends: Mapping[str, Limit]) -> list[Judged
             of = max(abs(each.value) for other, each in ends.items() if other.startswith(sites))
         allowed = None if q["allowed"] is None else q["allowed"] / of
         found.append(Judged(name, allowed, q["error"] / of, abs(q["value"] - end.value) / of, end.bar / of))
-    return found
+    worst = list[Judged]()
+    for state in _STATES:
+        sites = [row for row in found if row.name.startswith(f"{state}_sed_")]
+        worst += sorted(sites, key=lambda row: row.error)[-1:]
+    return [row for row in found if "_sed_" not in row.name or row in worst]
 
 
 def loops() -> dict[str, tuple[Scene, Scene]]:
