@@ -125,8 +125,8 @@ def judged(summary: Mapping[str, Any], ends: Mapping[str, Limit]) -> list[Judged
         found.append(Judged(name, allowed, q["error"] / of, abs(q["value"] - end.value) / of, end.bar / of))
     worst = list[Judged]()
     for state in _STATES:
-        sites = [row for row in found if row.name.startswith(f"{state}_sed_")]
-        worst += sorted(sites, key=lambda row: row.error)[-1:]
+        there = [row for row in found if row.name.startswith(f"{state}_sed_")]
+        worst += sorted(there, key=lambda row: row.error)[-1:]
     return [row for row in found if "_sed_" not in row.name or row in worst]
 
 
