@@ -153,7 +153,8 @@ def loop_tables(out: Path) -> str:
     for name, (scene, plain) in loops().items():
         summary, known = result(scene, out), limits.kept(plain, LEVELS, folder_of_limits(out))
         if summary is None or known is None:
-            lines.append(f"| {name} | not run yet |" + " |" * 5)
+            words = "not run yet" if summary is None else "its limit is not known"
+            lines.append(f"| {name} | {words} |" + " |" * 5)
             continue
         if "accuracy" not in summary or "failure" in summary:
             lines.append(f"| {name} | {summary['failure']} |" + " |" * 4 + " no |")
@@ -178,7 +179,9 @@ def loop_tables(out: Path) -> str:
         sizes = [f"{a['mesh'][s] * 1e6:g}" if s != "growth" else f"{a['mesh'][s]:g}" for s in _CHOSEN]
         unknowns = max(solve["unknowns"] for solve in a["solves"])
         costs.append(f"| {name} | " + " | ".join([*sizes, str(unknowns), str(len(a["solves"])), cost]) + " |")
-    verdict = f"**Met in {met} of the {told} scenes drawn that were run.** {_tally(effectivities)}"
+    verdict = (
+        f"**Met in {met} of the {told} scenes drawn that were run and whose limit is known.** {_tally(effectivities)}"
+    )
     return "\n\n".join([_LOOPS, verdict, "\n".join(lines), "What was chosen and what it cost:", "\n".join(costs)])
 
 
