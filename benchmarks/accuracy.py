@@ -180,7 +180,7 @@ def loop_tables(out: Path) -> str:
         unknowns = max(solve["unknowns"] for solve in a["solves"])
         costs.append(f"| {name} | " + " | ".join([*sizes, str(unknowns), str(len(a["solves"])), cost]) + " |")
     verdict = (
-        f"**Met in {met} of the {told} scenes drawn that were run and whose limit is known.** {_tally(effectivities)}"
+        f"**Met in {met} of the {told} scenes drawn and run whose limit is known.** {_tally(effectivities)}"
     )
     return "\n\n".join([_LOOPS, verdict, "\n".join(lines), "What was chosen and what it cost:", "\n".join(costs)])
 
