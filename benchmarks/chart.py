@@ -8,7 +8,6 @@ time. Writes docs/chart.md, docs/chart.png, docs/chart_time.png and docs/chart.j
 that drawing anew takes seconds.
 """
 
-import json
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -24,6 +23,7 @@ from benchmarks import arguments, errors
 from benchmarks.convergence import Limit
 from benchmarks.paper.style import BLUE, GREEN, GREY, PURPLE, VERMILION, draw
 from benchmarks.runs import Run
+from fingerpad.files import replace, replace_json
 from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, from_data
 from fingerpad.sweep import result, sweep
@@ -260,9 +260,9 @@ def write(
         parts += [f"![Relative error over {MEASURES[measure]}]({PICTURES[measure]})"]
         parts += [words, costs(points, reference, measure)]
     parts.append(f"Pareto's fronts over factorisations × unknowns, from cheap to dear:\n\n{fronts}")
-    (docs / "chart.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+    replace(docs / "chart.md", "\n\n".join(parts) + "\n")
     data = {"reference": {q: vars(reference[q]) for q in QUANTITIES}, "points": [asdict(p) for p in points]}
-    (docs / "chart.json").write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    replace_json(docs / "chart.json", data)
 
 
 def main(given: Sequence[str] | None = None) -> int:

@@ -7,7 +7,6 @@ with all sizes halved together (benchmarks/limits.py). Runs are kept with those 
 run is written to docs/errors.md, docs/errors.png and, as the reference later work is compared with, docs/errors.json.
 """
 
-import json
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -21,6 +20,7 @@ from benchmarks.convergence import Limit, limit
 from benchmarks.runs import Run
 from benchmarks.traces import SITES as AT_SITES
 from fingerpad.accuracy import plus_minus
+from fingerpad.files import replace, replace_json
 from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, from_data
 from fingerpad.sweep import sweep
@@ -62,9 +62,10 @@ in its error bar. {costs}
 """
 
 
-_LIMITS = """Limits are Richardson's extrapolation from the three finest meshes with Roache's error bar; where their
-changes do not shrink with one sign there is no order, the finest value stands, and the bar is three times the larger
-of the last two changes (`benchmarks/convergence.py`)."""
+_LIMITS = """Limits are Richardson's extrapolation from the three finest meshes with Roache's error bar. Where there is
+no order, since changes hardly shrink (an order below a half) or not with one sign, the finest value stands, and the bar
+is three times the last change if they shrink from side to side, else the larger of the last two
+(`benchmarks/convergence.py`)."""
 
 
 def study(name: str) -> dict[float, Scene]:
@@ -227,13 +228,13 @@ def write(out: Path, docs: Path) -> None:
             if run
         ]
     data["reference"] = {quantity: vars(found) for quantity, found in reference(out).items()}
-    (docs / "errors.json").write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    replace_json(docs / "errors.json", data)
     parts = [_HEADER, _reference_table(out), _table("contact", out), _LIMITS]
     if estimate("slip_f_t", _runs("contact", out)):
         draw(out, docs / "errors.png")
         parts.append("![Distance from the limit over the sizes](errors.png)")
     parts += [_table(name, out) for name in list(STUDIES)[1:]]
-    (docs / "errors.md").write_text("\n\n".join(filter(None, parts)) + "\n", encoding="utf-8")
+    replace(docs / "errors.md", "\n\n".join(filter(None, parts)) + "\n")
 
 
 def main(given: Sequence[str] | None = None) -> int:
@@ -249,7 +250,7 @@ def main(given: Sequence[str] | None = None) -> int:
     summaries = dict[str, Any](sweep(dict(reversed(scenes.items())), args.out, args.jobs, _LIMIT))
     if "reference" in args.only:
         summaries |= sweep({"default": DEFAULT}, args.out, args.jobs, _LIMIT)
-        summaries["reference"] = limits.ask(DEFAULT, LEVELS, folder_of_limits(args.out))
+        summaries |= limits.ask_all({"reference": DEFAULT}, LEVELS, folder_of_limits(args.out), 1)
     write(args.out, args.docs)
     failed = [name for name, summary in summaries.items() if "failure" in summary]
     print(f"{len(summaries) - len(failed)} of {len(summaries)} reached their end; {args.docs / 'errors.md'}")

@@ -22,6 +22,7 @@ from benchmarks.paper.style import VOLTAGE, draw
 from benchmarks.rung import ask, kept
 from benchmarks.traces import FORCES, VOLTAGES
 from fingerpad import closed_form, ridge_cell
+from fingerpad.files import replace, replace_json
 from fingerpad.ladder import from_summary
 from fingerpad.processes import End, Pool
 from fingerpad.sweep import progress, result
@@ -79,7 +80,7 @@ def collect(known: dict[str, Any], out: Path, rungs: Sequence[int], jobs: int, f
 
     def done(key: str, end: End, left: int) -> None:
         known[key]["2"] = {"failure": f"{end.reason}: {end.message}"} if end.reason else json.loads(end.stdout)
-        _write(known, file)
+        replace_json(file, known)
         words = known[key]["2"].get("failure", "done")
         bar.console.print(f"{key}: {words}", highlight=False, markup=False, soft_wrap=True)
         bar.advance(task)
@@ -88,20 +89,13 @@ def collect(known: dict[str, Any], out: Path, rungs: Sequence[int], jobs: int, f
     with progress() as bar:
         task = bar.add_task("rung 2", total=len(missing))
         Pool[str, End](lambda key: ask(scenes[key], tables), jobs).run(missing, done)
-    _write(known, file)
+    replace_json(file, known)
     return known
 
 
 def _present(found: dict[str, Any]) -> bool:
     """Return whether a scene has rung 2's answer by the present tables."""
     return bool(found.get("2", {}).get("more", {}).get("table_version") == ridge_cell.VERSION)
-
-
-def _write(known: dict[str, Any], file: Path) -> None:
-    """Replace the file as a whole: hours of answers are in it."""
-    part = file.with_suffix(".part")
-    part.write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
-    part.replace(file)
 
 
 def error(found: dict[str, Any], rung: int, key: str) -> float | None:
@@ -185,7 +179,7 @@ def main(given: Sequence[str] | None = None) -> int:
     file = args.docs / "ladder.json"
     known = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
     known = collect(known, args.out, args.only, args.jobs, file)
-    (args.docs / "ladder.md").write_text(page(known), encoding="utf-8")
+    replace(args.docs / "ladder.md", page(known))
     draw(args.docs / "ladder.png", (10.0, 5.6), lambda figure: paint(figure, known))
     compared = sum("3" in found for found in known.values())
     print(f"{compared} of {len(known)} scenes have a full run; {args.docs / 'ladder.md'}")

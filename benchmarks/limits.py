@@ -20,11 +20,12 @@ from mpi4py import MPI
 
 from benchmarks.convergence import Limit, limit
 from fingerpad.accuracy import Keeper, Solve, solve_again
+from fingerpad.files import replace
 from fingerpad.needs import plan
-from fingerpad.processes import limit_processor_time, run
+from fingerpad.processes import Pool, limit_processor_time, run
 from fingerpad.scene import START, Scene, from_data
 from fingerpad.simulation import Simulation, Step
-from fingerpad.sweep import key
+from fingerpad.sweep import key, progress
 from geometry.parameters import MeshSize
 from variational.continuation import StepFailed
 
@@ -61,8 +62,25 @@ def ask(scene: Scene, levels: int, folder: Path) -> dict[str, Any]:
     end = run("benchmarks.limits", [str(file), str(levels), str(_LIMIT)], _LIMIT)
     if end.reason:
         return {"failure": f"{end.reason}: {end.message}"}
-    (folder / f"{key(scene)}-{levels}.json").write_text(end.stdout, encoding="utf-8")
+    replace(folder / f"{key(scene)}-{levels}.json", end.stdout)
     return dict(json.loads(end.stdout))
+
+
+def ask_all(scenes: Mapping[str, Scene], levels: int, folder: Path, jobs: int) -> dict[str, dict[str, Any]]:
+    """Solve what has not been solved of scenes by name, with a progress bar; see :func:`ask`."""
+    found = {name: kept(scene, levels, folder) for name, scene in scenes.items()}
+    missing = [name for name, known in found.items() if known is None]
+
+    def done(name: str, known: dict[str, Any], left: int) -> None:
+        found[name] = known
+        words = known.get("failure", "done")
+        bar.console.print(f"limit of {name}: {words}", highlight=False, markup=False, soft_wrap=True)
+        bar.advance(task)
+
+    with progress() as bar:
+        task = bar.add_task("limits", total=len(missing))
+        Pool[str, dict[str, Any]](lambda name: ask(scenes[name], levels, folder), jobs).run(missing, done)
+    return {name: known for name, known in found.items() if known is not None}
 
 
 def limits(found: Mapping[str, Any]) -> dict[str, Limit]:

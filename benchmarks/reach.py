@@ -18,6 +18,7 @@ from mpi4py import MPI
 from benchmarks import arguments, sensitivity, traces
 from benchmarks.runs import Run
 from fingerpad import coarse
+from fingerpad.files import replace, replace_json
 from fingerpad.reach import MARGIN
 from fingerpad.scene import Scene
 from fingerpad.sweep import progress
@@ -54,17 +55,26 @@ def collect(known: Mapping[str, Any], out: Path, file: Path) -> dict[str, Any]:
             except FileNotFoundError:
                 continue
             if "coarse" not in found.get(name, {}):
-                said = coarse.solve(scene, MPI.COMM_WORLD)
-                found[name] = {"coarse": said.last, "factorisations": said.factorisations, "unknowns": said.unknowns}
+                found[name] = _said(scene)
             found[name]["touched"] = full
-            file.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+            replace_json(file, found)
     return {name: each for name, each in found.items() if "touched" in each}
+
+
+def _said(scene: Scene) -> dict[str, Any]:
+    try:
+        said = coarse.solve(scene, MPI.COMM_WORLD)
+    except coarse.NoCoarseSolution as error:  # a run goes by the rule of thumb then
+        return {"failure": str(error)}
+    return {"coarse": said.last, "factorisations": said.factorisations, "unknowns": said.unknowns}
 
 
 def page(found: Mapping[str, Any]) -> str:
     """Return the page."""
+    lost = [f"No coarse solution: {name} ({each['failure']})." for name, each in found.items() if "failure" in each]
+    found = {name: each for name, each in found.items() if "failure" not in each}
     if not found:
-        return f"{_HEADER}\nNone was run.\n"
+        return "\n\n".join([_HEADER.strip(), "None was run.", *lost]) + "\n"
     spare = {name: each["coarse"] + MARGIN - each["touched"] for name, each in found.items()}
     short = [name for name, ridges in spare.items() if ridges <= 0]
     words = f"too few in {', '.join(short)}" if short else "enough in each"
@@ -74,6 +84,7 @@ def page(found: Mapping[str, Any]) -> str:
         f"{len(found)} scenes: the ridges meshed are {words}, by {min(spare.values())} to {max(spare.values())} ridges "
         f"on the side that touches farther. A coarse solve has {most['unknowns']} unknowns and takes at most "
         f"{most['factorisations']} factorisations.",
+        *lost,
         "",
         "| scene | meshed | touched |",
         "|---|---|---|",
@@ -88,9 +99,10 @@ def main(given: Sequence[str] | None = None) -> int:
     file = args.docs / "reach.json"
     known = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
     found = collect(known, args.out, file)
-    (args.docs / "reach.md").write_text(page(found), encoding="utf-8")
-    short = [name for name, each in found.items() if each["coarse"] + MARGIN <= each["touched"]]
-    print(f"{len(found) - len(short)} of {len(found)} scenes have ridges enough; {args.docs / 'reach.md'}")
+    replace(args.docs / "reach.md", page(found))
+    judged = {name: each for name, each in found.items() if "failure" not in each}
+    short = [name for name, each in judged.items() if each["coarse"] + MARGIN <= each["touched"]]
+    print(f"{len(judged) - len(short)} of {len(found)} scenes have ridges enough; {args.docs / 'reach.md'}")
     return 1 if short else 0
 
 

@@ -18,6 +18,7 @@ from benchmarks import arguments, traces
 from benchmarks.paper.style import BLUE, VERMILION, draw
 from benchmarks.runs import Run
 from fingerpad.command import positive
+from fingerpad.files import replace
 from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, SceneError, check, from_data
 from fingerpad.sweep import result, sweep
@@ -172,7 +173,7 @@ def write(changes: Sequence[Change], lost: Sequence[str], total: int, size: floa
         draw(docs / "sensitivity.png", (12, 5.5), lambda figure: tornado(figure, changes))
         parts.append("![Tornado plots: the first way blue, the second one red](sensitivity.png)")
         parts.append("*Blue: the first way of the table, red: the second.*")
-    (docs / "sensitivity.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
+    replace(docs / "sensitivity.md", "\n\n".join(parts) + "\n")
 
 
 def main(given: Sequence[str] | None = None) -> int:

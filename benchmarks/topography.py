@@ -20,6 +20,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.command import positive
+from fingerpad.files import replace
 from fingerpad.pictures import BLUE, GREEN, ORANGE, VERMILION
 from variational.roughness.selfaffine import SelfAffine
 from variational.roughness.spectrum import PowerSpectrum, power_spectrum, roughness_table
@@ -257,7 +258,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     args.docs.mkdir(parents=True, exist_ok=True)
     draw(args.docs / "topography.png", surface, flat)
     text = page(flat, roughness_table(*cut), args.surfaces)
-    (args.docs / "topography.md").write_text(text, encoding="utf-8")
+    replace(args.docs / "topography.md", text)
     print(args.docs / "topography.md")
     return 0
 

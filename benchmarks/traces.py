@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks import arguments
+from fingerpad.files import replace
 from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene import load as load_scene
@@ -122,7 +123,7 @@ def main(given: Sequence[str] | None = None) -> int:
     args = parser.parse_args(given)
     scenes = {name: scene for group in args.only for name, scene in GROUPS[group]().items()}
     summaries = sweep(scenes, args.out, args.jobs)
-    (args.docs / "traces.md").write_text(page(args.out), encoding="utf-8")
+    replace(args.docs / "traces.md", page(args.out))
     failed = [name for name, s in summaries.items() if "failure" in s]
     print(f"{len(scenes) - len(failed)} of {len(scenes)} reached their end; {args.docs / 'traces.md'}")
     return 1 if failed else 0

@@ -102,19 +102,9 @@ class Keeper:
     def keep(self, name: str) -> None:
         """Keep the present state; collective."""
         s = self._simulation
-        loads = s.ridge_loads()
-        f_ext, f_t = float(s.solver.reaction[1]), 0.0 - float(s.solver.reaction[0])  # no negative zero
-        row = {
-            "f_t": f_t,
-            "mu_app": f_t / f_ext if name == "slip" else 0.0,
-            "f_electrostatic": float(loads.f_attraction.sum()),
-            "f_contact": float(loads.f_contact.sum()),
-            "bone_height": float(s.solver.bone[1]),
-            "ridges_in_contact": int((loads.length > 0).sum()),
-            "contact_length": float(loads.length.sum()),
-        }
+        row = s.resultants(s.ridge_loads())
         sed = {j: float(density) for j, density in zip(s.problem.surface.names, self._sites.sed(), strict=True)}
-        direction = 0 if name != "slip" else 1 if f_t >= 0 else -1
+        direction = 0 if name != "slip" else 1 if row["f_t"] >= 0 else -1
         self.states[name] = State(carry(s.coupling, s.continuation.surface_state), direction, row, sed)
 
     def solve(self) -> Solve:
@@ -328,7 +318,6 @@ class Search:
                 "error": error,
                 "allowed": allowed.get(name),
                 "shares": {k: knob.share(name) for k, knob in self.knobs.items() if knob.acts_on(name)},
-                "orders": {k: knob.order(name) for k, knob in self.knobs.items() if knob.acts_on(name)},
             }
             for name, error in found.items()
         }

@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from fingerpad import mirror, pictures
+from fingerpad.files import replace_json
 from fingerpad.scene import Scene
 from fingerpad.simulation import Simulation, Step
 from fingerpad.zone import Woken
 from variational.output import Fields, Snapshot, gather_mesh
 from variational.receptors import Receptors
-from variational.solver import memory_mb
+from variational.timing import memory_mb
 
 _NAMED = ("f_t", "mu_app", "f_electrostatic", "f_contact", "bone_height", "ridges_in_contact", "contact_length")
 _STATES = ("normal", "partial", "slip")  # as surface.npz calls them
@@ -283,9 +284,7 @@ class Report:
         result |= ended | {"omitted": self._simulation.plan.table(), "woken": self._woken}
         result["parameters"] = self.scene.parameters()
         if self.comm.rank == 0:
-            partial = self.folder / "summary.json.part"
-            partial.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
-            partial.replace(self.folder / "summary.json")
+            replace_json(self.folder / "summary.json", result)
         return result
 
     def _named_rows(self) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:

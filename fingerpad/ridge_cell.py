@@ -22,6 +22,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from fingerpad.files import replace_json
 from fingerpad.rungs import Stopwatch
 from fingerpad.scene import Scene
 from fingerpad.simulation import solids
@@ -88,9 +89,7 @@ def tables(scene: Scene, folder: Path) -> Tables:
         data = comm.bcast({"made_of": made_of} | _Cell(scene, made_of["f_max"]).tabulate())
         if comm.rank == 0:
             folder.mkdir(parents=True, exist_ok=True)
-            partial_file = file.with_suffix(".part")
-            partial_file.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
-            partial_file.replace(file)
+            replace_json(file, data)
     normal, slip = (RidgeTable(**{k: np.array(v) for k, v in data[state].items()}) for state in ("normal", "slip"))
     rest = {k: data[k] for k in ("period", "tangential", "seconds", "factorisations", "unknowns")}
     return Tables(name, normal, slip, **rest)

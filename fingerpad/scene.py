@@ -70,6 +70,15 @@ class Scene(Part):
     output: Output = Output()
 
     @model_validator(mode="after")
+    def _has_sites(self) -> "Scene":
+        if self.accuracy is not None and self.accuracy.sed is not None and not self.output.receptors:
+            raise ValueError(
+                f"accuracy.sed is {show(self.accuracy.sed)} and output.receptors is false, without which there are no "
+                "sites; leave out one of the two"
+            )
+        return self
+
+    @model_validator(mode="after")
     def _one_history(self) -> "Scene":
         if self.history is None:
             return self

@@ -159,6 +159,20 @@ class Simulation:
         loads = self.observer.ridge_loads(self.continuation.surface_state)
         return loads if self.plan.both_halves else mirror.loads(loads)
 
+    def resultants(self, loads: RidgeLoads) -> dict[str, float]:
+        """Return what bone and ridges bear in the present state, in SI, by the names of a run's steps."""
+        reaction = self.solver.reaction
+        f_ext, f_t = float(reaction[1]), 0.0 - float(reaction[0])  # no negative zero
+        return {
+            "bone_height": float(self.solver.bone[1]),
+            "f_t": f_t,
+            "mu_app": f_t / f_ext if f_ext > _BALANCED * self.solver.force_scale else 0.0,
+            "f_contact": float(loads.f_contact.sum()),
+            "f_electrostatic": float(loads.f_attraction.sum()),
+            "ridges_in_contact": int((loads.length > 0).sum()),
+            "contact_length": float(loads.length.sum()),
+        }
+
     def adopt(
         self, carried: Carried, name: str, direction: int = 0, squeezed: tuple[float, float] | None = None
     ) -> None:
@@ -259,23 +273,15 @@ class Simulation:
         return float(self.problem.voltage.value)
 
     def _row(self, target: Target, loads: RidgeLoads, attempt: Attempt) -> dict[str, Any]:
-        bone, reaction = self.solver.bone, self.solver.reaction
         slipping, full = self.continuation.slip
         energy = self.energy.step(*self._state())
-        f_ext, f_t = float(reaction[1]), 0.0 - float(reaction[0])  # no negative zero
         return {
             "step": self.continuation.steps,
             "load": self._load if target.name != "touch" else "touch",
-            "f_ext": f_ext,
+            "f_ext": float(self.solver.reaction[1]),
             "voltage": self._voltage,
-            "bone_x": float(bone[0]),
-            "bone_height": float(bone[1]),
-            "f_t": f_t,
-            "mu_app": f_t / f_ext if f_ext > _BALANCED * self.solver.force_scale else 0.0,
-            "f_contact": float(loads.f_contact.sum()),
-            "f_electrostatic": float(loads.f_attraction.sum()),
-            "ridges_in_contact": int((loads.length > 0).sum()),
-            "contact_length": float(loads.length.sum()),
+            "bone_x": float(self.solver.bone[0]),
+            **self.resultants(loads),
             "slipping": slipping,
             "all_slip": full,
             "penetration": self.observer.penetration(self.continuation.surface_state),

@@ -74,16 +74,14 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Answer
     clock = Stopwatch()
     refuse_history(scene, 2)
     try:
-        charged = ridge_cell.tables(scene, folder)
-        uncharged = ridge_cell.tables(scene.model_copy(update={"voltage": 0.0}), folder)
-        finger = _SmoothFinger(scene, uncharged, charged, comm)
+        finger = _SmoothFinger(scene, folder, comm)
         normal = finger.press()
         slip = finger.slide()
     except StepFailed as error:
         raise SceneError(f"rung 2 found no equilibrium: {error}; use another rung") from error
     counts = finger.solver.counts
     took = clock.seconds()
-    used = {tables.name: tables for tables in (uncharged, charged)}.values()
+    used = {tables.name: tables for tables in (finger.uncharged, finger.charged)}.values()
     made_in = sum(tables.seconds for tables in used)
     made = f"tables of the ridge took {made_in:.2f} s of processor time when they were made; kept in {folder}"
     summary = at_rest(scene.f_ext, normal)
@@ -127,9 +125,7 @@ def full_slip(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Sl
     """
     if scene.history is not None or scene.numerics.element == "P2-P1" or scene.friction == 0:
         raise StepFailed("rung 2 has no full slip of a scene with a history, without friction or with element 'P2-P1'")
-    charged = ridge_cell.tables(scene, folder)
-    uncharged = ridge_cell.tables(scene.model_copy(update={"voltage": 0.0}), folder)
-    finger = _SmoothFinger(scene, uncharged, charged, comm)
+    finger = _SmoothFinger(scene, folder, comm)
     finger.press()
     found = finger.slide()
     if found is None:
@@ -145,8 +141,10 @@ def full_slip(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Sl
 class _SmoothFinger:
     """The smooth finger and its loads."""
 
-    def __init__(self, scene: Scene, uncharged: ridge_cell.Tables, charged: ridge_cell.Tables, comm: MPI.Comm) -> None:
-        self.scene, self.charged = scene, charged
+    def __init__(self, scene: Scene, folder: Path, comm: MPI.Comm) -> None:
+        self.scene = scene
+        self.charged = charged = ridge_cell.tables(scene, folder)
+        self.uncharged = uncharged = ridge_cell.tables(scene.model_copy(update={"voltage": 0.0}), folder)
         finger = smoothed(scene.geometry)
         body = load(comm, partial(fingertip.build, finger, sizes(scene)), tags.LAYERS.values())
         ridges = {j: tags.ridge(j) for j in body.ridges()}

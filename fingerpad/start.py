@@ -17,7 +17,6 @@ Normal contact is left out, since friction makes it depend on the path, of which
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 from mpi4py import MPI
 
 from fingerpad import smooth
@@ -62,9 +61,8 @@ def full_slip(scene: Scene, folder: Path, comm: MPI.Comm) -> Started:
     failures = []
     for depth, reach in _SQUEEZES:
         squeezed = depth, reach * scene.geometry.ridge_wavelength
-        direction = int(np.sign(scene.slide_length))
         try:
-            simulation.adopt(guess.carried, "full slip", direction, squeezed)
+            simulation.adopt(guess.carried, "full slip", direction=1, squeezed=squeezed)
             break
         except StepFailed as error:
             failures.append(str(error))

@@ -28,3 +28,16 @@ def test_ridges_meshed_against_ridges_touched(tmp_path, last, code, words):
     assert reach.main(["--out", str(tmp_path), "--docs", str(tmp_path)]) == code
     page = (tmp_path / "reach.md").read_text(encoding="utf-8")
     assert words in page and f"| {NAME} | 4 | {last} |" in page
+
+
+def test_scene_without_a_coarse_solution_is_named(tmp_path, monkeypatch):
+    """And the others are judged all the same."""
+
+    def lost(scene, comm):
+        raise reach.coarse.NoCoarseSolution("it reaches the last of the ridges, 9")
+
+    monkeypatch.setattr(reach.coarse, "solve", lost)
+    keep(tmp_path, 3)
+    assert reach.main(["--out", str(tmp_path), "--docs", str(tmp_path)]) == 0
+    page = (tmp_path / "reach.md").read_text(encoding="utf-8")
+    assert f"No coarse solution: {NAME} (it reaches the last of the ridges, 9)." in page

@@ -25,9 +25,7 @@ def test_nothing_of_the_mesh_is_chosen_where_an_accuracy_is_asked():
 
 def summary(**quantities):
     """Made-up ends: value, error and what was allowed, by name."""
-    rows = {
-        n: {"value": v, "error": e, "allowed": a, "shares": {}, "orders": {}} for n, (v, e, a) in quantities.items()
-    }
+    rows = {n: {"value": v, "error": e, "allowed": a, "shares": {}} for n, (v, e, a) in quantities.items()}
     mesh = Scene().mesh.model_dump()
     solve = {"mesh": mesh, "unknowns": 100, "factorisations": 7, "processor_seconds": 1.0}
     found = {"reached": True, "mesh": mesh, "quantities": rows, "solves": [solve], "unknowns_times_factorisations": 700}

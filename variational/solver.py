@@ -16,7 +16,6 @@ touching skin, an implicit Euler step of :math:`\eta \dot u = -r(u)`, and eta fa
 away from the equilibrium that is lost and ends in one of the unchanged equations.
 """
 
-import resource
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -29,7 +28,7 @@ from petsc4py import PETSc
 from variational.failure import NotConverged, linear_failure
 from variational.layout import RigidRimLayout
 from variational.problem import SLIPS, STICKS, Problem
-from variational.timing import Timings
+from variational.timing import Counts, Timings
 
 Array = NDArray[np.float64]
 PREFIX = "fingerpad_"
@@ -66,16 +65,6 @@ class Control:
     """Translation (m), or None under force control."""
     force: float = 0.0
     """External force per length pressing down (N/m), where y is None."""
-
-
-@dataclass
-class Counts:
-    """Work done, for reports."""
-
-    newton: int = 0
-    factorisations: int = 0
-    pseudo_transient: int = 0
-    """Solves that full Newton steps did not manage."""
 
 
 class Solver:
@@ -402,8 +391,3 @@ class Solver:
     def bone(self) -> Array:
         """The bone's translation (m), shape (2,)."""
         return self.layout.rigid_part(self.x)
-
-
-def memory_mb() -> float:
-    """Return the peak memory (MB) of this process."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

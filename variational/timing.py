@@ -1,9 +1,11 @@
-"""Seconds by phase of a run."""
+"""What a run takes: seconds by phase, work, memory."""
 
+import resource
 import time
 from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 
 class Timings:
@@ -20,3 +22,18 @@ class Timings:
             yield
         finally:
             self.seconds[name] += time.perf_counter() - start
+
+
+@dataclass
+class Counts:
+    """Work done, for reports."""
+
+    newton: int = 0
+    factorisations: int = 0
+    pseudo_transient: int = 0
+    """Solves that full Newton steps did not manage."""
+
+
+def memory_mb() -> float:
+    """Return the peak memory (MB) of this process."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

@@ -8,6 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from benchmarks.paper.statement import HOLDS, Statement
+from fingerpad.files import replace, replace_json
 
 _PUBLISHED = Path(__file__).parent / "experiment" / "published.csv"
 _NUMBERS = Path("paper", "paper.json")
@@ -60,9 +61,9 @@ def write(
     parts += [f"![{caption}](paper/{name})\n\n*{caption}*" for name, caption in figures]
     parts += ["## Published measurements", published()]
     parts += ["## Parameters", tables]
-    (docs / "paper.md").write_text("\n\n".join(filter(None, parts)) + "\n", encoding="utf-8")
+    replace(docs / "paper.md", "\n\n".join(filter(None, parts)) + "\n")
     data = {"contact_size": size, "statements": [asdict(s) for s in statements]}
-    (docs / _NUMBERS).write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    replace_json(docs / _NUMBERS, data)
 
 
 def moved(docs: Path, size: float, statements: Sequence[Statement]) -> list[str]:

@@ -10,6 +10,7 @@ from benchmarks.stability.case import Case, Outcome
 from benchmarks.stability.loop import Loop, loop
 from benchmarks.stability.pictures import NAMES, SYMBOLS, tick
 from benchmarks.stability.plan import Chart, Named, Panel
+from fingerpad.files import replace
 from variational.roughness.bam import BearingArea
 
 _INTRODUCTION = """# Where the solver converges
@@ -155,4 +156,4 @@ def write(
     text += "".join(named_section(one, cache) for one in named) + loop_section(closure)
     text += "".join(chart_section(chart, cache) for chart in charts)
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text, encoding="utf-8")
+    replace(path, text)

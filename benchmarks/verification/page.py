@@ -1,6 +1,5 @@
 """The verification page: a table for each area, its pictures below."""
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -8,6 +7,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from benchmarks.verification.case import Case, Outcome, Row
+from fingerpad.files import replace, replace_json
 
 Results = Mapping[str, Sequence[tuple[Case, Outcome]]]
 _HEADER = """# Verification
@@ -73,5 +73,5 @@ def write(results: Results, docs: Path) -> None:
         area: {case.name: [asdict(row) | {"error": row.error} for row in outcome.rows] for case, outcome in cases}
         for area, cases in results.items()
     }
-    (folder / "results.json").write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    (docs / "verification.md").write_text(page(results, folder.name), encoding="utf-8")
+    replace_json(folder / "results.json", data)
+    replace(docs / "verification.md", page(results, folder.name))
