@@ -3,12 +3,10 @@
 environment/run python3 benchmarks/accuracy.py [--jobs 2] [--draw]
 
 Whole loops: scenes of which an accuracy is asked, ten of them drawn at random (benchmarks/untuned.py), run as a user
-would, against what their states tend to on meshes refined further (benchmarks/limits.py). And one knob at a time, from
-the runs of benchmarks/errors.py, which makes them: each run's error is estimated as fingerpad/estimate.py does it, from
-the coarser runs before it. Writes docs/accuracy.md.
+would, against what their states tend to on meshes refined further (benchmarks/limits.py). Beneath them the estimate by
+itself (benchmarks/effectivity.py), whose runs benchmarks/errors.py makes. Writes docs/accuracy.md.
 """
 
-import itertools
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,28 +14,24 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks import arguments, limits, untuned
-from benchmarks.convergence import Limit, limit
-from benchmarks.errors import DEFAULT, LEVELS, QUANTITIES, STUDIES, folder_of_limits, study, values
-from fingerpad.estimate import Knob
+from benchmarks.convergence import Limit
+from benchmarks.effectivity import HIGH, LOW, hertz_table, knob_tables, tally
+from benchmarks.errors import DEFAULT, LEVELS, folder_of_limits
 from fingerpad.files import replace
 from fingerpad.parameters import Output
 from fingerpad.scene import Scene
 from fingerpad.sweep import key, result, sweep
 
-_LOW, _HIGH = 0.5, 3.0  # effectivities that are good enough
 _STATES = {"press": "uncharged", "normal": "normal contact", "slip": "full slip"}
 _SHORT = {"mu_app": "µ_app", "contact_length": "contact length", "sed": "SED"}
 _CHOSEN = ("contact", "growth", "receptor")
-_KNOBS = ("contact", "growth", "receptor")
-# Counts, and what is f_T over the prescribed force.
-_LEFT_OUT = ("slip_mu_app", "normal_ridges_in_contact", "slip_ridges_in_contact")
 _TEN = {"mu_app": 0.01, "contact_length": 0.03}
 _DEFAULT = ({"mu_app": 0.01}, _TEN, {"contact_length": 0.01}, {"sed": 0.05})  # asked of the default scene
 _LIMIT = 7200.0  # s of processor time for one scene
 _HEADER = f"""# Does the error estimate find the error?
 
 Made by `environment/run python3 benchmarks/accuracy.py`; do not edit. *Estimate*: what the run says of its own error.
-*Error*: the distance from the limit. *Effectivity*: estimate over error, wanted between {_LOW:g} and {_HIGH:g}; one in
+*Error*: the distance from the limit. *Effectivity*: estimate over error, wanted between {LOW:g} and {HIGH:g}; one in
 brackets is of an error below its own bar, which says nothing. Numbers are per cent of the limit."""
 _LOOPS = """## Accuracy asked for
 
@@ -46,52 +40,6 @@ of `fingerpad/reach.py`, as in all benchmarks. The limit is that of its states s
 to a contact size of 2.5 µm, with its error bar. Cost: all factorisations × unknowns (path, estimate, and coarser paths
 that were lost), over those of the default scene's whole run on its own mesh. Ten scenes were drawn at random from a
 quarter about the default finger's lengths, materials and roughness (one seed, `benchmarks/untuned.py`)."""
-_ONE = """# One knob at a time
-
-The default scene (75 N/m, 200 V, slid to full slip) with one size changed. The estimate is the knob's share
-(`fingerpad/estimate.py`), from the coarser runs before. The limit is, for the contact size, Richardson's with its error
-bar (`benchmarks/convergence.py`), for the others the finest run alone, which makes errors look smaller than they are.
-No estimate is judged of the finest run. The error of µ_app is that of f_T."""
-
-
-def shares(found: Sequence[Mapping[str, float]], name: str) -> list[float]:
-    """Return the estimated error of a quantity in each run but the coarsest, in its unit."""
-    knob, estimates = Knob(), []
-    for coarse, fine in itertools.pairwise(found):
-        knob.see({name: coarse[name]}, {name: fine[name]})
-        estimates.append(knob.share(name))
-    return estimates
-
-
-def table(name: str, out: Path) -> tuple[str, list[float]]:
-    """Return a knob's section, and the effectivities that say something."""
-    heading, unit, words = STUDIES[name]
-    runs = {value: run for value, scene in study(name).items() if (run := values(scene, out)) is not None}
-    if len(runs) < len(study(name)):
-        return f"## {heading}\n\nNot all of its runs were made.", []
-    found, telling = list(runs.values()), []
-    lines = ["| | at | estimate (%) | error (%) | effectivity |", "|---|---|---|---|---|"]
-    for quantity, (title, _) in QUANTITIES.items():
-        if quantity in _LEFT_OUT:
-            continue
-        sequence = [run[quantity] for run in found]
-        exact, bar = sequence[-1], 0.0
-        if name == "contact":
-            best = limit(sequence)
-            exact, bar = best.value, best.bar
-        # The finest run's would be compared with a limit that its own difference makes.
-        judged = list(zip(runs, sequence, [0.0, *shares(found, quantity)], strict=True))[1:-1]
-        for value, q, share in judged:
-            error = abs(q - exact)
-            effectivity = share / error if error > 0 else float("inf")
-            cell = f"{effectivity:.2f}" if error > bar else f"({effectivity:.2f})"
-            if error > bar:
-                telling.append(effectivity)
-            of = 100 / abs(exact)
-            at, within = f"{value / unit:g} {words}".strip(), f" ± {bar * of:.2g}" if bar else ""
-            cells = [title.rsplit(" (", 1)[0], at, f"{share * of:.3g}", f"{error * of:.3g}{within}", cell]
-            lines.append("| " + " | ".join(cells) + " |")
-    return f"## {heading}\n\n" + "\n".join(lines), telling
 
 
 @dataclass(frozen=True)
@@ -179,7 +127,7 @@ def loop_tables(out: Path) -> str:
         sizes = [f"{a['mesh'][s] * 1e6:g}" if s != "growth" else f"{a['mesh'][s]:g}" for s in _CHOSEN]
         unknowns = max(solve["unknowns"] for solve in a["solves"])
         costs.append(f"| {name} | " + " | ".join([*sizes, str(unknowns), str(len(a["solves"])), cost]) + " |")
-    verdict = f"**Met in {met} of the {told} scenes drawn and run whose limit is known.** {_tally(effectivities)}"
+    verdict = f"**Met in {met} of the {told} scenes drawn and run whose limit is known.** {tally(effectivities)}"
     return "\n\n".join([_LOOPS, verdict, "\n".join(lines), "What was chosen and what it cost:", "\n".join(costs)])
 
 
@@ -190,19 +138,9 @@ def _title(name: str) -> str:
     return f"{_SHORT[quantity]}, {_STATES[state]}"
 
 
-def _tally(effectivities: Sequence[float]) -> str:
-    good, under = (sum(test(e) for e in effectivities) for test in (lambda e: _LOW <= e <= _HIGH, lambda e: e < _LOW))
-    return (
-        f"{good} of {len(effectivities)} effectivities are between {_LOW:g} and {_HIGH:g}, {under} below, "
-        f"{len(effectivities) - good - under} above."
-    )
-
-
 def page(out: Path) -> str:
     """Return the page of what has been run."""
-    sections, telling = zip(*(table(name, out) for name in _KNOBS), strict=True)
-    every = [e for part in telling for e in part]
-    return "\n\n".join([_HEADER, loop_tables(out), _ONE, _tally(every), *sections]) + "\n"
+    return "\n\n".join([_HEADER, loop_tables(out), knob_tables(out), hertz_table()]) + "\n"
 
 
 def main(given: Sequence[str] | None = None) -> int:

@@ -27,6 +27,7 @@ from typing import Any
 
 import numpy as np
 from mpi4py import MPI
+from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.estimate import Knob, errors, to_halve
 from fingerpad.interrupt import Interrupted
@@ -39,6 +40,7 @@ from variational.continuation import StepFailed
 from variational.receptors import Receptors
 from variational.transfer import Carried, carry
 
+Array = NDArray[np.float64]
 STILL = 1e-12  # m, below which the bone has not moved sideways
 _SIZES = {"contact": ("contact",), "bulk": ("growth", "interface", "coarsest"), "receptor": ("receptor",)}
 _ROUNDS = 6  # of refinement
@@ -54,6 +56,8 @@ class State:
     """The way the bone slides at full slip, zero in normal contact."""
     row: dict[str, float]
     """Its resultants, by the names of a run's steps."""
+    lengths: Array
+    """Length in contact (m) of every ridge of the finger, shape (ridges,)."""
     sed: dict[int, float]
     """Strain energy density (J/m^3) at the Merkel sites of the ridges that can touch."""
 
@@ -79,6 +83,10 @@ class Solve:
             found |= {f"{name}_sed_{j}": value for j, value in state.sed.items()}
         return found
 
+    def parts(self) -> dict[str, ArrayLike]:
+        """Return the same, contact lengths by ridge, shape (ridges,)."""
+        return {**self.values(), **{f"{name}_contact_length": state.lengths for name, state in self.states.items()}}
+
 
 class Keeper:
     """Keeps the two states of a path as it goes."""
@@ -102,10 +110,13 @@ class Keeper:
     def keep(self, name: str) -> None:
         """Keep the present state; collective."""
         s = self._simulation
-        row = s.resultants(s.ridge_loads())
+        loads = s.ridge_loads()
+        row = s.resultants(loads)
+        lengths = np.zeros(s.scene.geometry.ridge_count)
+        lengths[np.array(s.ridges) + len(lengths) // 2] = loads.length
         sed = {j: float(density) for j, density in zip(s.problem.surface.names, self._sites.sed(), strict=True)}
         direction = 0 if name != "slip" else 1 if row["f_t"] >= 0 else -1
-        self.states[name] = State(carry(s.coupling, s.continuation.surface_state), direction, row, sed)
+        self.states[name] = State(carry(s.coupling, s.continuation.surface_state), direction, row, lengths, sed)
 
     def solve(self) -> Solve:
         """Return what was kept."""
@@ -252,7 +263,7 @@ class Search:
         self.base = finer
 
     def _see(self, key: str, coarse: Solve, finer: Solve) -> None:
-        self.knobs[key].see(coarse.values(), finer.values())
+        self.knobs[key].see(coarse.parts(), finer.parts())
         for name in sorted(coarse.states.keys() & finer.states.keys()):
             before, now = (s.states[name].row["ridges_in_contact"] for s in (coarse, finer))
             if before != now:

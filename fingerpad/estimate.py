@@ -10,11 +10,14 @@ the size in use. An error of :math:`C_k h_k^{p_k}` each gives to first order
 (Richardson's extrapolation as an estimate; Roache 1994, doi 10.1115/1.2910291). E adds magnitudes: signs that cancel on
 one mesh need not on the next. It is of the finest mesh solved on: what shows the error also lowers it.
 
-One halving tells no order; p = 1 is then taken, the order of a contact's edge on a mesh that does not know where it
-is: the error left is as large as the last change. Energy densities, at sites deep in the skin that hardly see the edge,
-have p = 2, that of the strains of quadratic elements. Once a knob has been halved again, the order is observed, and is
-believed between 1 and 2. A difference that came out accidentally small, or with the other sign, is not believed either:
-it counts as at least a quarter of the one before it, which is second order.
+The orders are those known beforehand: p = 1, that of a contact's edge on a mesh that does not know where it is, for
+forces and lengths, so that the error left is as large as the last change; p = 2, that of the strains of quadratic
+elements, for energy densities at sites deep in the skin that hardly see the edge. An order observed from three meshes
+is mostly noise, since an edge moves facet by facet (``docs/accuracy.md``).
+
+For the same reason a change may come out small by accident. That of a sum over ridges counts as at least the root of
+the sum of their squared changes, what changes of random sign come to; and any as at least a quarter of the one before
+it, which is second order.
 
 (A dual-weighted residual would need the adjoint of an active set and of two scales, and says nothing of a state in
 which a ridge has jumped. Another mesh sees all that, and one re-solved state costs some ten factorisations.)
@@ -26,10 +29,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-Values = Mapping[str, float]
-_LOWEST, _HIGHEST = 1.0, 2.0  # orders that are believed
-_DENSITY = "_sed_"  # in the names of energy densities
+Parts = Mapping[str, ArrayLike]  # a number, or the parts of a sum, shape (ridges,)
 
 
 @dataclass
@@ -37,34 +39,32 @@ class Knob:
     """What halving one knob changed, from its first size to the one in use."""
 
     changes: list[dict[str, float]] = field(default_factory=list)
-    """By how much each quantity changed, at each halving."""
+    """By how much each quantity changed, at each halving; magnitudes."""
 
-    def see(self, coarse: Values, fine: Values) -> None:
+    def see(self, coarse: Parts, fine: Parts) -> None:
         """Take note of values before and after the next halving."""
-        self.changes.append({name: fine[name] - coarse[name] for name in coarse if name in fine})
+        self.changes.append({name: _change(coarse[name], fine[name]) for name in coarse if name in fine})
 
     def acts_on(self, name: str) -> bool:
         """Return whether the knob has a part in a quantity's error."""
         return name in self.changes[-1]
 
-    def order(self, name: str) -> float:
-        """Return the order with which a quantity's error falls."""
-        if len(self.changes) < 2:
-            return _HIGHEST if _DENSITY in name else _LOWEST
-        change = self._believed(name)
-        if change == 0:
-            return _HIGHEST
-        return float(np.clip(np.log2(abs(self.changes[-2][name]) / change), _LOWEST, _HIGHEST))
-
     def share(self, name: str) -> float:
         """Return the part of a quantity's error, at the size in use, that is this knob's; in the quantity's unit."""
-        return self._believed(name) / (2 ** self.order(name) - 1)
-
-    def _believed(self, name: str) -> float:
-        change = abs(self.changes[-1][name])
+        change = self.changes[-1][name]
         if len(self.changes) > 1:
-            change = max(change, abs(self.changes[-2][name]) / 2**_HIGHEST)
-        return change
+            change = max(change, self.changes[-2][name] / 4)
+        return change / (2 ** order(name) - 1)
+
+
+def _change(before: ArrayLike, now: ArrayLike) -> float:
+    parts = np.atleast_1d(np.subtract(now, before))
+    return max(abs(float(parts.sum())), float(np.linalg.norm(parts)))
+
+
+def order(name: str) -> int:
+    """Return the order with which the error of a quantity falls."""
+    return 2 if "_sed_" in name else 1
 
 
 def errors(knobs: Mapping[str, Knob], names: Sequence[str]) -> dict[str, float]:
@@ -72,7 +72,7 @@ def errors(knobs: Mapping[str, Knob], names: Sequence[str]) -> dict[str, float]:
     return {name: sum(knob.share(name) for knob in knobs.values() if knob.acts_on(name)) for name in names}
 
 
-def to_halve(knobs: Mapping[str, Knob], allowed: Values) -> list[str]:
+def to_halve(knobs: Mapping[str, Knob], allowed: Mapping[str, float]) -> list[str]:
     """Return the knobs to halve once more on the way to errors within what is allowed, by name.
 
     Of each quantity that is not within it, as few as will do by their orders, those with the largest shares first, and
@@ -94,6 +94,6 @@ def to_halve(knobs: Mapping[str, Knob], allowed: Values) -> list[str]:
         for key in sorted(shares, key=shares.__getitem__, reverse=True):
             if left <= most or shares[key] * len(shares) <= most:
                 break
-            left -= shares[key] * (1 - 2 ** -knobs[key].order(name))
+            left -= shares[key] * (1 - 2 ** -order(name))
             found.add(key)
     return [key for key in knobs if key in found]

@@ -36,7 +36,7 @@ def known(scene, needed, states, comm) -> Solve:
         "ridges_in_contact": 17,
     }
     sed = {0: 1e3 * (1 + (scene.mesh.receptor / 60e-6) ** 2), 1: 10.0}
-    return Solve({"slip": State(NOTHING, 1, row, sed)}, scene.mesh, 1000, 10, 1.0)
+    return Solve({"slip": State(NOTHING, 1, row, np.full(17, 1e-3 / 17), sed)}, scene.mesh, 1000, 10, 1.0)
 
 
 def search(monkeypatch, asked, solve=known, pause=lambda: None) -> Search:

@@ -1,0 +1,125 @@
+"""Does the error estimate find the error? One knob at a time, and Hertz's contact, of which the error is known.
+
+The knobs are those of the runs of benchmarks/errors.py, which makes them: each run's error is estimated as
+fingerpad/estimate.py does it, from the coarser runs before it. Written beneath the whole loops
+of benchmarks/accuracy.py.
+"""
+
+import itertools
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from benchmarks import hertz
+from benchmarks.convergence import limit
+from benchmarks.errors import QUANTITIES, STUDIES, study, values
+from benchmarks.runs import Run
+from fingerpad.estimate import Knob
+from fingerpad.scene import Scene
+
+Array = NDArray[np.float64]
+LOW, HIGH = 0.5, 3.0  # effectivities that are good enough
+_KNOBS = ("contact", "growth", "receptor")
+# Counts, and what is f_T over the prescribed force.
+_LEFT_OUT = ("slip_mu_app", "normal_ridges_in_contact", "slip_ridges_in_contact")
+_LENGTH = "contact_length"
+_ONE = """## One knob at a time
+
+The default scene (75 N/m, 200 V, slid to full slip) with one size changed. The estimate is the knob's share
+(`fingerpad/estimate.py`), from the coarser runs before. The limit is, for the contact size, Richardson's with its error
+bar (`benchmarks/convergence.py`), for the others the finest run alone, which makes errors look smaller than they are.
+No estimate is judged of the finest run. The error of µ_app is that of f_T."""
+
+
+_HERTZ = """## Hertz's contact
+
+A cylinder on meshes of which each has half the facets' length of the one before (`benchmarks/hertz.py`); the contact
+length is known but for {bar:.1g} %. Its two edges move facet by facet, so that it converges by fits and starts. A
+finger has some thirty edges, whose fits cancel."""
+
+
+def shares(found: Sequence[ArrayLike], name: str) -> list[float]:
+    """Return the estimated error of a quantity in each run but the coarsest, in its unit.
+
+    Args:
+        found: the quantity, or its parts, in each run.
+        name: of the quantity.
+    """
+    knob, estimates = Knob(), []
+    for coarse, fine in itertools.pairwise(found):
+        knob.see({name: coarse}, {name: fine})
+        estimates.append(knob.share(name))
+    return estimates
+
+
+def lengths(scene: Scene, out: Path, state: str) -> Array:
+    """Return the lengths in contact (m) of all ridges in a state of a run, shape (ridges,)."""
+    run = Run(scene, out)
+    found = np.zeros(scene.geometry.ridge_count)
+    ridges, length = run.on_ridges({"press": run.pressed, "normal": run.normal, "slip": run.slip}[state], _LENGTH)
+    found[ridges.astype(int) + len(found) // 2] = length
+    return found
+
+
+def table(name: str, out: Path) -> tuple[str, list[float]]:
+    """Return a knob's section, and the effectivities that say something."""
+    heading, unit, words = STUDIES[name]
+    scenes = study(name)
+    runs = {value: run for value, scene in scenes.items() if (run := values(scene, out)) is not None}
+    if len(runs) < len(scenes):
+        return f"### {heading}\n\nNot all of its runs were made.", []
+    found, telling = list(runs.values()), []
+    lines = ["| | at | estimate (%) | error (%) | effectivity |", "|---|---|---|---|---|"]
+    for quantity, (title, _) in QUANTITIES.items():
+        if quantity in _LEFT_OUT:
+            continue
+        sequence = [run[quantity] for run in found]
+        exact, bar = sequence[-1], 0.0
+        if name == "contact":
+            best = limit(sequence)
+            exact, bar = best.value, best.bar
+        # The finest run's would be compared with a limit that its own difference makes.
+        state, _, rest = quantity.partition("_")
+        parts = [lengths(scene, out, state) for scene in scenes.values()] if rest == _LENGTH else sequence
+        judged = list(zip(runs, sequence, [0.0, *shares(parts, quantity)], strict=True))[1:-1]
+        for value, q, share in judged:
+            error = abs(q - exact)
+            effectivity = share / error if error > 0 else float("inf")
+            cell = f"{effectivity:.2f}" if error > bar else f"({effectivity:.2f})"
+            if error > bar:
+                telling.append(effectivity)
+            of = 100 / abs(exact)
+            at, within = f"{value / unit:g} {words}".strip(), f" ± {bar * of:.2g}" if bar else ""
+            cells = [title.rsplit(" (", 1)[0], at, f"{share * of:.3g}", f"{error * of:.3g}{within}", cell]
+            lines.append("| " + " | ".join(cells) + " |")
+    return f"### {heading}\n\n" + "\n".join(lines), telling
+
+
+def hertz_table() -> str:
+    """Return the section of Hertz's contact, which takes some seconds."""
+    lines, telling = ["| half-width (mm) | facets | estimate (%) | error (%) | effectivity |", "|---" * 5 + "|"], []
+    for a in hertz.HALF_WIDTHS:
+        found = [hertz.contact_length(a, facets) for facets in hertz.FACETS]
+        for facets, length, share in zip(hertz.FACETS[1:], found[1:], shares(found, _LENGTH), strict=True):
+            error = abs(length - 2 * a)
+            telling += [share / error] if error > hertz.BAR * 2 * a else []
+            numbers = [f"{100 * share / (2 * a):.2g}", f"{100 * error / (2 * a):.2g}", f"{share / error:.2f}"]
+            lines.append(f"| {1e3 * a:.3f} | {a / hertz.HALF_WIDTH * facets:.1f} | " + " | ".join(numbers) + " |")
+    return "\n\n".join([_HERTZ.format(bar=100 * hertz.BAR), tally(telling), "\n".join(lines)])
+
+
+def knob_tables(out: Path) -> str:
+    """Return the sections of the knobs, of what has been run."""
+    sections, telling = zip(*(table(name, out) for name in _KNOBS), strict=True)
+    return "\n\n".join([_ONE, tally([e for part in telling for e in part]), *sections])
+
+
+def tally(effectivities: Sequence[float]) -> str:
+    """Say how many effectivities are good enough."""
+    good, under = (sum(test(e) for e in effectivities) for test in (lambda e: LOW <= e <= HIGH, lambda e: e < LOW))
+    return (
+        f"{good} of {len(effectivities)} effectivities are between {LOW:g} and {HIGH:g}, {under} below, "
+        f"{len(effectivities) - good - under} above."
+    )

@@ -1,0 +1,30 @@
+"""Hertz's line contact on meshes that are halved: a contact length whose error is known exactly.
+
+The cylinder of benchmarks/verification/normal_contact.py, pressed to half-widths that end anywhere in a facet. Its
+length in contact has two edges, mirror images of one another, where the finger's has some thirty.
+"""
+
+from functools import partial
+
+import numpy as np
+
+from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, NU, RADIUS, SPAN, YOUNG
+from benchmarks.verification.over_screen import formulations, over_screen
+from geometry.benchmarks import pad
+from variational.continuation import Target
+from variational.problem import Interface, SaintVenant
+
+HALF_WIDTHS = tuple(part * HALF_WIDTH for part in (0.817, 0.893, 0.961, 1.049, 1.137))
+FACETS = (5, 10, 20, 40)  # to HALF_WIDTH
+BAR = (HALF_WIDTH / SPAN) ** 2  # relative: the body is a block, not a half-space
+_REACH = 1.4  # of the facets that can touch, over HALF_WIDTH
+
+
+def contact_length(a: float, facets: int) -> float:
+    """Return the length in contact (m), 2a by Hertz, with ``facets`` facets to :data:`HALF_WIDTH`."""
+    size, force = HALF_WIDTH / facets, np.pi * E_STAR * a**2 / (4 * RADIUS)
+    interface = Interface(formulations(YOUNG / size, 1e-11)["penalty"], 0.0, 1e-6)
+    build = partial(pad, size, int(np.ceil(_REACH * facets)), RADIUS, SPAN)
+    run = over_screen(build, SaintVenant(YOUNG, NU), interface, force, touch_depth=0.5e-6, step_scale=15.0)
+    run.run(Target("press", f_ext=force))
+    return float(run.observer.ridge_loads(run.surface_state).length[0])
