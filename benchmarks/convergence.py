@@ -4,10 +4,12 @@ With values :math:`f_k` on meshes of size :math:`h_k`, each half of the one befo
 
 .. math:: p = \log_2 \frac{f_1 - f_0}{f_2 - f_1}, \qquad f = f_2 + \frac{f_2 - f_1}{2^p - 1}
 
-and Roache's grid convergence index the error bar, :math:`1.25\,|f - f_2|` (Roache 1994, doi 10.1115/1.2910291). Where
-the changes hardly shrink (an order below 1/2), or not with the same sign, there is none to extrapolate with; the last
-value is then the estimate. The bar is three times, the index's factor for what is not known, the last change where they
-shrink from side to side, else the larger of the last two.
+and Roache's grid convergence index the error bar, :math:`1.25\,|f - f_2|` (Roache 1994, doi 10.1115/1.2910291). An
+order above 2, that of the strains of quadratic elements, is taken for an accident of the last change: p is 2 then, and
+the bar that of the change which p = 2 would have left of the one before, :math:`(f_1 - f_0) / 4`. Where the changes
+hardly shrink (an order below 1/2), or not with the same sign, there is none to extrapolate with; the last value is then
+the estimate. The bar is three times, the index's factor for what is not known, the last change where they shrink from
+side to side, else the larger of the last two.
 """
 
 from collections.abc import Sequence
@@ -16,9 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 _SAFETY, _UNSAFE = 1.25, 3.0
-# Orders with which is extrapolated: an accidentally small change would claim any, and changes that hardly shrink are
-# not those of a range where there is one.
-_LOWEST, _HIGHEST = 0.5, 4.0
+_LOWEST, _HIGHEST = 0.5, 2.0  # orders with which is extrapolated
 
 
 @dataclass(frozen=True)
@@ -51,5 +51,5 @@ def limit(values: Sequence[float]) -> Limit:
     order = float(np.log2(before / last))
     if order < _LOWEST:
         return Limit(finest, _UNSAFE * float(max(abs(before), abs(last))), None)
-    correction = float(last / (2 ** min(order, _HIGHEST) - 1))
-    return Limit(finest + correction, _SAFETY * abs(correction), order)
+    factor = 2 ** min(order, _HIGHEST)
+    return Limit(finest + float(last) / (factor - 1), _SAFETY * float(abs(before)) / factor / (factor - 1), order)

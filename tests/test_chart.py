@@ -1,12 +1,12 @@
 """The chart of error over work, on points that are made up."""
 
 from benchmarks import chart
-from benchmarks.chart import QUANTITIES, Point
 from benchmarks.convergence import Limit
+from benchmarks.points import AGAIN, QUANTITIES, STATES, Point
 
 
 def point(label, work, seconds, error):
-    costs = (dict.fromkeys(chart.STATES, spent) for spent in (work, seconds))
+    costs = (dict.fromkeys(STATES, spent) for spent in (work, seconds))
     return Point(label, "growth", *costs, dict.fromkeys(QUANTITIES, error))
 
 
@@ -29,7 +29,7 @@ def test_front_over_time_is_another():
 
 
 def test_run_without_its_time_is_in_the_chart_of_work_alone():
-    more = [*POINTS, Point("old", "growth", dict.fromkeys(chart.STATES, 0.5), {}, dict.fromkeys(QUANTITIES, 1e-5))]
+    more = [*POINTS, Point("old", "growth", dict.fromkeys(STATES, 0.5), {}, dict.fromkeys(QUANTITIES, 1e-5))]
     assert [p.label for p in chart.front(more, "slip_f_t")] == ["old"]
     assert [p.label for p in chart.front(more, "slip_f_t", "seconds")] == ["worse", "default", "dear"]
 
@@ -42,6 +42,17 @@ def test_table_names_the_cheapest_run_that_will_do(tmp_path):
     assert row.split(" | ")[2:5] == ["cheap: 0.5", "dear: 2", "dear: 2"]
     assert "4 of 9 runs" in text
     assert "Not reached: 40 µm: stuck." in text
+
+
+def test_states_without_a_path_are_no_part_of_the_front(tmp_path):
+    """They have a table of their own, and no column of what they do not say."""
+    again = Point("again", AGAIN, dict.fromkeys(STATES, 0.2), dict.fromkeys(STATES, 0.2), {"slip_f_t": 1e-5})
+    assert [p.label for p in chart.front(chart.whole([*POINTS, again]), "slip_f_t")] == ["cheap", "default", "dear"]
+    chart.write([*POINTS, again], 4, dict.fromkeys(QUANTITIES, Limit(1.0, 0.001, None)), tmp_path)
+    text = (tmp_path / "chart.md").read_text(encoding="utf-8")
+    assert "4 of 4 runs" in text
+    assert "| f_T and µ_app, full slip | again: 0.1 | again: 0.1 | again: 0.1 |" in text
+    assert "| contact length, full slip | none | none | none |" in text
 
 
 def test_every_scene_is_another():
