@@ -1,6 +1,6 @@
-"""Rung 2's answer to one scene, in a process of its own, as JSON on standard output.
+"""Rung 2's answer to one scene, or rung 3's from it, in a process of its own, as JSON on standard output.
 
-python3 -m benchmarks.rung SCENE.json TABLES LIMIT
+python3 -m benchmarks.rung KIND SCENE.json TABLES LIMIT    KIND: 2 or start
 """
 
 import json
@@ -14,7 +14,7 @@ from fingerpad.rungs import Answer
 from fingerpad.scene import Scene, from_data
 from fingerpad.sweep import key
 
-LIMIT = 300.0  # s of processor time; mostly it takes half a minute
+LIMIT = 900.0  # s of processor time; mostly it takes half a minute, a start another one
 
 
 def kept(answer: Answer) -> dict[str, Any]:
@@ -22,19 +22,22 @@ def kept(answer: Answer) -> dict[str, Any]:
     return {"summary": answer.summary, "cost": vars(answer.cost), "more": answer.more}
 
 
-def ask(scene: Scene, folder: Path) -> End:
+def ask(kind: str, scene: Scene, folder: Path) -> End:
     """Start the process for a scene, its file in a folder of tables, and wait for it."""
     file = folder / f"{key(scene)}.json"
     file.write_text(json.dumps(scene.parameters()), encoding="utf-8")
-    return run("benchmarks.rung", [str(file), str(folder), str(LIMIT)], LIMIT)
+    return run("benchmarks.rung", [kind, str(file), str(folder), str(LIMIT)], LIMIT)
 
 
 def _main(arguments: Sequence[str]) -> None:
-    limit_processor_time(float(arguments[2]))
-    from fingerpad import smooth
+    limit_processor_time(float(arguments[3]))
+    from mpi4py import MPI
 
-    scene = from_data(json.loads(Path(arguments[0]).read_text(encoding="utf-8")))
-    print(json.dumps(kept(smooth.solve(scene, Path(arguments[1])))))
+    from fingerpad import smooth, start
+
+    scene, folder = from_data(json.loads(Path(arguments[1]).read_text(encoding="utf-8"))), Path(arguments[2])
+    answer = smooth.solve if arguments[0] == "2" else start.answer
+    print(json.dumps(kept(answer(scene, folder, MPI.COMM_WORLD))))
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from fingerpad import smooth
+from fingerpad import ridge_cell, smooth
 from fingerpad.accuracy import Keeper, Solve
 from fingerpad.needs import plan
 from fingerpad.reach import by_rule
@@ -89,6 +89,10 @@ def answer(scene: Scene, folder: Path, comm: MPI.Comm) -> Answer:
     row = found.solve.states["slip"].row
     names = ("f_contact", "f_electrostatic", "bone_height", "ridges_in_contact", "contact_length")
     summary = at_slip(scene.f_ext, scene.friction, {name: row[name] for name in names})
-    more = {"rung_2_factorisations": found.smooth.factorisations, "rung_2_unknowns": found.smooth.unknowns}
+    more = {
+        "table_version": ridge_cell.VERSION,
+        "rung_2_factorisations": found.smooth.factorisations,
+        "rung_2_unknowns": found.smooth.unknowns,
+    }
     cost = Cost(clock.seconds(), found.solve.factorisations, found.solve.unknowns)
     return Answer(3, summary, cost, found.notes, more)

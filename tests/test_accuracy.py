@@ -1,5 +1,7 @@
 """Accuracy asked for: the search on errors that are known, and a small finger from scene to summary."""
 
+import csv
+import itertools
 import json
 from pathlib import Path
 
@@ -13,6 +15,7 @@ from fingerpad.accuracy import Search, Solve, State, plus_minus
 from fingerpad.interrupt import Interrupted
 from fingerpad.needs import plan
 from fingerpad.scene import SceneError, from_data
+from fingerpad.simulation import Simulation
 from fingerpad.sweep import key
 from variational.continuation import StepFailed
 from variational.solver import Control
@@ -68,6 +71,39 @@ def test_only_what_costs_accuracy_is_refined(monkeypatch):
     estimated at 0.015, is not."""
     found = search(monkeypatch, {"mu_app": 0.04})
     assert found.halved == {"contact": 2, "bulk": 1}
+
+
+def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
+    """An error of first order in the steps, a tenth with the scene's: two halvings leave 2.5 % of the 3 % asked for.
+
+    States solved again keep the steps of the path that they came from.
+    """
+    paths = []
+
+    def stepped(scale: float, mesh) -> Solve:
+        length = 1e-3 * (1 + 0.1 * scale)
+        row = {"contact_length": length, "ridges_in_contact": 17}
+        return Solve({"normal": State(NOTHING, 0, row, np.array([length]), {})}, mesh, 1000, 10, 1.0)
+
+    def with_steps(search, n: int) -> Solve:
+        paths.append(n)
+        found = stepped(0.5**n, search.scene.mesh)
+        search.solves.append(found)
+        return found
+
+    monkeypatch.setattr(Search, "_with_steps", with_steps)
+    monkeypatch.setattr(
+        accuracy, "solve_again", lambda scene, needed, states, comm: Solve(dict(states), scene.mesh, 1000, 10, 1.0)
+    )
+    scene = from_data({"accuracy": {"contact_length": 0.03}})
+    path = stepped(1.0, scene.mesh)
+    found = Search(scene, plan(scene), path, MPI.COMM_SELF, lambda text: None, lambda: None)
+    found.run()
+    assert paths == [-1, 1, 2]
+    assert found.halved == {"contact": 1, "bulk": 1, "steps": 2}
+    assert found.base.values()["normal_contact_length"] == pytest.approx(1.025e-3, rel=1e-12)
+    assert found.estimates()["normal_contact_length"] == pytest.approx(0.025e-3, rel=1e-9)
+    assert found.summary()["accuracy"]["step_scale"] == 0.25
 
 
 def test_receptors_are_halved_where_energy_density_is_asked_for(monkeypatch):
@@ -183,6 +219,10 @@ def test_parameters_in_use_give_the_same_scene():
         ({"accuracy": {"f_n": 0.1}}, "accuracy.f_n is not a key of accuracy"),
         ({"accuracy": {}}, "accuracy is empty; give at least one of accuracy.mu_app, accuracy.f_t"),
         ({"accuracy": {"f_t": 0.1}, "numerics": {"element": "P2-P1"}}, "cannot be carried to another mesh"),
+        (
+            {"accuracy": {"sed": 0.1}, "output": {"receptors": False}},
+            "accuracy.sed is 0.1 and output.receptors is false, without which there are no sites",
+        ),
     ],
 )
 def test_impossible_accuracy_is_refused(given, words):
@@ -243,3 +283,25 @@ def test_small_finger_comes_with_its_error(tmp_path: Path):
     again = found["solves"][1]
     assert again["factorisations"] < found["solves"][0]["factorisations"] / 2
     assert summary["slip_f_t"] == pytest.approx(0.25 * summary["slip_f_contact"], rel=1e-6)
+
+
+@pytest.mark.slow
+def test_run_without_errors_says_none(tmp_path: Path):
+    """And what it took, which grows from step to step up to what the summary says."""
+    scene = {name: value for name, value in SMALL.items() if name != "accuracy"}
+    summary = running.run(from_data(scene | {"output": {"errors": False}}), tmp_path, MPI.COMM_WORLD)
+    assert "accuracy" not in summary and "slip_mu_app_error" not in summary
+    with (tmp_path / "steps.csv").open(encoding="utf-8", newline="") as file:
+        seconds = [float(row["processor_seconds"]) for row in csv.DictReader(file)]
+    assert 0 < seconds[0]
+    assert all(a <= b for a, b in itertools.pairwise([*seconds, summary["processor_seconds"]]))
+    assert seconds[-1] > seconds[0]
+
+
+def test_steps_follow_the_scene_s_scale():
+    """And a scene that leaves it as it is has the key that it had before there was a scale."""
+    scene = from_data(SMALL | {"numerics": {"step_scale": 0.5}})
+    assert scene.parameters()["numerics"]["step_scale"] == 0.5
+    assert "step_scale" not in from_data(SMALL).parameters()["numerics"]
+    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
+    assert simulation.continuation.step_scale == 0.5

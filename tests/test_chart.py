@@ -1,8 +1,13 @@
 """The chart of error over work, on points that are made up."""
 
-from benchmarks import chart
+import json
+
+import pytest
+
+from benchmarks import chart, errors, points
 from benchmarks.convergence import Limit
 from benchmarks.points import AGAIN, QUANTITIES, STATES, Point
+from fingerpad.sweep import key
 
 
 def point(label, work, seconds, error):
@@ -58,3 +63,43 @@ def test_states_without_a_path_are_no_part_of_the_front(tmp_path):
 def test_every_scene_is_another():
     scenes = chart.scenes()
     assert len({str(scene.parameters()) for scene in scenes.values()}) == len(scenes)
+
+
+def test_run_that_was_lost_is_named(tmp_path):
+    """With its reason; what was not run is not."""
+    scene = points.scenes()["element", "P3"]
+    folder = tmp_path / key(scene)
+    folder.mkdir()
+    (folder / "summary.json").write_text(json.dumps({"failure": "no equilibrium"}), encoding="utf-8")
+    assert points.lost(tmp_path) == ["P3: no equilibrium"]
+
+
+def test_states_cost_their_path_and_coarser_meshes(tmp_path):
+    """Five factorisations of 10 unknowns on each of the meshes, the path among them; the last is off by 1 %."""
+    reference = dict.fromkeys(QUANTITIES, Limit(1.0, 0.001, None))
+
+    def level(contact, value):
+        spent = {"unknowns": 10, "factorisations": 5, "processor_seconds": 2.0}
+        return spent | {"mesh": {"contact": contact}, "values": dict.fromkeys(QUANTITIES, value)}
+
+    told = {"path": level(20e-6, 1.5), "levels": [level(10e-6, 1.1), level(5e-6, 1.01)]}
+    folder = errors.folder_of_limits(tmp_path / "traces")
+    folder.mkdir()
+    (folder / f"{key(errors.DEFAULT)}-{errors.LEVELS}.json").write_text(json.dumps(told), encoding="utf-8")
+    found = points.collect(tmp_path / "traces", tmp_path, reference)
+    assert [p.label for p in found] == ["again at 10 µm", "again at 5 µm"]
+    assert [p.cost("slip_f_t", "work") for p in found] == [100, 150]
+    assert [p.cost("slip_f_t", "seconds") for p in found] == [4, 6]
+    assert found[1].errors["slip_f_t"] == pytest.approx(0.01, rel=1e-12)
+
+
+def test_rung_has_an_error_where_it_says_something(tmp_path):
+    """No energy density, nor the contact before the voltage."""
+    cost = {"factorisations": 3, "unknowns": 7, "seconds": 0.5}
+    said = {"75 N/m, 200 V": {"2": {"summary": {"slip_f_t": 0.9, "slip_contact_length": 1.2}, "cost": cost}}}
+    (tmp_path / "ladder.json").write_text(json.dumps(said), encoding="utf-8")
+    found = points.rung(tmp_path, 2, dict.fromkeys(QUANTITIES, Limit(1.0, 0.001, None)))
+    assert found is not None
+    assert found.errors == pytest.approx({"slip_f_t": 0.1, "slip_contact_length": 0.2}, rel=1e-12)
+    assert (found.cost("slip_f_t", "work"), found.cost("press_contact_length", "work")) == (21, None)
+    assert points.rung(tmp_path, 1, {}) is None

@@ -174,7 +174,8 @@ def test_answers_are_kept_and_failures_asked_again(monkeypatch, tmp_path):
     """Of two scenes one fails: it says how, has no error, and is the only one that is run again."""
     asked = []
 
-    def ask(scene, tables):
+    def ask(kind, scene, tables):
+        assert kind == "2"
         asked.append(scene.voltage)
         if scene.voltage:
             return End(1, "TIME_LIMIT", "not done", "")
@@ -185,7 +186,7 @@ def test_answers_are_kept_and_failures_asked_again(monkeypatch, tmp_path):
     file = tmp_path / "ladder.json"
     for _ in range(2):
         known = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
-        page.collect(known, tmp_path / "runs", [2], 1, file)
+        page.collect(known, tmp_path / "runs", ["2"], 1, file)
     assert asked == [0.0, 200.0, 200.0]
     known = json.loads(file.read_text(encoding="utf-8"))
     assert known["75 N/m, 200 V"]["2"] == {"failure": "TIME_LIMIT: not done"}
@@ -210,3 +211,20 @@ def test_errors_are_against_the_full_model():
     assert page.error(found, 1, "slip_mu_app") == pytest.approx(0.25, rel=1e-12)
     assert page.error(found, 2, "slip_mu_app") is None
     assert page.error({"1": found["1"]}, 1, "slip_mu_app") is None
+
+
+def test_page_compares_a_start_with_the_path():
+    """A hundredth more friction with a ridge less, at a quarter of the cost: 10 x 10 and 5 x 30 over 10 x 100."""
+    own = {"slip_f_t": 1.01, "slip_contact_length": 0.99, "slip_ridges_in_contact": 15}
+    full = {"slip_f_t": 1.0, "slip_contact_length": 1.0, "slip_ridges_in_contact": 16}
+    started = {
+        "summary": own,
+        "cost": {"factorisations": 10, "unknowns": 10},
+        "more": MORE | {"rung_2_factorisations": 5, "rung_2_unknowns": 30},
+    }
+    path = {"summary": full, "cost": {"factorisations": 10, "unknowns": 100, "seconds": 1.0}}
+    known = {"75 N/m, 200 V": {page.START: started, "3": path}, "10 N/m, 0 V": {page.START: {"failure": "lost"}}}
+    text = page.page(known)
+    assert "| 75 N/m, 200 V | +1 | -1 | 15 | 16 | 0.25 |" in text
+    assert "| 10 N/m, 0 V | lost |" in text
+    assert "| 25 N/m, 0 V | not run |" in text

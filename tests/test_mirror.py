@@ -226,6 +226,13 @@ def test_half_the_finger_has_the_whole_s_tables(fingers):
     assert {path.name for path in half.iterdir()} == {path.name for path in whole.iterdir()}
 
 
+def test_half_the_finger_comes_with_its_error(fingers):
+    """Two halves of a length are not known better than one: of the size of the whole's, of which a facet is a fifth."""
+    half, whole = (summary["normal_contact_length_error"] for summary in fingers[0])
+    assert whole / 5 < half < 5 * whole
+    assert set(fingers[0][0]["accuracy"]["quantities"]) >= {"normal_contact_length", "normal_sed_0", "normal_sed_1"}
+
+
 def test_half_the_finger_costs_half(fingers):
     (half, whole), _ = fingers
     assert half["unknowns"] < 0.55 * whole["unknowns"]

@@ -53,6 +53,33 @@ def test_it_costs_less_than_the_path(started, path):
     assert spent < path.factorisations * path.unknowns
 
 
+@pytest.mark.slow
+def test_another_squeeze_is_tried(started, folder, monkeypatch):
+    """The first one lost, the state is the same, and what the first one cost is counted."""
+    adopt, squeezes = Simulation.adopt, []
+
+    def fail_first(self, carried, name, direction=0, squeezed=None):
+        squeezes.append(squeezed)
+        if len(squeezes) == 1:
+            raise StepFailed("no equilibrium")
+        adopt(self, carried, name, direction, squeezed)
+
+    monkeypatch.setattr(Simulation, "adopt", fail_first)
+    found = start.full_slip(from_data(SCENE), folder, MPI.COMM_WORLD)
+    assert len(set(squeezes)) == len(squeezes) == 2
+    first, second = (each.solve.states["slip"].row["f_t"] for each in (started, found))
+    assert second == pytest.approx(first, rel=1e-6)
+
+
+def test_no_squeeze_that_helps_is_a_failure(folder, monkeypatch):
+    def fail(*args, **more):
+        raise StepFailed("no equilibrium")
+
+    monkeypatch.setattr(Simulation, "adopt", fail)
+    with pytest.raises(StepFailed, match="full slip was not found from rung 2's: no equilibrium"):
+        start.full_slip(from_data(SCENE), folder, MPI.COMM_WORLD)
+
+
 def test_state_that_is_not_full_slip_is_refused(folder):
     """A micrometre of sliding leaves most points sticking."""
     with pytest.raises(StepFailed, match="does not come to full slip within 1e-06 m"):

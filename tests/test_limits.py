@@ -1,0 +1,78 @@
+"""Limits of scenes: from which path, what is kept, and that all is asked for once."""
+
+import json
+
+import pytest
+from mpi4py import MPI
+
+from benchmarks import limits
+from fingerpad.processes import End
+from fingerpad.scene import Scene
+from variational.continuation import StepFailed
+
+
+class Path:
+    """A simulation that is lost on some contact sizes."""
+
+    tried: list[float]
+
+    def __init__(self, scene, needed, comm, on_step, on_load):
+        self.contact = scene.mesh.contact
+
+    def run(self):
+        Path.tried.append(self.contact)
+        if self.contact > 10e-6:
+            raise StepFailed(f"lost at {self.contact:g}")
+
+
+class Keeper:
+    """Keeps nothing but the mesh it saw."""
+
+    def __init__(self, simulation):
+        self.contact = simulation.contact
+
+    def solve(self):
+        return self.contact
+
+
+@pytest.fixture
+def path(monkeypatch):
+    Path.tried = []
+    monkeypatch.setattr(limits, "Simulation", Path)
+    monkeypatch.setattr(limits, "Keeper", Keeper)
+
+
+def test_path_that_is_lost_is_followed_on_a_finer_mesh(path):
+    assert limits._path(Scene(), MPI.COMM_SELF) == 10e-6
+    assert Path.tried == [20e-6, 10e-6]
+
+
+def test_path_that_is_lost_on_all_meshes_is_a_failure(path, monkeypatch):
+    monkeypatch.setattr(limits, "_STARTS", (40e-6, 20e-6))
+    with pytest.raises(StepFailed, match="lost at 2e-05"):
+        limits._path(Scene(), MPI.COMM_SELF)
+
+
+def test_meshes_are_halved_in_all_sizes():
+    first, second = limits.meshes(Scene().mesh, 2)
+    assert all(getattr(second, name) == getattr(first, name) / 2 for name in limits._HALVED)
+    assert second.touching_half_arc == first.touching_half_arc
+
+
+def test_what_is_known_is_not_asked_again(tmp_path, monkeypatch):
+    """A scene that failed is said to have, and asked again the next time; one that was solved is not."""
+    asked = []
+
+    def run(module, arguments, limit):
+        asked.append(arguments[0])
+        scene = json.loads((tmp_path / arguments[0]).read_text(encoding="utf-8"))
+        if scene["voltage"] == 50.0:
+            return End(1, "CRASH_1", "no equilibrium", "")
+        return End(0, "", "", json.dumps({"levels": []}))
+
+    monkeypatch.setattr(limits, "run", run)
+    scenes = {"good": Scene(), "bad": Scene(voltage=50.0)}
+    found = limits.ask_all(scenes, 3, tmp_path, 1)
+    assert found == {"good": {"levels": []}, "bad": {"failure": "CRASH_1: no equilibrium"}}
+    assert limits.ask_all(scenes, 3, tmp_path, 1) == found
+    assert len(asked) == 3
