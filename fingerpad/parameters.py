@@ -200,8 +200,9 @@ class Contact(Part):
     """Tangential stiffness of the two (Pa/m of reference area) (*assumption*); the augmented Lagrangian's likewise."""
     tolerance: Positive = 5e-9
     """Penetration and elastic slip that the augmented Lagrangian leaves (m): a three-hundredth of the smallest d_eq."""
-    gamma_0: Positive = 10.0
-    """Nitsche's stiffness over the skin's constrained modulus per facet length."""
+    gamma_0: Positive = 1.0
+    """Nitsche's stiffness over the skin's constrained modulus per facet length; with 10 the default finger finds no
+    equilibrium while it is pressed (``docs/chart.md``)."""
     theta: Literal[-1, 0, 1] = 0
     """Nitsche's variant; 1 and -1 compile for longer, and 1 needs a larger gamma_0."""
     length: Literal["pressure", "gap"] = "pressure"

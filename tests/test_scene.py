@@ -126,7 +126,7 @@ def test_scene_cannot_be_changed():
     [
         ({}, Penalty(1.5e12, 5e10)),
         ({"formulation": "penalty", "eps_n": 2e12}, Penalty(2e12, 5e10)),
-        ({"formulation": "nitsche"}, Nitsche(10.0, 0)),
+        ({"formulation": "nitsche"}, Nitsche(1.0, 0)),
         ({"formulation": "nitsche", "theta": -1, "gamma_0": 3.0}, Nitsche(3.0, -1)),
         ({"formulation": "augmented"}, AugmentedLagrangian(1.5e13, 5e11, 5e-9)),
         ({"formulation": "augmented", "eps_t": 1e11}, AugmentedLagrangian(1.5e13, 1e11, 5e-9)),

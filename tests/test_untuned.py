@@ -48,11 +48,16 @@ def test_errors_are_those_against_the_limit():
 
 
 def test_energy_density_counts_over_the_largest_site():
-    """Only where an accuracy of it is asked for, and the worst of them; friction force is friction over a given one."""
+    """The worst of them, not where an accuracy is asked of something else; friction force is friction over a given one.
+
+    An estimate alone is judged too.
+    """
     found = accuracy.judged(
         summary(slip_sed_0=(11.0, 2.0, 5.0), slip_sed_1=(100.5, 1.0, 5.0), slip_f_t=(37.0, 1.0, None)), ENDS
     )
-    assert not accuracy.judged(summary(slip_sed_0=(11.0, 2.0, None)), ENDS)
+    other = accuracy.judged(summary(slip_sed_0=(11.0, 2.0, None), slip_mu_app=(0.5, 0.1, 0.1)), ENDS)
+    assert [row.name for row in other] == ["slip_mu_app"]
+    assert [row.name for row in accuracy.judged(summary(slip_sed_0=(11.0, 2.0, None)), ENDS)] == ["slip_sed_0"]
     assert [(row.name, row.error) for row in found] == [("slip_sed_0", pytest.approx(0.01, rel=1e-12))]
 
 
