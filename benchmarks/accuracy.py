@@ -122,7 +122,7 @@ def loop_tables(out: Path) -> str:
             lines.append(f"| {name} | {words} |" + " |" * 5)
             continue
         if "accuracy" not in summary or "failure" in summary:
-            lines.append(f"| {name} | {summary['failure']} |" + " |" * 4 + " no |")
+            lines.append(f"| {name} | {summary.get('failure', 'comes without an estimate')} |" + " |" * 4 + " no |")
             told += plain != DEFAULT
             continue
         rows = judged(summary, limits.limits(known))
