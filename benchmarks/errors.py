@@ -62,10 +62,10 @@ in its error bar. {costs}
 """
 
 
-_LIMITS = """Limits are Richardson's extrapolation from the three finest meshes with Roache's error bar. Where there is
-no order, since changes hardly shrink (an order below a half) or not with one sign, the finest value stands, and the bar
-is three times the last change if they shrink from side to side, else the larger of the last two
-(`benchmarks/convergence.py`)."""
+_LIMITS = """Limits are Richardson's extrapolation from the three finest meshes with Roache's error bar. An order
+above 2 is taken for an accident of the last change and counts as 2. Where there is no order, since changes hardly
+shrink (an order below a half) or not with one sign, the finest value stands, and the bar is three times the last change
+if they shrink from side to side, else the larger of the last two (`benchmarks/convergence.py`)."""
 
 
 def study(name: str) -> dict[float, Scene]:
