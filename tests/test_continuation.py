@@ -1,5 +1,6 @@
 """Steps that are cut, leapt over, and given up, on a block that slides."""
 
+import itertools
 from functools import partial
 
 import pytest
@@ -19,16 +20,19 @@ from variational.roughness.bam import BearingArea
 def sliding():
     """Return a function that slides a pressed block by 0.6 mm, where solves in a range of loads fail."""
 
-    def slide(first, last, cycling):
+    def slide(first, last, cycling, times=1000, each=0):
         solver = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), MU_F, 1e11, 1e10, held=False)
         run = Continuation(Coupling(solver, Observer(solver.problem), BearingArea(H_0)))
         run.run(Target("press", bone_height=-2e-6))
         solve, reached = run.coupling.solve, []
 
         def failing(creep=False):
-            if first <= solver.control.x <= last:
+            nonlocal times
+            if first <= solver.control.x <= last and times > 0:
+                times -= 1
                 raise NotConverged("TEST", False, cycling=cycling)
             solve(creep)
+            solver.counts.factorisations += each
 
         run.coupling.solve = failing
         run.on_accept = lambda target, part, attempt: reached.append((solver.control.x, attempt))
@@ -52,6 +56,16 @@ def test_range_too_wide_for_one_leap(sliding):
     reached = sliding(0.215e-3, 0.275e-3, cycling=True)
     assert reached[-1][0] == pytest.approx(0.6e-3)
     assert sum(attempt.leapt for _, attempt in reached) == 1
+
+
+@pytest.mark.parametrize("each", [0, 100])
+def test_steps_grow_again_after_a_cut(sliding, each):
+    """Of 60 um, one is cut in half: the next is whole where steps are easy, the fourth where each costs a hundred."""
+    places = [x for x, _ in sliding(0.235e-3, 0.245e-3, cycling=False, times=1, each=each)]
+    sizes = [(b - a) / 1e-6 for a, b in itertools.pairwise(places)]
+    same = 1 if each == 0 else 4
+    assert sizes[:3] == pytest.approx([60, 60, 30])
+    assert sizes[2 : 3 + same] == pytest.approx([30] * same + [60])
 
 
 def test_other_failures_are_not_leapt_over(sliding):

@@ -44,7 +44,8 @@ _SMALLEST = 1e-3  # step below which a load is given up, over the largest
 _MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on when the bone moves
 _LEAP = 1.5  # step tried where the loop over the scales cycles, over the one that led there
 _SMALLEST_BIT = 1 / 64  # of the forces that a state from elsewhere is out of balance by
-_FEW = 6  # factorisations; a step that took no more lets the next one grow
+_FEW, _UNCUT = 6, 3  # factorisations, steps in a row without a cut: no more of the former lets the next step grow, or
+# so many of the latter, however hard they are
 
 
 class StepFailed(RuntimeError):
@@ -203,7 +204,7 @@ class Continuation:
 
     def _reach(self, target: Target) -> None:
         at, largest = self._loads(target), self._largest_step(target)
-        part, step = 0.0, largest
+        part, step, uncut = 0.0, largest, 0
         while part < 1:
             step = min(step, 1 - part)
             if 1 - part - step < 0.05 * step:
@@ -230,9 +231,9 @@ class Continuation:
             self.on_accept(target, part, attempt)
             if target.until_full_slip and self.slip[1]:
                 return
-            step = within
-            if attempt.factorisations <= _FEW:
-                step = min(2 * step, largest)
+            step, uncut = within, 0 if attempt.cutbacks else uncut + 1
+            if attempt.factorisations <= _FEW or uncut >= _UNCUT:
+                step, uncut = min(2 * step, largest), 0
 
     def _describe(self, target: Target, part: float, failure: NotConverged) -> str:
         c = self._now.control
