@@ -21,6 +21,7 @@ from benchmarks.convergence import Limit
 from benchmarks.paper.style import BLUE, GREEN, GREY, PURPLE, VERMILION, draw
 from benchmarks.points import (
     AGAIN,
+    ALL,
     ASKED,
     DEFAULT,
     KINDS,
@@ -33,7 +34,6 @@ from benchmarks.points import (
     lost,
     rung,
     scenes,
-    state_of,
 )
 from fingerpad.files import replace, replace_json
 from fingerpad.sweep import sweep
@@ -52,6 +52,7 @@ _LOOKS = {
     "solver": (GREY, "X"),
     "steps": ("#56B4E9", "<"),
 }
+_ALL_AT = (0, 1)  # row and column of the panel
 OTHER_MODEL = "formulation"
 _STATES_ONLY = {ASKED: ("black", "1"), AGAIN: ("black", "2"), LADDER: ("black", "x")}  # no whole path
 
@@ -105,24 +106,24 @@ def _panel(
     ax.minorticks_off()
     shown = [p.errors[quantity] for _, p in known(points, quantity, measure)]
     ax.set_ylim(max(0.5 * min(shown), 1e-5), 2 * max(shown))
-    ax.set(title=f"{KINDS[quantity.split('_', 1)[1]]}, {STATES[state_of(quantity)]}")
+    ax.set(title=_words(quantity))
 
 
 def paint(
     figure: Figure, points: Sequence[Point], reference: Mapping[str, Limit], measure: str, rung_1: Point | None
 ) -> None:
-    """Draw a panel for each quantity in each state; f_T is that of full slip, the free places hold the legend."""
+    """Draw a panel for each quantity in each state; f_T is that of full slip, beside it are all and the legend."""
     axes = figure.subplots(len(KINDS), len(STATES))
     for row, kind in enumerate(KINDS):
         for column, state in enumerate(STATES):
-            ax, quantity = axes[row, column], f"{state}_{kind}"
-            if quantity not in QUANTITIES:
+            ax, quantity = axes[row, column], ALL if (row, column) == _ALL_AT else f"{state}_{kind}"
+            if quantity not in reference:
                 ax.axis("off")
                 continue
             _panel(ax, points, quantity, reference[quantity], measure, rung_1)
     for ax in axes[-1]:
         ax.set_xlabel(f"{MEASURES[measure]} / the default's")
-    for ax in (axes[0, 2], axes[1, 0], axes[2, 0]):
+    for ax in (axes[0, 1], axes[1, 0], axes[2, 0]):
         ax.set_ylabel("relative error")
     legend, words = axes[0, 0], {ASKED: ASKED, AGAIN: "states solved again, finer and finer", LADDER: "rung 2"}
     handles = [legend.plot([], [], m, color=c, label=family)[0] for family, (c, m) in _LOOKS.items()]
@@ -148,7 +149,7 @@ def costs(points: Sequence[Point], reference: Mapping[str, Limit], measure: str)
     base = _default(points)
     targets = " | ".join(f"{100 * t:g} %" for t in TARGETS)
     lines = [f"| | reference's bar | {targets} | default's error | on the front |", "|---" * (len(TARGETS) + 4) + "|"]
-    for quantity in QUANTITIES:
+    for quantity in (*QUANTITIES, ALL):
         end = reference[quantity]
         bar = end.bar / abs(end.value)
         runs = [p for p in whole(points) if p.family != OTHER_MODEL]
@@ -164,7 +165,7 @@ def costs_of_states(points: Sequence[Point], measure: str) -> str:
     """Return the same of the points that have a state or two and no path."""
     base, some = _default(points), [p for p in points if p.family in _STATES_ONLY]
     lines = ["| | " + " | ".join(f"{100 * t:g} %" for t in TARGETS) + " |", "|---" * (len(TARGETS) + 1) + "|"]
-    for quantity in QUANTITIES:
+    for quantity in (*QUANTITIES, ALL):
         cells = _cheapest(some, quantity, measure, base.cost(quantity, measure) or 1.0)
         lines.append("| " + " | ".join([_words(quantity), *cells]) + " |")
     return "\n".join(lines)
@@ -172,7 +173,7 @@ def costs_of_states(points: Sequence[Point], measure: str) -> str:
 
 def _words(quantity: str) -> str:
     state, kind = quantity.split("_", 1)
-    return f"{KINDS[kind]}, {STATES[state]}"
+    return "all of these, the largest error" if quantity == ALL else f"{KINDS[kind]}, {STATES[state]}"
 
 
 _HEADER = """# What accuracy costs
@@ -182,7 +183,8 @@ Made by `make chart`; do not edit. The default scene with one setting after the 
 is grey: what lies in the grey is not resolved. Work is the number of factorisations up to the state times the number of
 unknowns; processor time has the set-up in it, and shared its machine with other runs. *Not resolved*: cheaper runs come
 out nearer, but the default's error is below the bar. Energy densities at the sites do not feel the contact size, so
-that runs with a coarser one are cheaper than the default there.
+that runs with a coarser one are cheaper than the default there, which is for all quantities at once: the last row is of
+the largest of these errors.
 
 The front and the first tables are of the runs that follow the whole path of the loads with the default's penalty, which
 the reference has. Another formulation or penalty is another model, drawn but not judged: a softer screen's longer
@@ -206,11 +208,15 @@ def write(
     rung_1: Point | None = None,
 ) -> None:
     """Write page, pictures and data."""
+    reference = {
+        **reference,
+        ALL: Limit(1.0, max(reference[q].bar / abs(reference[q].value) for q in QUANTITIES), None),
+    }
     for measure, name in PICTURES.items():
         paint_all = partial(paint, points=points, reference=reference, measure=measure, rung_1=rung_1)
         draw(docs / name, (12, 10), paint_all)
     runs = whole(points)
-    names = {quantity: "; ".join(p.label for p in front(points, quantity)) for quantity in QUANTITIES}
+    names = {quantity: "; ".join(p.label for p in front(points, quantity)) for quantity in (*QUANTITIES, ALL)}
     fronts = "\n".join(f"- {_words(quantity)}: {labels}" for quantity, labels in names.items())
     parts = [_HEADER, f"{len(runs)} of {total} runs.", *(f"Not reached: {words}." for words in failures)]
     for measure, words in _TABLES.items():

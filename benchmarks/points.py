@@ -29,6 +29,7 @@ STATES = {"press": "normal contact", "normal": "charged contact", "slip": "full 
 KINDS = {"f_t": "f_T and µ_app", "contact_length": "contact length", "sed_0": "SED at the central Merkel site"}
 MEASURES = {"work": "factorisations × unknowns", "seconds": "processor time"}
 QUANTITIES = [f"{state}_{kind}" for kind in KINDS for state in STATES if kind != "f_t" or state == "slip"]
+ALL = "slip_all"  # the largest error of all of these, at full slip since the other states come before
 Reference = Mapping[str, Limit]
 
 
@@ -83,13 +84,13 @@ class Point:
     seconds: Mapping[str, float]
     """Processor time up to a state, set-up included, by state; empty for runs of versions that did not keep it."""
     errors: Mapping[str, float]
-    """Relative distance from the reference, by quantity."""
+    """Relative distance from the reference, by quantity, and :data:`ALL` where every quantity is there."""
 
     def cost(self, quantity: str, measure: str) -> float | None:
         """Return what it cost up to the state of a quantity, None if that is not known or has no such quantity.
 
         Args:
-            quantity: one of :data:`QUANTITIES`.
+            quantity: one of :data:`QUANTITIES`, or :data:`ALL`.
             measure: one of :data:`MEASURES`.
         """
         known = getattr(self, measure)
@@ -120,7 +121,8 @@ def collect(out: Path, docs: Path, reference: Reference) -> list[Point]:
 
 
 def _errors(values: Mapping[str, float], reference: Reference) -> dict[str, float]:
-    return {name: abs(values[name] / reference[name].value - 1) for name in QUANTITIES if name in values}
+    found = {name: abs(values[name] / reference[name].value - 1) for name in QUANTITIES if name in values}
+    return found | ({ALL: max(found.values())} if len(found) == len(QUANTITIES) else {})
 
 
 def _of_states(label: str, family: str, work: float, seconds: float, errors: Mapping[str, float]) -> Point:

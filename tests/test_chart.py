@@ -12,7 +12,7 @@ from fingerpad.sweep import key
 
 def point(label, work, seconds, error):
     costs = (dict.fromkeys(STATES, spent) for spent in (work, seconds))
-    return Point(label, "growth", *costs, dict.fromkeys(QUANTITIES, error))
+    return Point(label, "growth", *costs, dict.fromkeys([*QUANTITIES, points.ALL], error))
 
 
 POINTS = [
@@ -96,7 +96,7 @@ def test_states_cost_their_path_and_coarser_meshes(tmp_path):
     assert [p.label for p in found] == ["again at 10 µm", "again at 5 µm"]
     assert [p.cost("slip_f_t", "work") for p in found] == [100, 150]
     assert [p.cost("slip_f_t", "seconds") for p in found] == [4, 6]
-    assert found[1].errors["slip_f_t"] == pytest.approx(0.01, rel=1e-12)
+    assert found[1].errors["slip_f_t"] == found[1].errors[points.ALL] == pytest.approx(0.01, rel=1e-12)
 
 
 def test_rung_has_an_error_where_it_says_something(tmp_path):
