@@ -66,12 +66,12 @@ def test_what_the_path_changes_is_in_the_bar(runs, tmp_path):
 
 
 def test_page_of_all_runs(runs, tmp_path):
-    """The default's error against the limit: 0.02 (1 + 1 + 1) over 2, and a bar of 1.25 times 0.02 3 / 4."""
+    """The default's error against the limit: 0.02 (1 + 1 + 1) over 2, and a bar of 1.25 times 0.02 3 / 16."""
     errors.write(tmp_path, tmp_path)
     text = (tmp_path / "errors.md").read_text(encoding="utf-8")
     row = next(line for line in text.splitlines() if line.startswith("| SED at ridge 0, full slip"))
     assert row.split("|")[2:4] == [" 2.06 ", " 2.06 "]
-    assert row.split("|")[-4:] == [" 2.000 ± 0.019 ", " 2.0 ", " 3 % ", ""]
+    assert row.split("|")[-4:] == [" 2.0000 ± 0.0047 ", " 2.0 ", " 3 % ", ""]
     assert (tmp_path / "errors.png").exists()
 
 
