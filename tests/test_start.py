@@ -1,5 +1,6 @@
 """Full slip from rung 2's state, on a finger of few ridges: that of the path, checked, or else the path itself."""
 
+import numpy as np
 import pytest
 from mpi4py import MPI
 
@@ -43,6 +44,18 @@ def test_full_slip_is_that_of_the_path(started, path):
     found, known = started.solve.states["slip"].row, path.states["slip"].row
     assert found["ridges_in_contact"] == known["ridges_in_contact"]
     assert found["f_t"] == pytest.approx(known["f_t"], rel=1e-6)
+
+
+@pytest.mark.slow
+def test_lengths_by_ridge_are_the_length(path):
+    """Each ridge of the nine at its place: the length in contact is their sum, and the central ones touch."""
+    state = path.states["slip"]
+    assert state.lengths.shape == (9,)
+    assert state.lengths.sum() == pytest.approx(state.row["contact_length"], rel=1e-12, abs=0)
+    touching = np.flatnonzero(state.lengths)
+    assert len(touching) == state.row["ridges_in_contact"] < 9
+    assert abs(touching.mean() - 4) <= 0.5
+    assert path.parts()["slip_contact_length"] is state.lengths
 
 
 @pytest.mark.slow
