@@ -193,5 +193,9 @@ def _rung_2(docs: Path, reference: Reference) -> Iterator[Point]:
 
 def lost(out: Path) -> list[str]:
     """Return the runs that did not reach full slip, and why."""
-    found = {label: result(scene, out) or {} for (_, label), scene in scenes().items()}
-    return [f"{label}: {summary['failure']}" for label, summary in found.items() if "failure" in summary]
+    found = {label: result(scene, out) for (_, label), scene in scenes().items()}
+    return [
+        f"{label}: {summary.get('failure', 'no steady full slip by the end of the slide')}"
+        for label, summary in found.items()
+        if summary is not None and not summary.get("full_slip")
+    ]

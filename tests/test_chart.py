@@ -72,12 +72,16 @@ def test_every_scene_is_another():
 
 
 def test_run_that_was_lost_is_named(tmp_path):
-    """With its reason; what was not run is not."""
-    scene = points.scenes()["element", "P3"]
-    folder = tmp_path / key(scene)
-    folder.mkdir()
-    (folder / "summary.json").write_text(json.dumps({"failure": "no equilibrium"}), encoding="utf-8")
-    assert points.lost(tmp_path) == ["P3: no equilibrium"]
+    """With its reason; what was not run is not, nor what reached full slip."""
+    ends = {"P2-P1": {"full_slip": True}, "P2 reduced": {"full_slip": False}, "P3": {"failure": "no equilibrium"}}
+    for label, summary in ends.items():
+        folder = tmp_path / key(points.scenes()["element", label])
+        folder.mkdir()
+        (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    assert points.lost(tmp_path) == [
+        "P2 reduced: no steady full slip by the end of the slide",
+        "P3: no equilibrium",
+    ]
 
 
 def test_states_cost_their_path_and_coarser_meshes(tmp_path):
