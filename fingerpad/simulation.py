@@ -148,7 +148,8 @@ class Simulation:
             self.continuation.run(_target(load))
             self._check_stability()
             while load.until_full_slip and self.continuation.slip[1]:
-                if self._slides_on(load):
+                ahead = self._ahead(load)
+                if self._slides_on(load) or ahead * self._ahead(load) <= 0:  # or at the end of the slide
                     break
                 self.continuation.run(_target(load))
                 self._check_stability()
@@ -216,6 +217,9 @@ class Simulation:
             found = self.checks[self.continuation.steps]
             if not found.stable:
                 raise StepFailed(f"{name} from another model is {found}")
+
+    def _ahead(self, load: Load) -> float:
+        return (load.bone_x or 0.0) - float(self.solver.control.x)
 
     def _slides_on(self, load: Load) -> bool:
         """Slide a little further: full slip is steady, since the screen looks the same everywhere."""

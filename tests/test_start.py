@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from fingerpad import simulation as simulation_module
 from fingerpad import smooth, start
 from fingerpad.accuracy import Keeper
 from fingerpad.needs import plan
@@ -103,3 +104,17 @@ def test_state_that_is_not_full_slip_is_refused(folder):
 def test_scene_without_a_full_slip_to_carry_is_refused(folder, other):
     with pytest.raises(StepFailed, match="rung 2 has no full slip of a scene"):
         start.full_slip(from_data(SCENE | other), folder, MPI.COMM_WORLD)
+
+
+@pytest.mark.slow
+def test_slip_that_is_never_steady_ends_with_the_slide(monkeypatch):
+    """The bone never goes back to where the slide should have ended."""
+    monkeypatch.setattr(simulation_module, "_STEADY", -1.0)
+    scene, places = from_data(SCENE | {"slide_length": 0.9e-3}), []
+    simulation = Simulation(
+        scene, plan(scene), MPI.COMM_WORLD, lambda step, done: places.append(step.row["bone_x"]), lambda: None
+    )
+    simulation.run()
+    assert not simulation.full_slip
+    assert places == sorted(places)
+    assert 0.9e-3 <= places[-1] <= 1.11e-3
