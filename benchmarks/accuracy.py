@@ -15,7 +15,7 @@ from typing import Any
 
 from benchmarks import arguments, limits, untuned
 from benchmarks.convergence import Limit
-from benchmarks.effectivity import HIGH, LOW, hertz_table, knob_tables, tally
+from benchmarks.effectivity import HIGH, LOW, cell, hertz_table, knob_tables, tally
 from benchmarks.errors import DEFAULT, LEVELS, folder_of_limits
 from fingerpad.files import replace
 from fingerpad.parameters import Output
@@ -85,6 +85,13 @@ def judged(summary: Mapping[str, Any], ends: Mapping[str, Limit]) -> list[Judged
     return [row for row in found if "_sed_" not in row.name or row in worst]
 
 
+def spent(summary: Mapping[str, Any]) -> tuple[float, float]:
+    """Return factorisations times unknowns, and processor time (s), of all solves and of starts that were lost."""
+    a, lost = summary["accuracy"], summary.get("failed_starts", [])
+    work = a["unknowns_times_factorisations"] + sum(start["unknowns"] * start["factorisations"] for start in lost)
+    return work, a["processor_seconds"] + sum(start["processor_seconds"] for start in lost)
+
+
 def of_default() -> dict[str, Scene]:
     """Return the default scene with the accuracies that are asked of it, by name."""
     return {_words(asked): untuned.asked(DEFAULT, **asked) for asked in _DEFAULT}
@@ -132,15 +139,14 @@ def loop_tables(out: Path) -> str:
         for row in rows:
             clear = row.error > row.bar
             effectivities += [row.effectivity] if clear else []
-            cell = f"{row.effectivity:.2f}" if clear else f"({row.effectivity:.2f})"
             verdict = "" if row.allowed is None else "yes" if row.error <= row.allowed else "no"
             allowed = "" if row.allowed is None else f"{100 * row.allowed:.2g}"
             error = f"{100 * row.error:.2g} ± {100 * row.bar:.1g}"
-            cells = [name, _title(row.name), allowed, f"{100 * row.estimate:.2g}", error, cell, verdict]
+            cells = [name, _title(row.name), allowed, f"{100 * row.estimate:.2g}", error]
+            cells += [cell(row.effectivity, clear), verdict]
             lines.append("| " + " | ".join(cells) + " |")
         a = summary["accuracy"]
-        lost = sum(start["unknowns"] * start["factorisations"] for start in summary.get("failed_starts", []))
-        cost = f"{(a['unknowns_times_factorisations'] + lost) / whole:.2f}" if whole else "–"
+        cost = f"{spent(summary)[0] / whole:.2f}" if whole else "–"
         sizes = [f"{a['mesh'][s] * 1e6:g}" if s != "growth" else f"{a['mesh'][s]:g}" for s in _CHOSEN]
         unknowns = max(solve["unknowns"] for solve in a["solves"])
         costs.append(f"| {name} | " + " | ".join([*sizes, str(unknowns), str(len(a["solves"])), cost]) + " |")

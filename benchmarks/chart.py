@@ -28,11 +28,11 @@ from benchmarks.points import (
     LADDER,
     MEASURES,
     QUANTITIES,
+    RUNG_1,
     STATES,
     Point,
     collect,
-    lost,
-    rung,
+    missing,
     scenes,
 )
 from fingerpad.files import replace, replace_json
@@ -84,18 +84,27 @@ def _default(points: Sequence[Point]) -> Point:
     return next(p for p in points if p.label == DEFAULT)
 
 
-def _panel(
-    ax: Axes, points: Sequence[Point], quantity: str, reference: Limit, measure: str, rung_1: Point | None
-) -> None:
-    base = _default(points).cost(quantity, measure) or 1.0
+def _base(points: Sequence[Point], quantity: str, measure: str) -> float:
+    cost = _default(points).cost(quantity, measure)
+    if cost is None:
+        raise ValueError(
+            f"what the default scene took in {MEASURES[measure]} is not known; delete its run, run it again"
+        )
+    return cost
+
+
+def _panel(ax: Axes, points: Sequence[Point], quantity: str, reference: Limit, measure: str) -> None:
+    base = _base(points, quantity, measure)
 
     def at(some: Sequence[Point]) -> tuple[list[float], list[float]]:
         pairs = [(cost / base, p.errors[quantity]) for cost, p in known(some, quantity, measure)]
         return [x for x, _ in pairs], [y for _, y in pairs]
 
     ax.axhspan(1e-6, reference.bar / abs(reference.value), color="0.9", lw=0)
-    if rung_1 is not None and quantity in rung_1.errors:
-        ax.axhline(rung_1.errors[quantity], color="black", ls=":", lw=0.8)
+    for point in points:
+        if point.label == RUNG_1 and quantity in point.errors:
+            ax.axhline(point.errors[quantity], color="black", ls=":", lw=0.8)
+    points = [p for p in points if p.label != RUNG_1]
     ax.step(*at(front(points, quantity, measure)), "k-", where="post", lw=0.8)
     for family, (colour, marker) in (_LOOKS | _STATES_ONLY).items():
         size = 8 if family in _STATES_ONLY else 5
@@ -109,9 +118,7 @@ def _panel(
     ax.set(title=_words(quantity))
 
 
-def paint(
-    figure: Figure, points: Sequence[Point], reference: Mapping[str, Limit], measure: str, rung_1: Point | None
-) -> None:
+def paint(figure: Figure, points: Sequence[Point], reference: Mapping[str, Limit], measure: str) -> None:
     """Draw a panel for each quantity in each state; f_T is that of full slip, beside it are all and the legend."""
     axes = figure.subplots(len(KINDS), len(STATES))
     for row, kind in enumerate(KINDS):
@@ -120,7 +127,7 @@ def paint(
             if quantity not in reference:
                 ax.axis("off")
                 continue
-            _panel(ax, points, quantity, reference[quantity], measure, rung_1)
+            _panel(ax, points, quantity, reference[quantity], measure)
     for ax in axes[-1]:
         ax.set_xlabel(f"{MEASURES[measure]} / the default's")
     for ax in (axes[0, 1], axes[1, 0], axes[2, 0]):
@@ -153,7 +160,7 @@ def costs(points: Sequence[Point], reference: Mapping[str, Limit], measure: str)
         end = reference[quantity]
         bar = end.bar / abs(end.value)
         runs = [p for p in whole(points) if p.family != OTHER_MODEL]
-        cells = _cheapest(runs, quantity, measure, base.cost(quantity, measure) or 1.0)
+        cells = _cheapest(runs, quantity, measure, _base(points, quantity, measure))
         off = "not resolved" if base.errors[quantity] < bar else "no"
         on = "yes" if base in front(points, quantity, measure) else off
         cells = [_words(quantity), f"{100 * bar:.2g} %", *cells, f"{100 * base.errors[quantity]:.2g} %", on]
@@ -163,10 +170,10 @@ def costs(points: Sequence[Point], reference: Mapping[str, Limit], measure: str)
 
 def costs_of_states(points: Sequence[Point], measure: str) -> str:
     """Return the same of the points that have a state or two and no path."""
-    base, some = _default(points), [p for p in points if p.family in _STATES_ONLY]
+    some = [p for p in points if p.family in _STATES_ONLY]
     lines = ["| | " + " | ".join(f"{100 * t:g} %" for t in TARGETS) + " |", "|---" * (len(TARGETS) + 1) + "|"]
     for quantity in (*QUANTITIES, ALL):
-        cells = _cheapest(some, quantity, measure, base.cost(quantity, measure) or 1.0)
+        cells = _cheapest(some, quantity, measure, _base(points, quantity, measure))
         lines.append("| " + " | ".join([_words(quantity), *cells]) + " |")
     return "\n".join(lines)
 
@@ -190,7 +197,8 @@ The front and the first tables are of the runs that follow the whole path of the
 the reference has. Another formulation or penalty is another model, drawn but not judged: a softer screen's longer
 contact hides the mesh's shorter one. What has two or three states alone is drawn beside the front as well: an accuracy
 asked for (all of its solves and the estimate are in its cost), states solved again on finer and finer meshes (each with
-its path and the coarser meshes), and the rungs of [the ladder](ladder.md).
+its path and the coarser meshes), and the rungs of [the ladder](ladder.md), of which the first knows the uncharged
+contact length from full runs.
 The data: [chart.json](chart.json).
 """
 _TABLES = {
@@ -204,8 +212,7 @@ def write(
     total: int,
     reference: Mapping[str, Limit],
     docs: Path,
-    failures: Sequence[str] = (),
-    rung_1: Point | None = None,
+    absent: Sequence[str] = (),
 ) -> None:
     """Write page, pictures and data."""
     reference = {
@@ -213,12 +220,12 @@ def write(
         ALL: Limit(1.0, max(reference[q].bar / abs(reference[q].value) for q in QUANTITIES), None),
     }
     for measure, name in PICTURES.items():
-        paint_all = partial(paint, points=points, reference=reference, measure=measure, rung_1=rung_1)
+        paint_all = partial(paint, points=points, reference=reference, measure=measure)
         draw(docs / name, (12, 10), paint_all)
     runs = whole(points)
     names = {quantity: "; ".join(p.label for p in front(points, quantity)) for quantity in (*QUANTITIES, ALL)}
     fronts = "\n".join(f"- {_words(quantity)}: {labels}" for quantity, labels in names.items())
-    parts = [_HEADER, f"{len(runs)} of {total} runs.", *(f"Not reached: {words}." for words in failures)]
+    parts = [_HEADER, f"{len(runs)} of {total} runs.", *(f"Not there: {words}." for words in absent)]
     for measure, words in _TABLES.items():
         parts += [f"![Relative error over {MEASURES[measure]}]({PICTURES[measure]})"]
         parts += [words, costs(points, reference, measure)]
@@ -241,7 +248,7 @@ def main(given: Sequence[str] | None = None) -> int:
     if not reference:
         parser.error("the reference is missing; run benchmarks/errors.py first")
     points = collect(args.out, args.docs, reference)
-    write(points, len(wanted), reference, args.docs, lost(args.out), rung(args.docs, 1, reference))
+    write(points, len(wanted), reference, args.docs, missing(args.out))
     ran = len(whole(points))
     print(f"{ran} of {len(wanted)} runs; {args.docs / 'chart.md'}")
     return 0 if ran == len(wanted) else 1

@@ -18,6 +18,7 @@ from benchmarks.errors import QUANTITIES, STUDIES, study, values
 from benchmarks.runs import Run
 from fingerpad.estimate import Knob
 from fingerpad.scene import Scene
+from fingerpad.sweep import progress
 
 Array = NDArray[np.float64]
 LOW, HIGH = 0.5, 3.0  # effectivities that are good enough
@@ -87,12 +88,11 @@ def table(name: str, out: Path) -> tuple[str, list[float]]:
         for value, q, share in judged:
             error = abs(q - exact)
             effectivity = share / error if error > 0 else float("inf")
-            cell = f"{effectivity:.2f}" if error > bar else f"({effectivity:.2f})"
-            if error > bar:
-                telling.append(effectivity)
+            telling += [effectivity] if error > bar else []
             of = 100 / abs(exact)
             at, within = f"{value / unit:g} {words}".strip(), f" ± {bar * of:.2g}" if bar else ""
-            cells = [title.rsplit(" (", 1)[0], at, f"{share * of:.3g}", f"{error * of:.3g}{within}", cell]
+            cells = [title.rsplit(" (", 1)[0], at, f"{share * of:.3g}", f"{error * of:.3g}{within}"]
+            cells.append(cell(effectivity, error > bar))
             lines.append("| " + " | ".join(cells) + " |")
     return f"### {heading}\n\n" + "\n".join(lines), telling
 
@@ -100,13 +100,16 @@ def table(name: str, out: Path) -> tuple[str, list[float]]:
 def hertz_table() -> str:
     """Return the section of Hertz's contact, which takes some seconds."""
     lines, telling = ["| half-width (mm) | facets | estimate (%) | error (%) | effectivity |", "|---" * 5 + "|"], []
-    for a in hertz.HALF_WIDTHS:
-        found = [hertz.contact_length(a, facets) for facets in hertz.FACETS]
-        for facets, length, share in zip(hertz.FACETS[1:], found[1:], shares(found, _LENGTH), strict=True):
-            error = abs(length - 2 * a)
-            telling += [share / error] if error > hertz.BAR * 2 * a else []
-            numbers = [f"{100 * share / (2 * a):.2g}", f"{100 * error / (2 * a):.2g}", f"{share / error:.2f}"]
-            lines.append(f"| {1e3 * a:.3f} | {a / hertz.HALF_WIDTH * facets:.1f} | " + " | ".join(numbers) + " |")
+    with progress() as bar:
+        for a in bar.track(hertz.HALF_WIDTHS, description="Hertz's contact"):
+            found = [hertz.contact_length(a, facets) for facets in hertz.FACETS]
+            for facets, length, share in zip(hertz.FACETS[1:], found[1:], shares(found, _LENGTH), strict=True):
+                error, of = abs(length - 2 * a), 100 / (2 * a)
+                clear = error > hertz.BAR * 2 * a
+                telling += [share / error] if clear else []
+                cells = [f"{1e3 * a:.3f}", f"{a / hertz.HALF_WIDTH * facets:.1f}"]
+                cells += [f"{share * of:.2g}", f"{error * of:.2g}", cell(share / error, clear)]
+                lines.append("| " + " | ".join(cells) + " |")
     return "\n\n".join([_HERTZ.format(bar=100 * hertz.BAR), tally(telling), "\n".join(lines)])
 
 
@@ -114,6 +117,11 @@ def knob_tables(out: Path) -> str:
     """Return the sections of the knobs, of what has been run."""
     sections, telling = zip(*(table(name, out) for name in _KNOBS), strict=True)
     return "\n\n".join([_ONE, tally([e for part in telling for e in part]), *sections])
+
+
+def cell(effectivity: float, clear: bool) -> str:
+    """Return an effectivity, in brackets if its error is not clear of its own bar."""
+    return f"{effectivity:.2f}" if clear else f"({effectivity:.2f})"
 
 
 def tally(effectivities: Sequence[float]) -> str:

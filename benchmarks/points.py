@@ -30,6 +30,8 @@ KINDS = {"f_t": "f_T and µ_app", "contact_length": "contact length", "sed_0": "
 MEASURES = {"work": "factorisations × unknowns", "seconds": "processor time"}
 QUANTITIES = [f"{state}_{kind}" for kind in KINDS for state in STATES if kind != "f_t" or state == "slip"]
 ALL = "slip_all"  # the largest error of all of these, at full slip since the other states come before
+RUNG_1 = "rung 1"  # factorises nothing, so that its cost is at no place of a logarithmic axis
+_NOT_STEADY = "no steady full slip by the end of the slide"
 Reference = Mapping[str, Limit]
 
 
@@ -116,7 +118,7 @@ def collect(out: Path, docs: Path, reference: Reference) -> list[Point]:
         *_runs(out, reference),
         *_asked(out, reference),
         *_solved_again(out, reference),
-        *_rung_2(docs, reference),
+        *_rungs(docs, reference),
     ]
 
 
@@ -153,12 +155,8 @@ def _asked(out: Path, reference: Reference) -> Iterator[Point]:
         summary = result(scene, out)
         if summary is None or "accuracy" not in summary or "failure" in summary:
             continue
-        a = summary["accuracy"]
-        lost = summary.get("failed_starts", [])
-        work = a["unknowns_times_factorisations"] + sum(s["unknowns"] * s["factorisations"] for s in lost)
-        seconds = a["processor_seconds"] + sum(start["processor_seconds"] for start in lost)
-        values = {name: q["value"] for name, q in a["quantities"].items()}
-        yield _of_states(label, ASKED, work, seconds, _errors(values, reference))
+        values = {name: q["value"] for name, q in summary["accuracy"]["quantities"].items()}
+        yield _of_states(label, ASKED, *accuracy.spent(summary), _errors(values, reference))
 
 
 def _solved_again(out: Path, reference: Reference) -> Iterator[Point]:
@@ -173,29 +171,22 @@ def _solved_again(out: Path, reference: Reference) -> Iterator[Point]:
         yield _of_states(label, AGAIN, work, seconds, _errors(level["values"], reference))
 
 
-def rung(docs: Path, number: int, reference: Reference) -> Point | None:
-    """Return what a rung of the ladder says of the default scene, None if it was not asked."""
+def _rungs(docs: Path, reference: Reference) -> Iterator[Point]:
     file = docs / "ladder.json"
     known = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
-    found = known.get(ladder_name(errors.DEFAULT.f_ext, errors.DEFAULT.voltage), {}).get(str(number), {})
-    if "summary" not in found:
-        return None
-    cost = found["cost"]
-    work = cost["factorisations"] * cost["unknowns"]
-    return _of_states(f"rung {number}", LADDER, work, cost["seconds"], _errors(found["summary"], reference))
+    found = known.get(ladder_name(errors.DEFAULT.f_ext, errors.DEFAULT.voltage), {})
+    for number, label in (("1", RUNG_1), ("2", "rung 2")):
+        if "summary" in found.get(number, {}):
+            values, cost = found[number]["summary"], found[number]["cost"]
+            work = cost["factorisations"] * cost["unknowns"]
+            yield _of_states(label, LADDER, work, cost["seconds"], _errors(values, reference))
 
 
-def _rung_2(docs: Path, reference: Reference) -> Iterator[Point]:
-    point = rung(docs, 2, reference)
-    if point is not None:
-        yield point
-
-
-def lost(out: Path) -> list[str]:
-    """Return the runs that did not reach full slip, and why."""
+def missing(out: Path) -> list[str]:
+    """Return the runs that are not in the chart, and why."""
     found = {label: result(scene, out) for (_, label), scene in scenes().items()}
     return [
-        f"{label}: {summary.get('failure', 'no steady full slip by the end of the slide')}"
+        f"{label}: {'not run' if summary is None else summary.get('failure', _NOT_STEADY)}"
         for label, summary in found.items()
-        if summary is not None and not summary.get("full_slip")
+        if summary is None or not summary.get("full_slip")
     ]

@@ -46,7 +46,7 @@ def test_table_names_the_cheapest_run_that_will_do(tmp_path):
     row = next(line for line in text.splitlines() if line.startswith("| f_T"))
     assert row.split(" | ")[2:5] == ["cheap: 0.5", "dear: 2", "dear: 2"]
     assert "4 of 9 runs" in text
-    assert "Not reached: 40 µm: stuck." in text
+    assert "Not there: 40 µm: stuck." in text
 
 
 def test_states_without_a_path_are_no_part_of_the_front(tmp_path):
@@ -72,16 +72,18 @@ def test_every_scene_is_another():
 
 
 def test_run_that_was_lost_is_named(tmp_path):
-    """With its reason; what was not run is not, nor what reached full slip."""
+    """With its reason, or that it was not run; what reached full slip is not."""
     ends = {"P2-P1": {"full_slip": True}, "P2 reduced": {"full_slip": False}, "P3": {"failure": "no equilibrium"}}
     for label, summary in ends.items():
         folder = tmp_path / key(points.scenes()["element", label])
         folder.mkdir()
         (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    assert points.lost(tmp_path) == [
-        "P2 reduced: no steady full slip by the end of the slide",
-        "P3: no equilibrium",
-    ]
+    missing = points.missing(tmp_path)
+    assert len(missing) == len(points.scenes()) - 1
+    assert "P2 reduced: no steady full slip by the end of the slide" in missing
+    assert "P3: no equilibrium" in missing
+    assert "P1: not run" in missing
+    assert not any(words.startswith("P2-P1") for words in missing)
 
 
 def test_states_cost_their_path_and_coarser_meshes(tmp_path):
@@ -108,8 +110,23 @@ def test_rung_has_an_error_where_it_says_something(tmp_path):
     cost = {"factorisations": 3, "unknowns": 7, "seconds": 0.5}
     said = {"75 N/m, 200 V": {"2": {"summary": {"slip_f_t": 0.9, "slip_contact_length": 1.2}, "cost": cost}}}
     (tmp_path / "ladder.json").write_text(json.dumps(said), encoding="utf-8")
-    found = points.rung(tmp_path, 2, dict.fromkeys(QUANTITIES, Limit(1.0, 0.001, None)))
-    assert found is not None
+    (found,) = points.collect(tmp_path / "traces", tmp_path, dict.fromkeys(QUANTITIES, Limit(1.0, 0.001, None)))
+    assert found.label == "rung 2"
     assert found.errors == pytest.approx({"slip_f_t": 0.1, "slip_contact_length": 0.2}, rel=1e-12)
     assert (found.cost("slip_f_t", "work"), found.cost("press_contact_length", "work")) == (21, None)
-    assert points.rung(tmp_path, 1, {}) is None
+
+
+def test_rung_that_costs_nothing_is_drawn_and_told(tmp_path):
+    """No place on a logarithmic axis, but the cheapest in the table."""
+    first = Point(points.RUNG_1, points.LADDER, *[dict.fromkeys(STATES, 0.0)] * 2, {"slip_f_t": 0.04})
+    chart.write([*POINTS, first], 4, dict.fromkeys(QUANTITIES, Limit(1.0, 0.001, None)), tmp_path)
+    assert "| f_T and µ_app, full slip | rung 1: 0 | none | none |" in (tmp_path / "chart.md").read_text(
+        encoding="utf-8"
+    )
+    assert "rung 1" in (tmp_path / "chart.json").read_text(encoding="utf-8")
+
+
+def test_default_without_its_time_is_named(tmp_path):
+    untimed = [Point("default", "growth", POINTS[0].work, {}, POINTS[0].errors), *POINTS[1:]]
+    with pytest.raises(ValueError, match="what the default scene took in processor time is not known"):
+        chart.write(untimed, 4, dict.fromkeys(QUANTITIES, Limit(1.0, 0.001, None)), tmp_path)

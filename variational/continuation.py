@@ -44,8 +44,8 @@ _SMALLEST = 1e-3  # step below which a load is given up, over the largest
 _MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on when the bone moves
 _LEAP = 1.5  # step tried where the loop over the scales cycles, over the one that led there
 _SMALLEST_BIT = 1 / 64  # of the forces that a state from elsewhere is out of balance by
-_FEW, _UNCUT = 6, 3  # factorisations, steps in a row without a cut: no more of the former lets the next step grow, or
-# so many of the latter, however hard they are
+_FEW = 6  # factorisations; a step that took no more lets the next one grow
+_UNCUT = 3  # steps in a row that were not cut, after which the next one grows however hard they were
 
 
 class StepFailed(RuntimeError):
