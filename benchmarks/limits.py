@@ -23,7 +23,7 @@ from fingerpad.accuracy import Keeper, Solve, solve_again
 from fingerpad.files import replace
 from fingerpad.needs import plan
 from fingerpad.processes import Pool, limit_processor_time, run
-from fingerpad.scene import START, Scene, from_data
+from fingerpad.scene import Scene, from_data, start
 from fingerpad.simulation import Simulation, Step
 from fingerpad.sweep import key, progress
 from geometry.parameters import MeshSize
@@ -101,7 +101,7 @@ def _path(scene: Scene, comm: MPI.Comm) -> Solve:
             keeper.keep("press")
 
     for contact in _STARTS:
-        sizes = START | {"receptor": 2 * _FIRST["receptor"], "contact": contact}
+        sizes = start({}) | {"receptor": 2 * _FIRST["receptor"], "contact": contact}
         coarse = scene.model_copy(update={"mesh": scene.mesh.model_copy(update=sizes)})
         simulation = Simulation(coarse, plan(scene), comm, on_step, on_load)
         keeper = Keeper(simulation)

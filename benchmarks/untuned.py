@@ -10,7 +10,7 @@ import numpy as np
 
 from fingerpad.parameters import Accuracy
 from fingerpad.reach import by_rule
-from fingerpad.scene import START, Scene, SceneError, check, from_data
+from fingerpad.scene import Scene, SceneError, check, from_data, start
 
 SEED, COUNT = 2023, 10
 _RANGES = {"f_ext": (10.0, 120.0), "voltage": (0.0, 200.0), "friction": (0.15, 0.5)}  # N/m, V
@@ -53,5 +53,5 @@ def scenes() -> dict[str, Scene]:
 
 def asked(scene: Scene, **tolerances: float) -> Scene:
     """Return a scene of which an accuracy is asked, on the coarse mesh that this starts from."""
-    mesh = scene.mesh.model_copy(update=START)
+    mesh = scene.mesh.model_copy(update=start(tolerances))
     return scene.model_copy(update={"accuracy": Accuracy(**tolerances), "mesh": mesh})

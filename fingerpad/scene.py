@@ -136,7 +136,8 @@ class Scene(Part):
         return self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
 
 
-START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}  # of scenes that ask for accuracy
+_START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}
+_START_AT_SITES = 10e-6  # m; coarser elements do not see the tips of 6 µm, and to halve them tells nothing of the error
 _DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 
 
@@ -182,7 +183,12 @@ def _coarse_start(data: Mapping[str, Any]) -> Mapping[str, Any]:
     mesh, accuracy = data.get("mesh", {}), data.get("accuracy")
     if not (isinstance(mesh, dict) and isinstance(accuracy, dict) and accuracy):
         return data
-    return {**data, "mesh": START | mesh}
+    return {**data, "mesh": start(accuracy) | mesh}
+
+
+def start(asked: Mapping[str, Any]) -> dict[str, float]:
+    """Return the element sizes from which a scene starts that asks for accuracies by quantity."""
+    return _START | ({"receptor": _START_AT_SITES} if "sed" in asked else {})
 
 
 def check(scene: Scene) -> None:
