@@ -185,7 +185,7 @@ class _SmoothFinger:
         return replace(
             found,
             corners=found.corners + up,
-            skin={j: replace(ridge, origin=ridge.origin + up) for j, ridge in found.skin.items()},
+            skin={j: replace(ridge, origin=ridge.origin + up, position=None) for j, ridge in found.skin.items()},
             d_eq=dict(zip(found.d_eq, map(float, d_eq), strict=True)),
             gain=dict.fromkeys(found.gain, np.nan),
             voltage=self.scene.voltage,

@@ -118,3 +118,28 @@ def test_slip_that_is_never_steady_ends_with_the_slide(monkeypatch):
     assert not simulation.full_slip
     assert places == sorted(places)
     assert 0.9e-3 <= places[-1] <= 1.11e-3
+
+
+class Slid:
+    """In place of a continuation: each load changes f_t by a given part."""
+
+    def __init__(self, solver, change):
+        self.solver, self.change, self.slip = solver, change, (1.0, True)
+        solver.reaction = np.array([-1.0, 1.0])
+
+    def run(self, target):
+        self.solver.reaction = self.solver.reaction * (1 + self.change)
+
+
+@pytest.mark.parametrize(
+    ("formulation", "change", "steady"),
+    [("penalty", 0.9e-6, True), ("penalty", 1.1e-6, False), ("augmented", 1e-3, True), ("augmented", 1e-2, False)],
+)
+def test_force_of_full_slip_is_as_steady_as_its_gaps(formulation, change, steady):
+    """5 nm left of an air gap and insulators of some 2 um: 5e-3 of the attraction, 1e-6 where none are left."""
+    scene = from_data(SCENE | {"contact": {"formulation": formulation}})
+    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
+    simulation.coupling.set_air_gaps(np.full(len(simulation.ridges), 1.5e-6))
+    simulation.continuation = Slid(simulation.solver, change)
+    assert simulation._slides_on(scene.loads()[-1]) is steady
+    assert simulation.full_slip is steady

@@ -75,6 +75,30 @@ def test_history_returns_on_its_own_mesh(bodies, reached):
     np.testing.assert_allclose(back.skin[0].elastic_slip, normal.skin[0].elastic_slip, atol=1e-15)
 
 
+def test_displacement_returns_on_its_own_mesh(bodies, reached):
+    """On the skin by its facets' polynomials, elsewhere by the triangles'. Tolerance: roundoff of 1 mm."""
+    path = prepare(bodies[COARSE])
+    give(reached[COARSE][0], path.coupling)
+    before = carry(path.coupling, path.observer.state()).u
+    np.testing.assert_allclose(before, reached[COARSE][0].u, atol=1e-16)
+
+
+@pytest.mark.parametrize(("old", "new"), [(COARSE, FINE), (FINE, COARSE)])
+def test_skin_stays_on_the_screen(bodies, reached, old, new):
+    """Facets of other lengths cut the ridge's curve elsewhere; their nodes are put where the skin is, not beside it.
+
+    Tolerance: twice the state's own penetration, in the middle half of the contact; the chords stand off by 0.5 um.
+    """
+    state, path = reached[old][0], prepare(bodies[new])
+    give(state, path.coupling)
+    now, skin = path.observer.state(), state.skin[0]
+    own = np.abs(skin.position[..., 1].ravel()[skin.pressure > 0]).max()
+    middle = np.abs(now.x) < np.abs(skin.along[skin.pressure > 0]).max() / 2
+    gaps = np.concatenate(MPI.COMM_WORLD.allgather(np.abs(now.y[middle])))
+    assert own < 0.1e-6
+    assert gaps.max() < 2 * own
+
+
 def test_normal_contact_returns_on_its_own_mesh(bodies, reached):
     """Solved again it is what it was, with the friction on its history.
 

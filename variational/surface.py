@@ -138,6 +138,10 @@ class Surface:
         count = int(np.prod(compiled.ufl_expression.ufl_shape))
         return values.reshape(len(self.pairs), len(self.weights), count)
 
+    def nodes(self, space: fem.FunctionSpace, ridge: int) -> NDArray[np.int32]:
+        """Return this rank's nodes of a space on a ridge, by its position in ``names``; ghosts as far as known."""
+        return np.asarray(fem.locate_dofs_topological(space, 1, self.facets[self.ridge == ridge], remote=True))
+
     # -- integrals -------------------------------------------------------------------------------------
     def per_ridge(self, density: Array) -> Array:
         """Integrate a density per reference length over each ridge, summed over ranks; shape (ridges,)."""

@@ -6,7 +6,9 @@ and friction. The carried fields are no equilibrium; what is solved for from the
 
 **Displacement.** The old mesh is gathered on every rank (it is two-dimensional: some MB). A node of the new one takes
 the value of the old polynomial in the triangle that it is inside of or, beyond a polygon that cuts off a curved
-boundary, least outside of in barycentric coordinates.
+boundary, least outside of in barycentric coordinates. A node on a ridge that can touch is put where the old mesh has
+the skin at that place of the ridge's chord: facets of another length cut the curved ridge elsewhere, by a gap to the
+screen of :math:`h^2 \kappa / 8`, half a micron where springs of the screen bear the contact in a tenth of that.
 
 **History.** What friction keeps is the elastic slip :math:`s - u_x = t_t / \gamma_t` at Gauss points of the skin
 (:mod:`~variational.friction`). It is interpolated linearly along each ridge, over the place on the ridge's chord, so
@@ -54,6 +56,9 @@ class SkinState:
     """s - u_x (m)."""
     pressure: Array
     """Contact pressure (Pa of reference area)."""
+    position: Array | None
+    """Current place (m), by facet, shape (facets, points on each, 2); None of another model, whose skin is not this
+    body's."""
 
 
 @dataclass(frozen=True)
@@ -92,9 +97,9 @@ def carry(coupling: Coupling, state: SurfaceState) -> Carried:
     cells = np.arange(mesh.topology.index_map(2).size_local)
     corners = mesh.geometry.x[compat.cell_geometry(mesh)[cells]][:, :, :2]
     u = problem.u.x.array.reshape(-1, 2)[problem.V.dofmap.list[cells]]
-    here = np.stack([*_reference(problem, state), state.anchor - _u_x(problem), state.p_n])
+    here = np.stack([*_reference(problem, state), state.anchor - _u_x(problem), state.p_n, state.x, state.y])
     points, ridge = _all(mesh.comm, here, 1), _all(mesh.comm, surface.ridge, 0)
-    skin = {name: _ridge(points[:, ridge == k].reshape(4, -1)) for k, name in enumerate(surface.names)}
+    skin = {name: _ridge(points[:, ridge == k].reshape(6, -1), here.shape[2]) for k, name in enumerate(surface.names)}
     return Carried(
         _all(mesh.comm, corners, 0),
         _all(mesh.comm, u, 0),
@@ -132,6 +137,10 @@ def give(carried: Carried, coupling: Coupling, slide: float = 0.0) -> None:
     farthest = float(np.max(problem.mesh.comm.allgather(outside)))
     if farthest > _OUTSIDE:
         raise ValueError(f"a node lies {farthest:.3g} triangles outside the state's mesh; it is of another body")
+    for k, name in enumerate(names):
+        skin, on_ridge = carried.skin[name], problem.surface.nodes(problem.V, k)
+        if skin.position is not None:
+            u[on_ridge] = place(skin, skin.position, nodes[on_ridge]) - nodes[on_ridge]
     shift = np.array([slide, 0.0])
     solver.layout.from_nodes((u + shift).ravel(), carried.bone + shift, solver.x)
     solver.to_fields(solver.x)
@@ -176,6 +185,21 @@ def interpolate(carried: Carried, points: Array) -> tuple[Array, float]:
     return np.einsum("nk,nki->ni", basis, carried.u[cell]), float(max(0.0, -least[row, best].min()))
 
 
+def place(ridge: SkinState, position: Array, nodes: Array) -> Array:
+    """Return where (m) the skin of a ridge is, of its state's ``position``, at reference points on it (m).
+
+    Both have the shape (n, 2).
+    """
+    n = position.shape[1]
+    gauss = (1 + np.polynomial.legendre.leggauss(n)[0]) / 2
+    points, along = ridge.along.reshape(-1, n), (nodes - ridge.origin) @ ridge.chord
+    length = (points[:, -1] - points[:, 0]) / (gauss[-1] - gauss[0])
+    start = points[:, 0] - gauss[0] * length
+    facet = np.clip(np.searchsorted(start, along, side="right") - 1, 0, len(start) - 1)
+    powers = np.vander((along - start[facet]) / length[facet], n)
+    return np.einsum("nk,nki->ni", powers @ np.linalg.inv(np.vander(gauss, n)), position[facet])
+
+
 def _refuse_pressure(problem: Problem) -> None:
     if problem.pressure is not None:
         raise ValueError("the element has a pressure of its own, which cannot be carried to another mesh; use P2")
@@ -196,12 +220,13 @@ def _all(comm: MPI.Comm, values: NDArray, axis: int) -> NDArray:
     return np.concatenate(comm.allgather(values), axis=axis)
 
 
-def _ridge(points: Array) -> SkinState:
-    """Sort the points of a ridge, rows x, y, elastic slip and pressure, along its chord."""
+def _ridge(points: Array, on_facet: int) -> SkinState:
+    """Sort the points of a ridge along its chord; rows x, y, elastic slip, pressure, and current x and y."""
     xy = points[:2]
     origin = xy.mean(axis=1)
     # A ridge is wider than high: the chord is its points' first principal direction.
     chord = np.linalg.svd(xy - origin[:, None], full_matrices=False)[0][:, 0]
     along = chord @ (xy - origin[:, None])
     order = np.argsort(along)
-    return SkinState(origin, chord, along[order], points[2, order], points[3, order])
+    position = points[4:, order].T.reshape(-1, on_facet, 2)
+    return SkinState(origin, chord, along[order], points[2, order], points[3, order], position)
