@@ -48,14 +48,11 @@ def kept(scene: Scene, levels: int, folder: Path) -> dict[str, Any] | None:
 
 
 def ask(scene: Scene, levels: int, folder: Path) -> dict[str, Any]:
-    """Solve a scene in a process of its own, or return what was kept of it.
+    """Solve a scene in a process of its own and keep what it says.
 
     Returns:
         ``path``, ``own`` (the scene's mesh) and ``levels``, each a mesh, its cost and its values; or ``failure``.
     """
-    known = kept(scene, levels, folder)
-    if known is not None:
-        return known
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / f"{key(scene)}.scene.json"
     file.write_text(json.dumps(scene.parameters()), encoding="utf-8")

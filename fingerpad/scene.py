@@ -188,7 +188,7 @@ def _coarse_start(data: Mapping[str, Any]) -> Mapping[str, Any]:
 
 def start(asked: Mapping[str, Any]) -> dict[str, float]:
     """Return the element sizes from which a scene starts that asks for accuracies by quantity."""
-    return _START | ({"receptor": _START_AT_SITES} if "sed" in asked else {})
+    return _START | ({"receptor": _START_AT_SITES} if asked.get("sed") is not None else {})
 
 
 def check(scene: Scene) -> None:

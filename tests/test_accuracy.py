@@ -204,7 +204,8 @@ def test_scene_without_accuracy_keeps_its_key():
 
 def test_scene_that_asks_starts_coarse_where_it_gives_no_size():
     mesh = from_data({"accuracy": {"mu_app": 0.01}, "mesh": {"growth": 0.3}}).mesh
-    assert (mesh.contact, mesh.growth) == (20e-6, 0.3)
+    assert (mesh.contact, mesh.growth, mesh.receptor) == (20e-6, 0.3, 40e-6)
+    assert from_data({"accuracy": {"sed": 0.01}}).mesh.receptor == 10e-6, "coarser sites do not see the tips"
 
 
 def test_parameters_in_use_give_the_same_scene():

@@ -105,6 +105,20 @@ def test_states_cost_their_path_and_coarser_meshes(tmp_path):
     assert found[1].errors["slip_f_t"] == found[1].errors[points.ALL] == pytest.approx(0.01, rel=1e-12)
 
 
+def test_accuracy_asked_for_costs_all_that_was_solved(tmp_path):
+    """Its 700 factorisations times unknowns, and those of a coarser start that was lost, 20 of 10."""
+    scene = next(iter(points.accuracy.of_default().values()))
+    folder = tmp_path / "traces" / key(scene)
+    folder.mkdir(parents=True)
+    spent = {"unknowns_times_factorisations": 700, "processor_seconds": 6.0}
+    said = {"accuracy": spent | {"quantities": {"slip_f_t": {"value": 1.1}}}}
+    lost = {"failed_starts": [{"unknowns": 10, "factorisations": 20, "processor_seconds": 1.5}]}
+    (folder / "summary.json").write_text(json.dumps(said | lost), encoding="utf-8")
+    reference = dict.fromkeys(QUANTITIES, Limit(1.0, 0.001, None))
+    (found,) = points.collect(tmp_path / "traces", tmp_path, reference)
+    assert (found.cost("slip_f_t", "work"), found.cost("slip_f_t", "seconds")) == (900, 7.5)
+
+
 def test_rung_has_an_error_where_it_says_something(tmp_path):
     """No energy density, nor the contact before the voltage."""
     cost = {"factorisations": 3, "unknowns": 7, "seconds": 0.5}

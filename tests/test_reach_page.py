@@ -41,3 +41,6 @@ def test_scene_without_a_coarse_solution_is_named(tmp_path, monkeypatch):
     assert reach.main(["--out", str(tmp_path), "--docs", str(tmp_path)]) == 0
     page = (tmp_path / "reach.md").read_text(encoding="utf-8")
     assert f"No coarse solution: {NAME} (it reaches the last of the ridges, 9)." in page
+    other = {"another": {"coarse": 2, "touched": 3, "factorisations": 14, "unknowns": 4106}}
+    words = f"No coarse solution: {NAME} (none)."
+    assert words in reach.page({NAME: {"failure": "none"}} | other)

@@ -81,3 +81,16 @@ def test_page_counts_the_scenes_that_met_it(tmp_path, value, words):
     page = accuracy.loop_tables(out)
     assert words in page
     assert f"| {name} | µ_app, full slip | 1 | 0.6 |" in page
+
+
+def test_drawn_scene_that_fails_has_not_met_it(tmp_path):
+    out = tmp_path / "traces"
+    name, (scene, plain) = next((n, found) for n, found in accuracy.loops().items() if found[1] != DEFAULT)
+    (tmp_path / "limits").mkdir()
+    known = {"levels": [{"values": {"slip_mu_app": 0.5}}] * 3}
+    (tmp_path / "limits" / f"{key(plain)}-{accuracy.DRAWN_LEVELS}.json").write_text(json.dumps(known), encoding="utf-8")
+    (out / key(scene)).mkdir(parents=True)
+    (out / key(scene) / "summary.json").write_text(json.dumps({"failure": "no equilibrium"}), encoding="utf-8")
+    page = accuracy.loop_tables(out)
+    assert "in 0 of 1" in page
+    assert f"| {name} | no equilibrium |" in page
