@@ -95,7 +95,7 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
     monkeypatch.setattr(
         accuracy, "solve_again", lambda scene, needed, states, comm: Solve(dict(states), scene.mesh, 1000, 10, 1.0)
     )
-    scene = from_data({"accuracy": {"contact_length": 0.03}})
+    scene = from_data({"accuracy": {"contact_length": 0.03}, "numerics": {"step_scale": 2.0}})
     path = stepped(1.0, scene.mesh)
     found = Search(scene, plan(scene), path, MPI.COMM_SELF, lambda text: None, lambda: None)
     found.run()
@@ -103,7 +103,7 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
     assert found.halved == {"contact": 1, "bulk": 1, "steps": 2}
     assert found.base.values()["normal_contact_length"] == pytest.approx(1.025e-3, rel=1e-12)
     assert found.estimates()["normal_contact_length"] == pytest.approx(0.025e-3, rel=1e-9)
-    assert found.summary()["accuracy"]["step_scale"] == 0.25
+    assert found.summary()["accuracy"]["step_scale"] == 0.5, "a quarter of the scene's"
 
 
 def test_receptors_are_halved_where_energy_density_is_asked_for(monkeypatch):
@@ -111,7 +111,8 @@ def test_receptors_are_halved_where_energy_density_is_asked_for(monkeypatch):
     found = search(monkeypatch, {"sed": 0.005})
     assert found.halved["receptor"] > 1
     assert found.halved["contact"] == 1
-    assert found.allowed()["slip_sed_1"] == found.allowed()["slip_sed_0"]
+    largest = found.base.values()["slip_sed_0"]
+    assert found.allowed() == pytest.approx({"slip_sed_0": 0.005 * largest, "slip_sed_1": 0.005 * largest}, rel=1e-12)
 
 
 def test_estimate_alone_refines_nothing(monkeypatch):
