@@ -46,6 +46,7 @@ _LEAP = 1.5  # step tried where the loop over the scales cycles, over the one th
 _SMALLEST_BIT = 1 / 64  # of the forces that a state from elsewhere is out of balance by
 _FEW = 6  # factorisations; a step that took no more lets the next one grow
 _UNCUT = 3  # steps in a row that were not cut, after which the next one grows however hard they were
+_CUT = 4  # steps in a row that were, each a part of what is left up to a jump that none gets over
 
 
 class StepFailed(RuntimeError):
@@ -204,16 +205,16 @@ class Continuation:
 
     def _reach(self, target: Target) -> None:
         at, largest = self._loads(target), self._largest_step(target)
-        part, step, uncut = 0.0, largest, 0
+        part, step, uncut, cut = 0.0, largest, 0, 0
         while part < 1:
             step = min(step, 1 - part)
             if 1 - part - step < 0.05 * step:
                 step = 1 - part
             attempt, within = Attempt(), step
             while True:
-                # One or two failures may be a step too large. More in a row are a jump, which no step is small
-                # enough for.
-                creep = len(attempt.cutbacks) > 1
+                # One or two failures may be a step too large. More in a row, or one in each of several steps, are a
+                # jump, which no step is small enough for.
+                creep = len(attempt.cutbacks) > 1 or cut >= _CUT
                 try:
                     self._try(at(part + step), attempt, creep)
                     break
@@ -231,7 +232,8 @@ class Continuation:
             self.on_accept(target, part, attempt)
             if target.until_full_slip and self.slip[1]:
                 return
-            step, uncut = within, 0 if attempt.cutbacks else uncut + 1
+            uncut, cut = (0, cut + 1) if attempt.cutbacks else (uncut + 1, 0)
+            step = within
             if attempt.factorisations <= _FEW or uncut >= _UNCUT:
                 step, uncut = min(2 * step, largest), 0
 
