@@ -84,19 +84,21 @@ def test_displacement_returns_on_its_own_mesh(bodies, reached):
 
 
 @pytest.mark.parametrize(("old", "new"), [(COARSE, FINE), (FINE, COARSE)])
-def test_skin_stays_on_the_screen(bodies, reached, old, new):
-    """Facets of other lengths cut the ridge's curve elsewhere; their nodes are put where the skin is, not beside it.
+def test_skin_does_not_come_off_the_screen(bodies, reached, old, new):
+    """Facets of other lengths cut the ridge's curve elsewhere: fine ones lower by 0.7 um, coarse ones higher by 0.5.
 
-    Tolerance: twice the state's own penetration, in the middle half of the contact; the chords stand off by 0.5 um.
+    Tolerance: twice the state's own penetration, in the middle half of the contact.
     """
     state, path = reached[old][0], prepare(bodies[new])
     give(state, path.coupling)
     now, skin = path.observer.state(), state.skin[0]
     own = np.abs(skin.position[..., 1].ravel()[skin.pressure > 0]).max()
     middle = np.abs(now.x) < np.abs(skin.along[skin.pressure > 0]).max() / 2
-    gaps = np.concatenate(MPI.COMM_WORLD.allgather(np.abs(now.y[middle])))
+    heights = np.concatenate(MPI.COMM_WORLD.allgather(now.y[middle]))
     assert own < 0.1e-6
-    assert gaps.max() < 2 * own
+    assert heights.max() < 2 * own
+    if new == FINE:
+        assert heights.min() < -0.5e-6, "moved where it need not be"
 
 
 def test_normal_contact_returns_on_its_own_mesh(bodies, reached):

@@ -6,9 +6,11 @@ and friction. The carried fields are no equilibrium; what is solved for from the
 
 **Displacement.** The old mesh is gathered on every rank (it is two-dimensional: some MB). A node of the new one takes
 the value of the old polynomial in the triangle that it is inside of or, beyond a polygon that cuts off a curved
-boundary, least outside of in barycentric coordinates. A node on a ridge that can touch is put where the old mesh has
-the skin at that place of the ridge's chord: facets of another length cut the curved ridge elsewhere, by a gap to the
-screen of :math:`h^2 \kappa / 8`, half a micron where springs of the screen bear the contact in a tenth of that.
+boundary, least outside of in barycentric coordinates. Facets of another length cut a curved ridge elsewhere, by
+:math:`h^2 \kappa / 8`, half a micron where springs of the screen bear the contact over a tenth of that. Skin that is
+too low comes out of the screen in one step of Newton's method, since all of it is in contact; skin that is too high is
+not, and comes back point by point. So a node on a ridge is put down to where the old mesh has the skin at that place of
+the ridge's chord, and not up.
 
 **History.** What friction keeps is the elastic slip :math:`s - u_x = t_t / \gamma_t` at Gauss points of the skin
 (:mod:`~variational.friction`). It is interpolated linearly along each ridge, over the place on the ridge's chord, so
@@ -140,7 +142,9 @@ def give(carried: Carried, coupling: Coupling, slide: float = 0.0) -> None:
     for k, name in enumerate(names):
         skin, on_ridge = carried.skin[name], problem.surface.nodes(problem.V, k)
         if skin.position is not None:
-            u[on_ridge] = place(skin, skin.position, nodes[on_ridge]) - nodes[on_ridge]
+            there = place(skin, skin.position, nodes[on_ridge]) - nodes[on_ridge]
+            lower = there[:, 1] < u[on_ridge, 1]
+            u[on_ridge[lower]] = there[lower]
     shift = np.array([slide, 0.0])
     solver.layout.from_nodes((u + shift).ravel(), carried.bone + shift, solver.x)
     solver.to_fields(solver.x)
