@@ -51,6 +51,16 @@ def test_errors_are_those_against_the_limit():
     assert found.effectivity == pytest.approx(2, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("value", "allowed", "met"),
+    [(0.502, 0.005, "yes"), (0.5045, 0.005, "likely"), (0.506, 0.005, "no"), (0.5, None, "")],
+)
+def test_met_is_likely_where_the_limits_bar_leaves_it_open(value, allowed, met):
+    """The limit is 0.5 +- 0.001."""
+    (found,) = accuracy.judged(summary(slip_mu_app=(value, 0.003, allowed)), ENDS)
+    assert found.met == met
+
+
 def test_energy_density_counts_over_the_largest_site():
     """The worst of them, not where an accuracy is asked of something else; friction force is friction over a given one.
 
