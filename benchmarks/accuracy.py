@@ -59,7 +59,7 @@ class Judged:
 
     @property
     def met(self) -> str:
-        """Whether the error is within what was allowed; ``likely`` if its bar leaves that open, empty if nothing was."""
+        """Whether the error is within what was allowed; ``likely`` if its bar leaves that open, empty if none was."""
         if self.allowed is None:
             return ""
         if self.error > self.allowed:
