@@ -44,7 +44,9 @@ a contact size of 2.5 µm, the default scene's to 1.25 µm, with its error bar. 
 estimate, and coarser paths that were lost), over those of the default scene's whole run on its own mesh. Ten scenes
 were drawn at random from a quarter about the default finger's lengths, materials and roughness (one seed,
 `benchmarks/untuned.py`), and each is asked twice: for friction and contact length, and for energy densities. *Likely*:
-the error is within what was allowed, but not by its bar; counted as met."""
+the error is within what was allowed, but not by its bar; counted as met. Runs are kept, so that a cost is that of the
+version which ran it: most states were carried from mesh to mesh before their skin was put down to the screen
+(`variational/transfer.py`)."""
 
 
 @dataclass(frozen=True)
