@@ -154,25 +154,111 @@ def test_forces_held_balance_any_state(bodies, reached):
     assert MPI.COMM_WORLD.allreduce(float(np.abs(solver.x.array_r - before).max()), op=MPI.MAX) > 1e-9
 
 
-def test_what_is_out_of_balance_is_let_go_bit_by_bit(bodies, reached, monkeypatch):
-    """Where Newton's method fails at once, the same state is found so. Tolerance: two ends of the loop at 1e-6."""
+def test_body_comes_into_balance_under_skin_that_is_held(bodies, reached):
+    """The skin stays where it is and all else is in balance, until it is released.
+
+    Tolerance: the solver's, 1e-9 of its force scale; the skin to the bit.
+    """
     path = prepare(bodies[FINE])
     give(reached[COARSE][1], path.coupling, SLIDE)
-    solve, calls = path.coupling.solve, []
+    solver, skin = path.solver, path.observer.state()
+    before = solver.x.array_r.copy()
+    solver.hold(skin=True)
+    solver.held = 0.0
+    solver.solve()
+    now = path.observer.state()
+    np.testing.assert_array_equal(now.x, skin.x)
+    np.testing.assert_array_equal(now.y, skin.y)
+    assert MPI.COMM_WORLD.allreduce(float(np.abs(solver.x.array_r - before).max()), op=MPI.MAX) > 1e-9
+    assert solver.imbalance() < 1e-9
+    held = len(solver.prescribed_rows())
+    solver.release()
+    assert len(solver.prescribed_rows()) < held or not len(skin.x)
+    solver.solve()
+    assert solver.imbalance() < 1e-9
+
+
+@pytest.mark.parametrize("failures", [1, 2])
+def test_a_state_not_found_at_once_is_found(bodies, reached, monkeypatch, failures):
+    """Where Newton's method fails, the body is settled and continuation allowed; where that fails, bits are let go.
+
+    Tolerance: two ends of the loop at 1e-6.
+    """
+    path = prepare(bodies[FINE])
+    give(reached[COARSE][1], path.coupling, SLIDE)
+    solve, solver, calls, ways = path.coupling.solve, path.solver, [], []
+    hold = solver.hold
+
+    def fails(creep):
+        calls.append((creep, solver.counts.newton))
+        if len(calls) <= failures:
+            raise NotConverged("DIVERGED_LOCAL_MIN", False)
+        solve(creep)
+
+    def noted(skin=False):
+        ways.append(skin)
+        hold(skin)
+
+    monkeypatch.setattr(path.coupling, "solve", fails)
+    monkeypatch.setattr(solver, "hold", noted)
+    attempt = path.adopt("full slip")
+    assert attempt.cutbacks == failures * ["DIVERGED_LOCAL_MIN"]
+    assert attempt.pseudo_transient == 0
+    assert [creep for creep, _ in calls] == [False, True, False][: failures + 1]
+    assert ways == [True, False][:failures]
+    newton = [n for _, n in calls]
+    assert sorted(set(newton)) == newton, "nothing was solved for in between"
+    assert solver.held == 0
+    assert -solver.reaction[0] == pytest.approx(reached[FINE][2], rel=2e-6)
+
+
+def test_bits_are_let_go_where_the_body_cannot_be_settled(bodies, reached, monkeypatch):
+    """And the state is then the one put in, not what settling left behind. Tolerance: two ends of the loop at 1e-6."""
+    path = prepare(bodies[FINE])
+    give(reached[COARSE][1], path.coupling, SLIDE)
+    solve, solver, calls, started = path.coupling.solve, path.solver, [], []
+    put_in, hold, once = solver.x.array_r.copy(), solver.hold, solver.solve
 
     def fails_once(creep):
-        calls.append(path.solver.counts.newton)
+        calls.append(creep)
         if len(calls) == 1:
             raise NotConverged("DIVERGED_LOCAL_MIN", False)
         solve(creep)
 
+    def noted(skin=False):
+        started.append(solver.x.array_r.copy())
+        hold(skin)
+
+    def not_with_skin_held(creep=False):
+        once(creep)
+        if len(started) == 1 and len(calls) == 1:
+            raise NotConverged("DIVERGED_FUNCTION_DOMAIN", True)
+
     monkeypatch.setattr(path.coupling, "solve", fails_once)
+    monkeypatch.setattr(solver, "hold", noted)
+    monkeypatch.setattr(solver, "solve", not_with_skin_held)
     attempt = path.adopt("full slip")
-    assert attempt.cutbacks == ["DIVERGED_LOCAL_MIN"]
-    assert attempt.pseudo_transient == 0
-    assert calls[1] > calls[0], "nothing was solved for in between"
-    assert path.solver.held == 0
-    assert -path.solver.reaction[0] == pytest.approx(reached[FINE][2], rel=2e-6)
+    assert len(attempt.cutbacks) == 2
+    np.testing.assert_array_equal(started, [put_in, put_in])
+    assert calls == [False, False]
+    assert -solver.reaction[0] == pytest.approx(reached[FINE][2], rel=2e-6)
+
+
+def test_state_of_another_model_is_not_settled(bodies, reached, monkeypatch):
+    """Its skin is where this body's is not; pseudo-transient continuation alone is tried."""
+    path = prepare(bodies[FINE])
+    give(reached[COARSE][1], path.coupling, SLIDE)
+    calls = []
+
+    def fails(creep):
+        calls.append(creep)
+        raise NotConverged("DIVERGED_LOCAL_MIN", False)
+
+    monkeypatch.setattr(path.coupling, "solve", fails)
+    monkeypatch.setattr(path.solver, "hold", lambda skin=False: pytest.fail("held"))
+    with pytest.raises(StepFailed, match="LOCAL_MIN"):
+        path.adopt("full slip", same_body=False)
+    assert calls == [False, True]
 
 
 def test_failure_names_the_state(bodies, reached):

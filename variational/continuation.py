@@ -246,27 +246,33 @@ class Continuation:
         )
 
     # -- a state from elsewhere ------------------------------------------------------------------------
-    def adopt(self, name: str, bit_by_bit: bool = True) -> Attempt:
+    def adopt(self, name: str, same_body: bool = True) -> Attempt:
         """Solve at the present loads from fields and history that were put in from outside, and accept the state.
 
-        Where Newton's method does not find an equilibrium from there at once, what is out of balance is let go bit by
-        bit; then pseudo-transient continuation is tried.
+        On another mesh of the same body the carried skin is nearly right, and the strain in the elements next to it is
+        not. Where Newton's method does not find an equilibrium from there at once, the body is brought into balance
+        with its skin held where it is, from there it is tried again, if need be as pseudo-transient continuation, and
+        last what is left out of balance is let go bit by bit.
 
         Args:
             name: what the state is called in a failure.
-            bit_by_bit: whether the second way is worth trying; from a state of another model it leads nowhere.
+            same_body: whether the state is of this body; else its skin is not where it could be held, and all that is
+                left is pseudo-transient continuation.
 
         Raises:
             StepFailed: no equilibrium was found from there.
         """
         self._now = self._snapshot()
         attempt = Attempt()
-        ways = (False, False), (False, True), (True, False)
-        for creep, held in ways if bit_by_bit else ways[::2]:
+        at_once, settled, bit_by_bit = range(3)
+        for way in (at_once, settled, bit_by_bit) if same_body else (at_once, settled):
             try:
-                if held:
-                    self._let_go()
-                self._try((replace(self._now.control), self._now.voltage), attempt, creep)
+                if way == settled and same_body:
+                    self._let_go(1.0, skin=True)
+                    self._now = self._snapshot()
+                if way == bit_by_bit:
+                    self._let_go(0.5)
+                self._try((replace(self._now.control), self._now.voltage), attempt, creep=way == settled)
                 self._accept()
                 return attempt
             except NotConverged as failure:
@@ -275,15 +281,19 @@ class Continuation:
                 last = failure
         raise StepFailed(self._describe(Target(name), 0.0, last)) from last
 
-    def _let_go(self) -> None:
+    def _let_go(self, bit: float, skin: bool = False) -> None:
         """Let go bit by bit, at frozen air gaps, of the forces by which the present state is out of balance.
+
+        Args:
+            bit: part of the forces to start with.
+            skin: hold the skin where it is.
 
         Raises:
             NotConverged: not even the smallest bit could be.
         """
-        solver, bit = self.solver, 0.5
+        solver = self.solver
         solver.new_load(replace(self._now.control), self._now.voltage, slipping=True)
-        solver.hold()
+        solver.hold(skin)
         try:
             while solver.held > 0:
                 before, held = solver.x.array_r.copy(), solver.held
@@ -295,7 +305,7 @@ class Continuation:
                     if bit < _SMALLEST_BIT:
                         raise
         finally:
-            solver.held = 0.0
+            solver.release()
 
     # -- one step --------------------------------------------------------------------------------------
     def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool) -> None:

@@ -129,6 +129,8 @@ class Solver:
         nodes = fem.locate_dofs_topological(problem.V, 1, problem.surface.facets)
         self._skin = 2 * nodes + 1  # vertical displacements of the skin that can touch
         self._skin_height = problem.V.tabulate_dof_coordinates()[nodes, 1]
+        self._skin_rows = self._own_rows(np.concatenate([2 * nodes, 2 * nodes + 1]))
+        self._skin_place: Array | None = None  # displacements (m) that they are held at
         self.x = self.layout.create_vector()
         self._f, self._next_x, self._next_f, self._unbalanced = (self.layout.create_vector() for _ in range(4))
         self.held = 0.0
@@ -160,6 +162,8 @@ class Solver:
     def _prescribed(self) -> tuple[NDArray[np.int64], Array]:
         """Return this rank's prescribed rows (global) and their values (m)."""
         rows, values = self._fixed_rows, self._fixed_values
+        if self._skin_place is not None:
+            rows, values = np.concatenate([rows, self._skin_rows]), np.concatenate([values, self._skin_place])
         if self.layout.owns_rigid:
             bone = [self.control.x] if self.control.y is None else [self.control.x, self.control.y]
             rows = np.concatenate([rows, self.layout.rigid_rows[: len(bone)]])
@@ -308,16 +312,25 @@ class Solver:
         self.problem.guess.value = SLIPS if slipping else STICKS
         self._stale = True
 
-    def hold(self) -> None:
+    def hold(self, skin: bool = False) -> None:
         """Let forces act that balance the present state; :attr:`held` says how much of them.
 
         Lowered from one to zero bit by bit it leads from any state to an equilibrium (Newton's homotopy; Allgower and
         Georg 1990, doi 10.1007/978-3-642-61257-2).
+
+        Args:
+            skin: the skin that can touch is held where it is, too.
         """
-        self.held = 0.0
+        self.release()
         self._residual(None, self.x, self._f)
         self._f.copy(self._unbalanced)
         self.held = 1.0
+        if skin:
+            self._skin_place = self.x.array_r[self._skin_rows - self._first_row].copy()
+
+    def release(self) -> None:
+        """Let go of all that :meth:`hold` held."""
+        self.held, self._skin_place, self._stale = 0.0, None, True
 
     def solve(self, creep: bool = False) -> None:
         """Find the equilibrium near ``x`` for the current loads and leave it in ``x`` and the problem's u.
