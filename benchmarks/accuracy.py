@@ -18,7 +18,6 @@ from benchmarks.convergence import Limit
 from benchmarks.effectivity import HIGH, LOW, cell, hertz_table, knob_tables, tally
 from benchmarks.errors import DEFAULT, LEVELS, folder_of_limits
 from fingerpad.files import replace
-from fingerpad.parameters import Output
 from fingerpad.scene import Scene
 from fingerpad.sweep import result, sweep
 
@@ -28,7 +27,6 @@ _CHOSEN = ("contact", "growth", "receptor")
 _TEN = {"mu_app": 0.01, "contact_length": 0.03}
 _SITES = {"sed": 0.05}
 _DEFAULT = ({"mu_app": 0.01}, _TEN, {"contact_length": 0.01}, _SITES)  # asked of the default scene
-DRAWN_LEVELS = 3  # meshes of a drawn scene's limit
 _LIMIT = 7200.0  # s of processor time for one scene
 _HEADER = f"""# Does the error estimate find the error?
 
@@ -40,7 +38,7 @@ _LOOPS = """## Accuracy asked for
 The default scene as it is comes with its estimate from coarser meshes, as every run does. Each other scene is run with
 an `[accuracy]` and nothing else about its mesh but which ridges can touch, by the rule of thumb of
 `fingerpad/reach.py`, as in all benchmarks. The limit is that of its states solved again on meshes of one family down to
-a contact size of 2.5 µm, the default scene's to 1.25 µm, with its error bar. Cost: all factorisations × unknowns (path,
+a contact size of 1.25 µm, with its error bar. Cost: all factorisations × unknowns (path,
 estimate, and coarser paths that were lost), over those of the default scene's whole run on its own mesh. Ten scenes
 were drawn at random from a quarter about the default finger's lengths, materials and roughness (one seed,
 `benchmarks/untuned.py`), and each is asked twice: for friction and contact length, and for energy densities. *Likely*:
@@ -116,8 +114,7 @@ def loops() -> dict[str, tuple[Scene, Scene]]:
     found |= {f"default scene, {asked}": (scene, DEFAULT) for asked, scene in of_default().items()}
     for asked in (_TEN, _SITES):
         for name, scene in untuned.scenes().items():
-            plain = scene if "sed" in asked else scene.model_copy(update={"output": Output(receptors=False)})
-            found[f"{name}; {_words(asked)}"] = (untuned.asked(scene, **asked), plain)
+            found[f"{name}; {_words(asked)}"] = (untuned.asked(scene, **asked), scene)
     return found
 
 
@@ -130,7 +127,7 @@ def _words(asked: Mapping[str, float]) -> str:
 
 
 def _known(plain: Scene, out: Path) -> dict[str, Any] | None:
-    return limits.kept(plain, LEVELS if plain == DEFAULT else DRAWN_LEVELS, folder_of_limits(out))
+    return limits.kept(plain, LEVELS, folder_of_limits(out))
 
 
 def loop_tables(out: Path) -> str:
@@ -196,9 +193,8 @@ def main(given: Sequence[str] | None = None) -> int:
         wanted = loops()
         sweep({name: scene for name, (scene, _) in wanted.items()}, args.out, args.jobs, _LIMIT)
         folder = folder_of_limits(args.out)
-        drawn = {name: plain for name, (_, plain) in wanted.items() if plain != DEFAULT}
         known = limits.ask_all({"default scene": DEFAULT}, LEVELS, folder, 1)
-        known |= limits.ask_all(drawn, DRAWN_LEVELS, folder, args.jobs)
+        known |= limits.ask_all(untuned.scenes(), LEVELS, folder, args.jobs, uncharged=False)
         failed = [f"{name}: {found['failure']}" for name, found in known.items() if "failure" in found]
     replace(args.docs / "accuracy.md", page(args.out))
     print("\n".join([*failed, str(args.docs / "accuracy.md")]))

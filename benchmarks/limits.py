@@ -1,13 +1,13 @@
 """What scenes tend to: states of a coarse path solved again on meshes with all sizes halved together.
 
-python3 -m benchmarks.limits SCENE.json LEVELS LIMIT    one scene, as :func:`ask` starts it; JSON on standard output
+python3 -m benchmarks.limits SCENE.json LEVELS LIMIT [uncharged]    one scene, as :func:`ask` starts it; JSON on
+standard output
 
-The path is run on the coarse mesh that an ``[accuracy]`` starts from. Its states (uncharged and charged normal contact,
-full slip; where the scene has no receptors in its output, only the last two) are solved again on each of
-:func:`meshes`, by halves since a state put onto elements a quarter of its own is far from equilibrium, and from the
-first of these on the scene's own. Full slip knows no path, so that it is that of the whole run there; normal contact
-keeps the friction history of the path, which the comparison of the scene's own mesh with a whole run on it tells the
-worth of (``docs/errors.md``).
+The path is run on the coarse mesh that an ``[accuracy]`` starts from. Its states (normal contact, full slip, and
+uncharged contact where it is asked for) are solved again on each of :func:`meshes`, by halves since a state put onto
+elements a quarter of its own is far from equilibrium, and from the first of these on the scene's own. Full slip knows
+no path, so that it is that of the whole run there; normal contact keeps the friction history of the path, which the
+comparison of the scene's own mesh with a whole run on it tells the worth of (``docs/errors.md``).
 """
 
 import json
@@ -47,8 +47,8 @@ def kept(scene: Scene, levels: int, folder: Path) -> dict[str, Any] | None:
     return dict(json.loads(file.read_text(encoding="utf-8"))) if file.exists() else None
 
 
-def ask(scene: Scene, levels: int, folder: Path) -> dict[str, Any]:
-    """Solve a scene in a process of its own and keep what it says.
+def ask(scene: Scene, levels: int, folder: Path, uncharged: bool) -> dict[str, Any]:
+    """Solve a scene in a process of its own, if need be with its uncharged contact, and keep what it says.
 
     Returns:
         ``path``, ``own`` (the scene's mesh) and ``levels``, each a mesh, its cost and its values; or ``failure``.
@@ -56,14 +56,17 @@ def ask(scene: Scene, levels: int, folder: Path) -> dict[str, Any]:
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / f"{key(scene)}.scene.json"
     file.write_text(json.dumps(scene.parameters()), encoding="utf-8")
-    end = run("benchmarks.limits", [str(file), str(levels), str(_LIMIT)], _LIMIT)
+    given = [str(file), str(levels), str(_LIMIT), *(["uncharged"] if uncharged else [])]
+    end = run("benchmarks.limits", given, _LIMIT)
     if end.reason:
         return {"failure": f"{end.reason}: {end.message}"}
     replace(folder / f"{key(scene)}-{levels}.json", end.stdout)
     return dict(json.loads(end.stdout))
 
 
-def ask_all(scenes: Mapping[str, Scene], levels: int, folder: Path, jobs: int) -> dict[str, dict[str, Any]]:
+def ask_all(
+    scenes: Mapping[str, Scene], levels: int, folder: Path, jobs: int, uncharged: bool = True
+) -> dict[str, dict[str, Any]]:
     """Solve what has not been solved of scenes by name, with a progress bar; see :func:`ask`."""
     found = {name: kept(scene, levels, folder) for name, scene in scenes.items()}
     missing = [name for name, known in found.items() if known is None]
@@ -76,7 +79,7 @@ def ask_all(scenes: Mapping[str, Scene], levels: int, folder: Path, jobs: int) -
 
     with progress() as bar:
         task = bar.add_task("limits", total=len(missing))
-        Pool[str, dict[str, Any]](lambda name: ask(scenes[name], levels, folder), jobs).run(missing, done)
+        Pool[str, dict[str, Any]](lambda name: ask(scenes[name], levels, folder, uncharged), jobs).run(missing, done)
     return {name: known for name, known in found.items() if known is not None}
 
 
@@ -87,14 +90,14 @@ def limits(found: Mapping[str, Any]) -> dict[str, Limit]:
 
 
 # -- in a process of its own -------------------------------------------------------------------------------
-def _path(scene: Scene, comm: MPI.Comm) -> Solve:
+def _path(scene: Scene, uncharged: bool, comm: MPI.Comm) -> Solve:
     """Return the states of a scene's path on the coarsest mesh on which it can be followed."""
 
     def on_step(step: Step, done: float) -> None:
         keeper.see(step)
 
     def on_load() -> None:
-        if "press" not in keeper.states and scene.output.receptors:
+        if "press" not in keeper.states and uncharged:
             keeper.keep("press")
 
     for contact in _STARTS:
@@ -110,9 +113,9 @@ def _path(scene: Scene, comm: MPI.Comm) -> Solve:
     raise failure
 
 
-def _solve(scene: Scene, levels: int) -> dict[str, Any]:
+def _solve(scene: Scene, levels: int, uncharged: bool) -> dict[str, Any]:
     comm = MPI.COMM_WORLD
-    path = _path(scene, comm)
+    path = _path(scene, uncharged, comm)
     solves = [path]
     for mesh in meshes(scene.mesh, levels):
         solves.append(solve_again(scene.model_copy(update={"mesh": mesh}), plan(scene), solves[-1].states, comm))
@@ -135,7 +138,7 @@ def _solve(scene: Scene, levels: int) -> dict[str, Any]:
 def _main(arguments: Sequence[str]) -> None:
     limit_processor_time(float(arguments[2]))
     scene = from_data(json.loads(Path(arguments[0]).read_text(encoding="utf-8")))
-    print(json.dumps(_solve(scene, int(arguments[1]))))
+    print(json.dumps(_solve(scene, int(arguments[1]), arguments[3:] == ["uncharged"])))
 
 
 if __name__ == "__main__":

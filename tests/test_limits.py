@@ -17,10 +17,11 @@ class Path:
     tried: list[float]
 
     def __init__(self, scene, needed, comm, on_step, on_load):
-        self.contact = scene.mesh.contact
+        self.contact, self.on_load = scene.mesh.contact, on_load
 
     def run(self):
         Path.tried.append(self.contact)
+        self.on_load()
         if self.contact > 10e-6:
             raise StepFailed(f"lost at {self.contact:g}")
 
@@ -29,7 +30,11 @@ class Keeper:
     """Keeps nothing but the mesh it saw."""
 
     def __init__(self, simulation):
-        self.contact = simulation.contact
+        self.contact, self.states = simulation.contact, {}
+        Keeper.kept = self.states
+
+    def keep(self, name):
+        self.states[name] = self.contact
 
     def solve(self):
         return self.contact
@@ -43,14 +48,20 @@ def path(monkeypatch):
 
 
 def test_path_that_is_lost_is_followed_on_a_finer_mesh(path):
-    assert limits._path(Scene(), MPI.COMM_SELF) == 10e-6
+    assert limits._path(Scene(), False, MPI.COMM_SELF) == 10e-6
     assert Path.tried == [20e-6, 10e-6]
+
+
+@pytest.mark.parametrize(("uncharged", "kept"), [(True, {"press": 10e-6}), (False, {})])
+def test_uncharged_contact_is_kept_where_it_is_asked_for(path, uncharged, kept):
+    limits._path(Scene(), uncharged, MPI.COMM_SELF)
+    assert Keeper.kept == kept
 
 
 def test_path_that_is_lost_on_all_meshes_is_a_failure(path, monkeypatch):
     monkeypatch.setattr(limits, "_STARTS", (40e-6, 20e-6))
     with pytest.raises(StepFailed, match="lost at 2e-05"):
-        limits._path(Scene(), MPI.COMM_SELF)
+        limits._path(Scene(), False, MPI.COMM_SELF)
 
 
 def test_meshes_are_halved_in_all_sizes():
@@ -64,7 +75,7 @@ def test_what_is_known_is_not_asked_again(tmp_path, monkeypatch):
     asked = []
 
     def run(module, arguments, limit):
-        asked.append(arguments[0])
+        asked.append(arguments[3:])
         scene = json.loads((tmp_path / arguments[0]).read_text(encoding="utf-8"))
         if scene["voltage"] == 50.0:
             return End(1, "CRASH_1", "no equilibrium", "")
@@ -72,7 +83,7 @@ def test_what_is_known_is_not_asked_again(tmp_path, monkeypatch):
 
     monkeypatch.setattr(limits, "run", run)
     scenes = {"good": Scene(), "bad": Scene(voltage=50.0)}
-    found = limits.ask_all(scenes, 3, tmp_path, 1)
+    found = limits.ask_all(scenes, 3, tmp_path, 1, uncharged=False)
     assert found == {"good": {"levels": []}, "bad": {"failure": "CRASH_1: no equilibrium"}}
     assert limits.ask_all(scenes, 3, tmp_path, 1) == found
-    assert len(asked) == 3
+    assert asked == [[], [], ["uncharged"]]

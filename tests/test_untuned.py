@@ -86,7 +86,7 @@ def test_page_counts_the_scenes_that_met_it(tmp_path, value, words):
     assert words not in accuracy.loop_tables(out), "its limit is not there yet"
     (tmp_path / "limits").mkdir()
     told = {"levels": [{"values": {"slip_mu_app": 0.5 + d}} for d in (0.004, 0.002, 0.001)]}
-    (tmp_path / "limits" / f"{key(plain)}-{accuracy.DRAWN_LEVELS}.json").write_text(json.dumps(told), encoding="utf-8")
+    (tmp_path / "limits" / f"{key(plain)}-{accuracy.LEVELS}.json").write_text(json.dumps(told), encoding="utf-8")
     assert limits.limits(told)["slip_mu_app"].value == pytest.approx(0.5, rel=1e-12)
     page = accuracy.loop_tables(out)
     assert words in page
@@ -98,7 +98,7 @@ def test_drawn_scene_that_fails_has_not_met_it(tmp_path):
     name, (scene, plain) = next((n, found) for n, found in accuracy.loops().items() if found[1] != DEFAULT)
     (tmp_path / "limits").mkdir()
     known = {"levels": [{"values": {"slip_mu_app": 0.5}}] * 3}
-    (tmp_path / "limits" / f"{key(plain)}-{accuracy.DRAWN_LEVELS}.json").write_text(json.dumps(known), encoding="utf-8")
+    (tmp_path / "limits" / f"{key(plain)}-{accuracy.LEVELS}.json").write_text(json.dumps(known), encoding="utf-8")
     (out / key(scene)).mkdir(parents=True)
     (out / key(scene) / "summary.json").write_text(json.dumps({"failure": "no equilibrium"}), encoding="utf-8")
     page = accuracy.loop_tables(out)
