@@ -109,6 +109,21 @@ def test_guess_of_a_load(flat, slipping, guess):
     assert float(solver.problem.guess.value) == guess
 
 
+@pytest.mark.parametrize(("mu_f", "on_cone", "runs"), [(MU_F, True, 2), (MU_F, False, 1), (0.0, True, 1)])
+def test_other_guess_is_tried_where_points_may_be_on_the_cone(flat, monkeypatch, mu_f, on_cone, runs):
+    solver, guesses = make(flat, mu_f), []
+
+    def lost(shifted):
+        guesses.append(float(solver.problem.guess.value))
+        return -1
+
+    monkeypatch.setattr(solver, "_run", lost)
+    solver.new_load(Control(), 0.0, on_cone=on_cone)
+    with pytest.raises(NotConverged):
+        solver.solve()
+    assert guesses == [STICKS, SLIPS][:runs]
+
+
 def test_steady_slip_is_solved_at_once(body):
     """At full slip a further translation is the first step of Newton's method if points are taken to slip on."""
     solver = make(body, MU_F, eps_t=5e10, held=False)

@@ -43,7 +43,8 @@ _FORCE, _VOLTAGE, _SINK, _SLIDE = 0.067, 0.25, 40e-6, 60e-6
 _SMALLEST = 1e-3  # step below which a load is given up, over the largest
 _MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on when the bone moves
 _LEAP = 1.5  # step tried where the loop over the scales cycles, over the one that led there
-_SMALLEST_BIT = 1 / 64  # of the forces that a state from elsewhere is out of balance by
+_WAYS = "at once", "settled", "bit by bit", "creeping"  # to an equilibrium from a state from elsewhere
+_SMALLEST_BIT = 1 / 8  # of the forces that such a state is out of balance by
 _FEW = 6  # factorisations; a step that took no more lets the next one grow
 _UNCUT = 3  # steps in a row that were not cut, after which the next one grows however hard they were
 _CUT = 4  # steps in a row that were, each a part of what is left up to a jump that none gets over
@@ -251,28 +252,28 @@ class Continuation:
 
         On another mesh of the same body the carried skin is nearly right, and the strain in the elements next to it is
         not. Where Newton's method does not find an equilibrium from there at once, the body is brought into balance
-        with its skin held where it is, from there it is tried again, if need be as pseudo-transient continuation, and
-        last what is left out of balance is let go bit by bit.
+        with its skin held where it is, and it is tried again from there; then what is left out of balance is let go bit
+        by bit; then pseudo-transient continuation is tried.
 
         Args:
             name: what the state is called in a failure.
-            same_body: whether the state is of this body; else its skin is not where it could be held, and all that is
-                left is pseudo-transient continuation.
+            same_body: whether the state is of this body; else its skin is not where it could be held, and continuation
+                alone is tried.
 
         Raises:
             StepFailed: no equilibrium was found from there.
         """
         self._now = self._snapshot()
         attempt = Attempt()
-        at_once, settled, bit_by_bit = range(3)
-        for way in (at_once, settled, bit_by_bit) if same_body else (at_once, settled):
+        for way in _WAYS if same_body else (_WAYS[0], _WAYS[-1]):
             try:
-                if way == settled and same_body:
+                if way == "settled":
                     self._let_go(1.0, skin=True)
                     self._now = self._snapshot()
-                if way == bit_by_bit:
+                if way == "bit by bit":
                     self._let_go(0.5)
-                self._try((replace(self._now.control), self._now.voltage), attempt, creep=way == settled)
+                load = replace(self._now.control), self._now.voltage
+                self._try(load, attempt, creep=way == "creeping", on_cone=False)
                 self._accept()
                 return attempt
             except NotConverged as failure:
@@ -292,7 +293,7 @@ class Continuation:
             NotConverged: not even the smallest bit could be.
         """
         solver = self.solver
-        solver.new_load(replace(self._now.control), self._now.voltage, slipping=True)
+        solver.new_load(replace(self._now.control), self._now.voltage, on_cone=False)
         solver.hold(skin)
         try:
             while solver.held > 0:
@@ -308,11 +309,11 @@ class Continuation:
             solver.release()
 
     # -- one step --------------------------------------------------------------------------------------
-    def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool) -> None:
+    def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool, on_cone: bool = True) -> None:
         counts = self.solver.counts
         newton, factorisations, shifted = counts.newton, counts.factorisations, counts.pseudo_transient
         moves = load[0].x != self._now.control.x
-        self.solver.new_load(*load, slipping=moves and self.slip[0] > _MANY)
+        self.solver.new_load(*load, slipping=moves and self.slip[0] > _MANY, on_cone=on_cone)
         try:
             self.coupling.solve(creep)
         finally:

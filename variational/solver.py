@@ -118,6 +118,7 @@ class Solver:
         self._inverted = self._shifted = False
         self._not_a_number = ""  # what is not, in the iterate last rejected
         self._control_rows = False
+        self._on_cone = problem.anchor is not None
         self._stale = True  # whether the factorisation must be made anew before it is used
         self._kept = False  # whether the present iteration uses a factorisation made before it
         self._refused = False  # whether the present iteration stayed where it was
@@ -300,16 +301,18 @@ class Solver:
         return float(self.layout.comm.allreduce(part, op=MPI.MIN))
 
     # -- use -------------------------------------------------------------------------------------------
-    def new_load(self, control: Control, voltage: float, slipping: bool = False) -> None:
+    def new_load(self, control: Control, voltage: float, slipping: bool = False, on_cone: bool = True) -> None:
         """Prescribe a load; the next solve starts from the tangent of the present state, not from a kept one.
 
         Args:
             control: what is prescribed of the bone.
             voltage: (V).
             slipping: points on the friction cone are first taken for slipping on, not for sticking.
+            on_cone: whether there are any, as the last accepted state of a path leaves; else no other guess is tried.
         """
         self.control, self.problem.voltage.value = control, voltage
         self.problem.guess.value = SLIPS if slipping else STICKS
+        self._on_cone = on_cone and self.problem.anchor is not None
         self._stale = True
 
     def hold(self, skin: bool = False) -> None:
@@ -345,8 +348,9 @@ class Solver:
         start = self.x.array_r.copy()
         self._inverted, self._not_a_number = False, ""
         reason = self._run(shifted=False)
-        friction = self.problem.anchor is not None
-        if reason <= 0 and not creep and friction:  # the other guess for the points on the cone, which is then kept
+        if (
+            reason <= 0 and not creep and self._on_cone
+        ):  # the other guess for the points on the cone, which is then kept
             self.x.array_w[:] = start
             self.problem.guess.value = SLIPS if self.problem.guess.value == STICKS else STICKS
             self._stale = True
