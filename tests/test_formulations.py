@@ -200,10 +200,12 @@ def test_points_that_slip_are_expected_to_slip_on():
     """Once more than half of the points slip and the bone moves on, a step starts from the tangent of slip."""
     run = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.125e-3)), SLIDING[0], MU_F, held=False)
     expected, new_load = [], run.solver.new_load
-    run.solver.new_load = lambda *load, slipping, on_cone: (
-        expected.append(slipping),
-        new_load(*load, slipping, on_cone),
-    )
+
+    def noted(*load, slipping, on_cone):
+        expected.append(slipping)
+        new_load(*load, slipping, on_cone)
+
+    run.solver.new_load = noted
     run.run(Target("press", f_ext=2.0))
     for x in (16e-6, 64e-6, 128e-6, 129e-6):
         run.run(Target("slide", bone_x=x))

@@ -348,9 +348,7 @@ class Solver:
         start = self.x.array_r.copy()
         self._inverted, self._not_a_number = False, ""
         reason = self._run(shifted=False)
-        if (
-            reason <= 0 and not creep and self._on_cone
-        ):  # the other guess for the points on the cone, which is then kept
+        if reason <= 0 and not creep and self._on_cone:  # the other guess for them, which is then kept
             self.x.array_w[:] = start
             self.problem.guess.value = SLIPS if self.problem.guess.value == STICKS else STICKS
             self._stale = True

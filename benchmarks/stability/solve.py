@@ -68,9 +68,9 @@ class Recorder(Continuation):
         cells = self.problem.cell_tags.find(tag)
         return float(compat.evaluate_on_cells(self._jacobian, self.problem.mesh, cells).min())
 
-    def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool) -> None:
+    def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool, on_cone: bool = True) -> None:
         try:
-            super()._try(load, attempt, creep)
+            super()._try(load, attempt, creep, on_cone)
         except NotConverged as failure:
             if failure.inverted:
                 layers = {name: tag for name, tag in tags.LAYERS.items() if tag in strip.LAYERS}
