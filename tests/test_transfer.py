@@ -1,5 +1,6 @@
 """States carried from mesh to mesh: what returns exactly, and that full slip is the path's; on any number of ranks."""
 
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
 
@@ -199,8 +200,14 @@ def test_a_state_not_found_at_once_is_found(bodies, reached, monkeypatch, failur
         ways.append(skin)
         hold(skin)
 
+    def loaded(*load, on_cone=True, **more):
+        assert not on_cone, "another guess would be tried, of which no point knows"
+        new_load(*load, on_cone=on_cone, **more)
+
+    new_load = solver.new_load
     monkeypatch.setattr(path.coupling, "solve", fails)
     monkeypatch.setattr(solver, "hold", noted)
+    monkeypatch.setattr(solver, "new_load", loaded)
     attempt = path.adopt("full slip")
     assert attempt.cutbacks == failures * ["DIVERGED_LOCAL_MIN"]
     assert attempt.pseudo_transient == 0
@@ -212,6 +219,30 @@ def test_a_state_not_found_at_once_is_found(bodies, reached, monkeypatch, failur
         np.testing.assert_array_equal(calls[3][2], calls[1][2])
     assert solver.held == 0
     assert -solver.reaction[0] == pytest.approx(reached[FINE][2], rel=2e-6)
+
+
+@pytest.mark.parametrize(
+    ("largest", "tried", "end"),
+    [(0.3, [0.5, 0.75, 0.5, 0.25, 0.0], nullcontext()), (0.1, [0.5, 0.75, 0.875], pytest.raises(NotConverged))],
+)
+def test_bits_are_halved_down_to_an_eighth(bodies, reached, monkeypatch, largest, tried, end):
+    """What is held after each bit, where none above a size can be let go."""
+    path = prepare(bodies[FINE])
+    give(reached[COARSE][1], path.coupling, SLIDE)
+    solver, held, done = path.solver, [], 1.0
+
+    def solve(creep=False):
+        nonlocal done
+        held.append(solver.held)
+        if done - solver.held > largest:
+            raise NotConverged("DIVERGED_LOCAL_MIN", False)
+        done = solver.held
+
+    monkeypatch.setattr(solver, "solve", solve)
+    with end:
+        path._let_go(0.5)
+    assert held == tried
+    assert solver.held == 0
 
 
 def test_bits_are_let_go_where_the_body_cannot_be_settled(bodies, reached, monkeypatch):

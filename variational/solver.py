@@ -333,7 +333,7 @@ class Solver:
 
     def release(self) -> None:
         """Let go of all that :meth:`hold` held."""
-        self.held, self._skin_place, self._stale = 0.0, None, True
+        self.held, self._skin_place = 0.0, None
 
     def solve(self, creep: bool = False) -> None:
         """Find the equilibrium near ``x`` for the current loads and leave it in ``x`` and the problem's u.
