@@ -22,6 +22,7 @@ from fingerpad.sweep import progress
 
 Array = NDArray[np.float64]
 LOW, HIGH = 0.5, 3.0  # effectivities that are good enough
+_EDGES_AT = (10, 20)  # facets to the half-width
 _KNOBS = ("contact", "growth", "receptor")
 # Counts, and what is f_T over the prescribed force.
 _LEFT_OUT = ("slip_mu_app", "normal_ridges_in_contact", "slip_ridges_in_contact")
@@ -37,8 +38,14 @@ No estimate is judged of the finest run. The error of µ_app is that of f_T."""
 _HERTZ = """## Hertz's contact
 
 A cylinder on meshes of which each has half the facets' length of the one before (`benchmarks/hertz.py`); the contact
-length is known but for {bar:.1g} %. Its two edges move facet by facet, so that it converges by fits and starts. A
-finger has some thirty edges, whose fits cancel."""
+length is known but for {bar:.1g} %. Its two edges move facet by facet, so that it converges by fits and starts, and
+what halving the facets changes says little of one edge. A finger has some thirty, whose fits cancel."""
+_EDGES = """How far an edge is off depends on where in a facet it should be ({places} places, in lengths of a facet;
+negative if the contact is too short):
+
+| facets to the half-width | mean | root of the mean square | from | to |
+|---|---|---|---|---|
+{rows}"""
 
 
 def shares(found: Sequence[ArrayLike], name: str) -> list[float]:
@@ -98,7 +105,7 @@ def table(name: str, out: Path) -> tuple[str, list[float]]:
 
 
 def hertz_table() -> str:
-    """Return the section of Hertz's contact, which takes some seconds."""
+    """Return the section of Hertz's contact, which takes a minute."""
     lines, telling = ["| half-width (mm) | facets | estimate (%) | error (%) | effectivity |", "|---" * 5 + "|"], []
     with progress() as bar:
         for a in bar.track(hertz.HALF_WIDTHS, description="Hertz's contact"):
@@ -110,7 +117,16 @@ def hertz_table() -> str:
                 cells = [f"{1e3 * a:.3f}", f"{a / hertz.HALF_WIDTH * facets:.1f}"]
                 cells += [f"{share * of:.2g}", f"{error * of:.2g}", cell(share / error, clear)]
                 lines.append("| " + " | ".join(cells) + " |")
-    return "\n\n".join([_HERTZ.format(bar=100 * hertz.BAR), tally(telling), "\n".join(lines)])
+    return "\n\n".join([_HERTZ.format(bar=100 * hertz.BAR), tally(telling), "\n".join(lines), _edges()])
+
+
+def _edges() -> str:
+    rows = []
+    for facets in _EDGES_AT:
+        e = hertz.edge_errors(facets)
+        cells = [e.mean(), np.sqrt(np.mean(e**2)), e.min(), e.max()]
+        rows.append(f"| {facets} | " + " | ".join(f"{value:.3f}" for value in cells) + " |")
+    return _EDGES.format(places=hertz.PLACES, rows="\n".join(rows))
 
 
 def knob_tables(out: Path) -> str:

@@ -1,12 +1,15 @@
 """Hertz's line contact on meshes that are halved: a contact length whose error is known exactly.
 
 The cylinder of benchmarks/verification/normal_contact.py, pressed to half-widths that end anywhere in a facet. Its
-length in contact has two edges, mirror images of one another, where the finger's has some thirty.
+length in contact has two edges, mirror images of one another, where the finger's has some thirty. How far each is off
+depends on where in a facet it should be, and on nothing else: near an edge the pressure falls with the root of the
+distance, which has no length of its own, so that the facets' is the only one.
 """
 
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, NU, RADIUS, SPAN, YOUNG
 from benchmarks.verification.over_screen import formulations, over_screen
@@ -14,9 +17,11 @@ from geometry.benchmarks import pad
 from variational.continuation import Target
 from variational.problem import Interface, SaintVenant
 
+Array = NDArray[np.float64]
 HALF_WIDTHS = tuple(part * HALF_WIDTH for part in (0.817, 0.893, 0.961, 1.049, 1.137))
 FACETS = (5, 10, 20, 40)  # to HALF_WIDTH
 BAR = (HALF_WIDTH / SPAN) ** 2  # relative: the body is a block, not a half-space
+PLACES = 12  # of an edge in a facet
 _REACH = 1.4  # of the facets that can touch, over HALF_WIDTH
 
 
@@ -28,3 +33,17 @@ def contact_length(a: float, facets: int) -> float:
     run = over_screen(build, SaintVenant(YOUNG, NU), interface, force, touch_depth=0.5e-6, step_scale=15.0)
     run.run(Target("press", f_ext=force))
     return float(run.observer.ridge_loads(run.surface_state).length[0])
+
+
+def edge_errors(facets: int) -> Array:
+    """Return how far an edge is off, positive if beyond its place, for places spread evenly over a facet.
+
+    Args:
+        facets: to :data:`HALF_WIDTH`, about which the places are.
+
+    Returns:
+        In lengths of a facet, shape (PLACES,).
+    """
+    size = HALF_WIDTH / facets
+    places = HALF_WIDTH + size * (np.arange(PLACES) / PLACES - 0.5)
+    return np.array([contact_length(a, facets) / 2 - a for a in places]) / size

@@ -2,9 +2,10 @@
 
 import json
 
+import numpy as np
 import pytest
 
-from benchmarks import accuracy, limits, untuned
+from benchmarks import accuracy, hertz, limits, untuned
 from benchmarks.convergence import Limit
 from benchmarks.errors import DEFAULT
 from fingerpad.scene import Scene, start
@@ -104,3 +105,15 @@ def test_drawn_scene_that_fails_has_not_met_it(tmp_path):
     page = accuracy.loop_tables(out)
     assert "in 0 of 1" in page
     assert f"| {name} | no equilibrium |" in page
+
+
+def test_edges_are_spread_over_a_facet_and_judged_in_its_length(monkeypatch):
+    """Contact that is cut off at the end of the facet before: an edge is short by where in its facet it should be."""
+    size = hertz.HALF_WIDTH / 10
+
+    def cut_off(a, facets):
+        assert facets == 10
+        return 2 * size * np.floor(a / size + 1e-9)
+
+    monkeypatch.setattr(hertz, "contact_length", cut_off)
+    np.testing.assert_allclose(np.sort(-hertz.edge_errors(10)), np.arange(12) / 12, atol=1e-9)
