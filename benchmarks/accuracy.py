@@ -44,7 +44,7 @@ were drawn at random from a quarter about the default finger's lengths, material
 `benchmarks/untuned.py`), and each is asked twice: for friction and contact length, and for energy densities. *Likely*:
 the error is within what was allowed, but not by its bar; counted as met. Runs are kept, so that a cost is that of the
 version which ran it: most states were carried from mesh to mesh before their skin was put down to the screen
-(`variational/transfer.py`), and all of them before a body was settled under its skin (`variational/continuation.py`)."""
+(`variational/transfer.py`), and all before bodies were settled under their skin (`variational/continuation.py`)."""
 
 
 @dataclass(frozen=True)
