@@ -7,7 +7,8 @@ The path is run on the coarse mesh that an ``[accuracy]`` starts from. Its state
 uncharged contact where it is asked for) are solved again on each of :func:`meshes`, by halves since a state put onto
 elements a quarter of its own is far from equilibrium, and from the first of these on the scene's own. Full slip knows
 no path, so that it is that of the whole run there; normal contact keeps the friction history of the path, which the
-comparison of the scene's own mesh with a whole run on it tells the worth of (``docs/errors.md``).
+comparison of the scene's own mesh with a whole run on it tells the worth of (``docs/errors.md``). Where a state is not
+found on a mesh after the third, the limit is that of the meshes before, with the larger bar that they have.
 """
 
 import json
@@ -32,6 +33,7 @@ from variational.continuation import StepFailed
 _FIRST = {"contact": 10e-6, "growth": 0.5, "receptor": 10e-6, "interface": 120e-6}
 _HALVED = ("contact", "growth", "receptor", "interface", "coarsest")
 _STARTS = (20e-6, 10e-6, 5e-6)  # m, contact sizes of the path, the next where one fails
+_FEWEST = 3  # meshes that a limit is of, where a state is not found on a finer one
 _LIMIT = 14400.0  # s of processor time for one scene
 
 
@@ -118,7 +120,13 @@ def _solve(scene: Scene, levels: int, uncharged: bool) -> dict[str, Any]:
     path = _path(scene, uncharged, comm)
     solves = [path]
     for mesh in meshes(scene.mesh, levels):
-        solves.append(solve_again(scene.model_copy(update={"mesh": mesh}), plan(scene), solves[-1].states, comm))
+        try:
+            solves.append(solve_again(scene.model_copy(update={"mesh": mesh}), plan(scene), solves[-1].states, comm))
+        except StepFailed as error:
+            if len(solves) <= _FEWEST:
+                raise
+            print(error, file=sys.stderr)
+            break
         print(mesh, solves[-1].unknowns, solves[-1].factorisations, file=sys.stderr)
     own = solve_again(scene, plan(scene), solves[1].states, comm)
 

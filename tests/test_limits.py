@@ -1,6 +1,7 @@
 """Limits of scenes: from which path, what is kept, and that all is asked for once."""
 
 import json
+from types import SimpleNamespace
 
 import pytest
 from mpi4py import MPI
@@ -87,3 +88,23 @@ def test_what_is_known_is_not_asked_again(tmp_path, monkeypatch):
     assert found == {"good": {"levels": []}, "bad": {"failure": "CRASH_1: no equilibrium"}}
     assert limits.ask_all(scenes, 3, tmp_path, 1) == found
     assert asked == [[], [], ["uncharged"]]
+
+
+@pytest.mark.parametrize(("lost", "levels"), [(4, 4), (3, 3), (2, None)])
+def test_limit_is_of_the_meshes_before_one_on_which_a_state_is_lost(monkeypatch, lost, levels):
+    """The meshes are numbered from zero; of fewer than three no limit is made."""
+    sizes = [mesh.contact for mesh in limits.meshes(Scene().mesh, 4)]
+
+    def solved(scene, needed, states, comm):
+        if sizes[lost:] and scene.mesh.contact == sizes[lost]:
+            raise StepFailed("lost")
+        cost = {"unknowns": 1, "factorisations": 1, "processor_seconds": 0.0}
+        return SimpleNamespace(states={}, mesh=scene.mesh, values=dict, **cost)
+
+    monkeypatch.setattr(limits, "solve_again", solved)
+    monkeypatch.setattr(limits, "_path", lambda scene, uncharged, comm: solved(Scene(), None, {}, comm))
+    if levels is None:
+        with pytest.raises(StepFailed, match="lost"):
+            limits._solve(Scene(), 4, uncharged=False)
+    else:
+        assert len(limits._solve(Scene(), 4, uncharged=False)["levels"]) == levels
