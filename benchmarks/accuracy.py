@@ -136,6 +136,7 @@ def loop_tables(out: Path) -> str:
     whole = None if base is None else base["unknowns"] * base["factorisations"]
     lines = ["| scene | quantity | allowed (%) | estimate (%) | error (%) | effectivity | met |", "|---" * 7 + "|"]
     costs = ["| scene | contact (µm) | growth | sites (µm) | unknowns | solves | cost |", "|---" * 7 + "|"]
+    coarser = list[str]()  # whose limit is of fewer meshes
     met, effectivities, asked_for = dict[str, list[bool]](), list[float](), list[float]()
     for name, (scene, plain) in loops().items():
         summary, known = result(scene, out), _known(plain, out)
@@ -148,6 +149,7 @@ def loop_tables(out: Path) -> str:
             if plain != DEFAULT:
                 met.setdefault(_asked(scene), []).append(False)
             continue
+        coarser += [name] if len(known["levels"]) < LEVELS else []
         rows = judged(summary, limits.limits(known))
         good = [row.met != "no" for row in rows if row.met]
         if plain != DEFAULT:
@@ -169,6 +171,10 @@ def loop_tables(out: Path) -> str:
     verdicts = [f"{asked} in {sum(good)} of {len(good)}" for asked, good in met.items()]
     verdict = f"**Met in the scenes drawn and run whose limit is known: {'; '.join(verdicts) or 'none is'}.**"
     verdict += f" {tally(effectivities)} Of what was asked for: {tally(asked_for)}"
+    if coarser:
+        verdict += (
+            f" A state was not found on the last mesh, so that the limit is of those before: {'; '.join(coarser)}."
+        )
     return "\n\n".join([_LOOPS, verdict, "\n".join(lines), "What was chosen and what it cost:", "\n".join(costs)])
 
 

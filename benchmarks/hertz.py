@@ -2,8 +2,8 @@
 
 The cylinder of benchmarks/verification/normal_contact.py, pressed to half-widths that end anywhere in a facet. Its
 length in contact has two edges, mirror images of one another, where the finger's has some thirty. How far each is off
-depends on where in a facet it should be, and on nothing else: near an edge the pressure falls with the root of the
-distance, which has no length of its own, so that the facets' is the only one.
+depends on where in a facet it should be: near an edge the pressure falls with the root of the distance, which has no
+length of its own, so that the facets' is the only one (the penalty's falls with it).
 """
 
 from functools import partial
@@ -35,15 +35,11 @@ def contact_length(a: float, facets: int) -> float:
     return float(run.observer.ridge_loads(run.surface_state).length[0])
 
 
-def edge_errors(facets: int) -> Array:
-    """Return how far an edge is off, positive if beyond its place, for places spread evenly over a facet.
+def places(facets: int) -> Array:
+    """Return half-widths (m) about :data:`HALF_WIDTH` that end all over a facet, evenly; shape (PLACES,)."""
+    return HALF_WIDTH + HALF_WIDTH / facets * (np.arange(PLACES) / PLACES - 0.5)
 
-    Args:
-        facets: to :data:`HALF_WIDTH`, about which the places are.
 
-    Returns:
-        In lengths of a facet, shape (PLACES,).
-    """
-    size = HALF_WIDTH / facets
-    places = HALF_WIDTH + size * (np.arange(PLACES) / PLACES - 0.5)
-    return np.array([contact_length(a, facets) / 2 - a for a in places]) / size
+def edge_error(a: float, facets: int) -> float:
+    """Return how far an edge of the contact is beyond its place, in lengths of a facet; negative if short of it."""
+    return (contact_length(a, facets) / 2 - a) / (HALF_WIDTH / facets)

@@ -1,7 +1,8 @@
 """What scenes tend to: states of a coarse path solved again on meshes with all sizes halved together.
 
-python3 -m benchmarks.limits SCENE.json LEVELS LIMIT [uncharged]    one scene, as :func:`ask` starts it; JSON on
-standard output
+python3 -m benchmarks.limits SCENE.json LEVELS LIMIT [uncharged]
+
+One scene, as :func:`ask` starts it; JSON on standard output.
 
 The path is run on the coarse mesh that an ``[accuracy]`` starts from. Its states (normal contact, full slip, and
 uncharged contact where it is asked for) are solved again on each of :func:`meshes`, by halves since a state put onto

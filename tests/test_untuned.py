@@ -95,7 +95,8 @@ def test_page_counts_the_scenes_that_met_it(tmp_path, value, words, tallies):
     (tmp_path / "limits").mkdir()
     values = [dict.fromkeys(("slip_mu_app", "slip_contact_length"), 0.5 + d) for d in (0.004, 0.002, 0.001)]
     told = {"levels": [{"values": each} for each in values]}
-    (tmp_path / "limits" / f"{key(plain)}-{accuracy.LEVELS}.json").write_text(json.dumps(told), encoding="utf-8")
+    file = tmp_path / "limits" / f"{key(plain)}-{accuracy.LEVELS}.json"
+    file.write_text(json.dumps(told), encoding="utf-8")
     assert limits.limits(told)["slip_mu_app"].value == pytest.approx(0.5, rel=1e-12)
     page = accuracy.loop_tables(out)
     assert words in page
@@ -104,6 +105,9 @@ def test_page_counts_the_scenes_that_met_it(tmp_path, value, words, tallies):
         "{} effectivities are between 0.5 and 3, {}. Of what was asked for: {} effectivities are between 0.5 and 3, {}."
     )
     assert words.format(*tallies) in page
+    assert f"so that the limit is of those before: {name}." in page
+    file.write_text(json.dumps({"levels": [told["levels"][0], *told["levels"]]}), encoding="utf-8")
+    assert "the limit is of those before" not in accuracy.loop_tables(out)
 
 
 def test_drawn_scene_that_fails_has_not_met_it(tmp_path):
@@ -128,4 +132,5 @@ def test_edges_are_spread_over_a_facet_and_judged_in_its_length(monkeypatch):
         return 2 * size * np.floor(a / size + 1e-9)
 
     monkeypatch.setattr(hertz, "contact_length", cut_off)
-    np.testing.assert_allclose(np.sort(-hertz.edge_errors(10)), np.arange(12) / 12, atol=1e-9)
+    errors = [hertz.edge_error(a, 10) for a in hertz.places(10)]
+    np.testing.assert_allclose(np.sort(errors), np.arange(-11, 1) / 12, atol=1e-9)

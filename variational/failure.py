@@ -11,6 +11,9 @@ _MUMPS = {
 }
 
 
+_REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
+
+
 class NotConverged(RuntimeError):
     """A solve without an equilibrium.
 
@@ -37,3 +40,20 @@ def linear_failure(pc: PETSc.PC) -> tuple[str, bool]:
     code = int(pc.getFactorMatrix().getMumpsInfog(1))
     name = next((name for name, codes in _MUMPS.items() if code in codes), "MUMPS_FAILED")
     return f"{name} (INFOG(1) = {code})", name == "MUMPS_OUT_OF_MEMORY"
+
+
+def snes_failure(snes: PETSc.SNES, inverted: bool, not_a_number: str) -> NotConverged:
+    """Return why the last solve of SNES ended without an equilibrium.
+
+    Args:
+        snes: that solved.
+        inverted: elements were turned inside out by some iterate.
+        not_a_number: what was not one, or empty.
+    """
+    if not_a_number:
+        return NotConverged(f"NOT_A_NUMBER in the {not_a_number}", False)
+    reason = int(snes.getConvergedReason())
+    if reason == PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE:
+        name, hopeless = linear_failure(snes.getKSP().getPC())
+        return NotConverged(name, inverted, hopeless)
+    return NotConverged(_REASONS.get(reason, str(reason)), inverted)

@@ -25,7 +25,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from variational.failure import NotConverged, linear_failure
+from variational.failure import snes_failure
 from variational.layout import RigidRimLayout
 from variational.problem import SLIPS, STICKS, Problem
 from variational.timing import Counts, Timings
@@ -52,7 +52,6 @@ _HALVINGS = 5  # of a step that would turn elements inside out or
 _GROWS = 10.0  # make the residual grow more than this
 _SHIFT = 2e9  # Pa/m, eta at the start
 _SHIFT_FALL, _SHIFT_RISE = 0.4, 4.0  # of eta an iteration
-_REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
 
 
 @dataclass
@@ -118,7 +117,7 @@ class Solver:
         self._inverted = self._shifted = False
         self._not_a_number = ""  # what is not, in the iterate last rejected
         self._control_rows = False
-        self._on_cone = problem.anchor is not None
+        self._on_cone = True  # whether points may be on the friction cone
         self._stale = True  # whether the factorisation must be made anew before it is used
         self._kept = False  # whether the present iteration uses a factorisation made before it
         self._refused = False  # whether the present iteration stayed where it was
@@ -312,7 +311,7 @@ class Solver:
         """
         self.control, self.problem.voltage.value = control, voltage
         self.problem.guess.value = SLIPS if slipping else STICKS
-        self._on_cone = on_cone and self.problem.anchor is not None
+        self._on_cone = on_cone
         self._stale = True
 
     def hold(self, skin: bool = False) -> None:
@@ -348,7 +347,8 @@ class Solver:
         start = self.x.array_r.copy()
         self._inverted, self._not_a_number = False, ""
         reason = self._run(shifted=False)
-        if reason <= 0 and not creep and self._on_cone:  # the other guess for them, which is then kept
+        friction = self.problem.anchor is not None
+        if reason <= 0 and not creep and friction and self._on_cone:  # the other guess for them, which is then kept
             self.x.array_w[:] = start
             self.problem.guess.value = SLIPS if self.problem.guess.value == STICKS else STICKS
             self._stale = True
@@ -358,15 +358,7 @@ class Solver:
             self.x.array_w[:] = start
             reason = self._run(shifted=True)
         if reason <= 0:
-            raise self._failure(reason)
-
-    def _failure(self, reason: int) -> NotConverged:
-        if self._not_a_number:
-            return NotConverged(f"NOT_A_NUMBER in the {self._not_a_number}", False)
-        if reason == PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE:
-            name, hopeless = linear_failure(self._snes.getKSP().getPC())
-            return NotConverged(name, self._inverted, hopeless)
-        return NotConverged(_REASONS.get(reason, str(reason)), self._inverted)
+            raise snes_failure(self._snes, self._inverted, self._not_a_number)
 
     def _run(self, shifted: bool) -> int:
         self._shifted = shifted
