@@ -43,9 +43,9 @@ class Zone:
 
     def _lowest_outside(self) -> float:
         """Return the lowest height (m) of the skin that cannot touch."""
-        V, u = self._problem.V, self._problem.u
+        V, u = self._problem.V, self._problem.displacement()
         return self._observer.lowest_outside(
-            V.tabulate_dof_coordinates()[self._nodes, 1] + u.x.array.reshape(-1, 2)[self._nodes, 1]
+            V.tabulate_dof_coordinates()[self._nodes, 1] + u[self._nodes, 1]
         )
 
     def check(self, names: list[int], loads: RidgeLoads) -> None:

@@ -50,8 +50,9 @@ def place(solver: Solver, y: float) -> None:
     stretch = brentq(lambda s: stress(s) - pull, 0.9, 1.1, xtol=1e-15)
     bone, skin = y + (stretch - 1) * HEIGHT - GAP, y - GAP
     problem = solver.problem
-    problem.u.interpolate(lambda x: np.stack([0 * x[0], skin + (bone - skin) * (x[1] - GAP) / HEIGHT]))
-    solver.layout.from_nodes(problem.u.x.array, np.array([0.0, bone]), solver.x)
+    x = problem.V.tabulate_dof_coordinates()
+    u = np.stack([0 * x[:, 0], skin + (bone - skin) * (x[:, 1] - GAP) / HEIGHT], axis=1)
+    solver.set_displacement(u, np.array([0.0, bone]))
     solver.control = Control(0.0, bone)
     solver.solve()
 

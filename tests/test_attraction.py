@@ -35,7 +35,7 @@ def tilted(cells: int, low: float, high: float) -> Problem:
     """Return a block with its bottom on a slope between two heights."""
     body = load(MPI.COMM_SELF, partial(block, 1e-3, 0.25e-3, 1e-3 / cells))
     problem = make(body)
-    problem.u.interpolate(lambda x: np.stack([0.1 * x[0], low + (high - low) * (x[0] / 1e-3 + 0.5)]))
+    problem.w.interpolate(lambda x: np.stack([0.1 * x[0], low + (high - low) * (x[0] / 1e-3 + 0.5)]))
     return problem
 
 
@@ -43,7 +43,7 @@ def end_potentials(problem):
     """Return rows of the bottom's two end nodes and the potential there."""
     x = problem.V.tabulate_dof_coordinates()
     ends = [int(np.argmin(np.hypot(x[:, 0] - side * 0.5e-3, x[:, 1]))) for side in (-1, 1)]
-    y = x[ends, 1] + problem.u.x.array.reshape(-1, 2)[ends, 1]
+    y = x[ends, 1] + problem.w.x.array.reshape(-1, 2)[ends, 1]
     outside = -EPS_0 * VOLTAGE**2 / 2 / (H_0 + y)
     return ends, outside
 
@@ -90,7 +90,7 @@ def test_attraction_is_the_traction():
     errors = []
     for cells in (8, 16, 32):
         problem = tilted(cells, 5e-6, 5e-6)
-        problem.u.interpolate(
+        problem.w.interpolate(
             lambda x: np.stack([0.02e-3 * np.sin(4e3 * x[0]), 8e-6 + 4e-6 * np.sin(5e3 * x[0] + 0.3) - 0.05 * x[1]])
         )
         ends, potentials = end_potentials(problem)
@@ -108,7 +108,7 @@ def test_attraction_of_a_ridge():
     forces' horizontal part, there to be compared, is a seventh of the largest.
     """
     problem = make(load(MPI.COMM_SELF, partial(ridge, 10e-6)))
-    problem.u.interpolate(lambda x: np.stack([0.3 * x[1] + 0.1 * x[0], -1e-6 - 0.2 * x[1] + 0.01 * x[0]]))
+    problem.w.interpolate(lambda x: np.stack([0.3 * x[1] + 0.1 * x[0], -1e-6 - 0.2 * x[1] + 0.01 * x[0]]))
     found, expected = attraction(problem), traction(problem)
     x = problem.V.tabulate_dof_coordinates()
     inner = np.abs(x[:, 0]) < 0.2e-3

@@ -120,7 +120,7 @@ def test_contact_springs_give_the_contact_forces():
     problem, observer = solver.problem, Observer(solver.problem)
     energies, step = [], 1e-9
     for sign in (-1, 0, 1):
-        problem.u.interpolate(lambda x, s=sign: np.stack([5e-8 + s * step + 0 * x[0], -1e-7 + s * step + 0 * x[0]]))
+        problem.w.interpolate(lambda x, s=sign: np.stack([5e-8 + s * step + 0 * x[0], -1e-7 + s * step + 0 * x[0]]))
         state = observer.state()
         energies.append(problem.surface.per_ridge(problem.interface.formulation.stored(state))[0])
         if sign == 0:

@@ -245,7 +245,7 @@ def trajectory(chance: float, seed: int) -> tuple[list[dict[str, np.ndarray]], i
         states.append(
             {
                 "unknowns": solver.x.array_r.copy(),
-                "displacement": problem.u.x.array.copy(),
+                "displacement": problem.w.x.array.copy(),
                 "friction history": problem.anchor.x.array.copy(),
                 "air gaps": coupling.d_eq.copy(),
                 "reaction": solver.reaction.copy(),

@@ -112,7 +112,7 @@ class Path:
 def test_forms_without_voltage(body, law):
     """To the last bit the state at 0 V of the forms with attraction; they read two constants and one field less."""
     whole, less = Path(body, Interface(law, 0.25, H_0, ELECTROSTATIC)), Path(body, Interface(law, 0.25, H_0, None))
-    assert np.array_equal(whole.problem.u.x.array, less.problem.u.x.array)
+    assert np.array_equal(whole.problem.w.x.array, less.problem.w.x.array)
     assert less.solver.counts == whole.solver.counts
     assert [a - b for a, b in zip(whole.compiled, less.compiled, strict=True)] == [2, 1]
     assert np.isnan(less.path.coupling.d_eq).all() and not np.isnan(whole.path.coupling.d_eq).any()
@@ -134,8 +134,8 @@ def test_contact_of_an_augmented_lagrangian_is_corrected_without_voltage(body):
 def test_forms_without_friction(body, law):
     """The limit of vanishing friction, but for 1e-9 of it times some ten steps; fewer fields, no more work."""
     whole, less = Path(body, Interface(law, 1e-9, H_0, None)), Path(body, Interface(law, 0.0, H_0, None))
-    largest = np.abs(less.problem.u.x.array).max()
-    np.testing.assert_allclose(less.problem.u.x.array, whole.problem.u.x.array, rtol=0, atol=1e-7 * largest)
+    largest = np.abs(less.problem.w.x.array).max()
+    np.testing.assert_allclose(less.problem.w.x.array, whole.problem.w.x.array, rtol=0, atol=1e-7 * largest)
     assert less.loads.length == pytest.approx(whole.loads.length, rel=1e-6)
     assert not less.path.surface_state.t_t.any()
     assert less.problem.anchor is None

@@ -42,7 +42,7 @@ def block(comm: MPI.Comm = MPI.COMM_WORLD) -> Problem:
 
 def deform(problem: Problem, F: np.ndarray) -> None:
     """Impose x = F X."""
-    problem.u.interpolate(lambda x: (F - np.eye(2)) @ x[:2])
+    problem.w.interpolate(lambda x: (F - np.eye(2)) @ x[:2])
 
 
 def energy_3d(tag: int, F: np.ndarray, stretch_3: float = 1.0) -> float:
@@ -83,7 +83,7 @@ def problem() -> Problem:
 def test_cauchy_stress(problem, F):
     """All nine components of both solids; 1e-9 of the largest is what central differences leave ((h a)^2 / 24)."""
     deform(problem, F)
-    gradient = kinematics.deformation_gradient(problem.u)
+    gradient = kinematics.deformation_gradient(ufl.grad(problem.u))
     expressions = {tags: stress.cauchy(law, gradient) for tags, law in problem.laws.items()}
     found = Cellwise(problem.mesh, problem.cell_tags, expressions, np.array([[0.3, 0.3]])).evaluate()[:, 0]
     for tag in SOLIDS:
@@ -96,7 +96,7 @@ def test_cauchy_stress(problem, F):
 def test_no_stress_unloaded(problem):
     """At F = I every component vanishes, to roundoff of a shear modulus of 1e5 Pa times 15."""
     deform(problem, np.eye(2))
-    gradient = kinematics.deformation_gradient(problem.u)
+    gradient = kinematics.deformation_gradient(ufl.grad(problem.u))
     expressions = {tags: stress.cauchy(law, gradient) for tags, law in problem.laws.items()}
     found = Cellwise(problem.mesh, problem.cell_tags, expressions, np.array([[0.3, 0.3]])).evaluate()
     assert np.abs(found).max() < 1e-9
@@ -127,7 +127,7 @@ def test_mean_density_of_bending(problem):
 
     Tolerance: strains of 1e-3 leave twelve digits of an energy density that is a difference of ones, some 1e-7 J/m.
     """
-    problem.u.interpolate(lambda x: np.stack([0 * x[0], x[0] ** 2]))
+    problem.w.interpolate(lambda x: np.stack([0 * x[0], x[0] ** 2]))
     cells, sed = sed_per_cell(problem)
     area = 1e-6 / 72
     body = problem.mesh.comm.allreduce(float(sed.sum()) * area)
@@ -174,7 +174,7 @@ def test_receptors(problem):
 def test_receptors_follow_varying_strain(problem):
     """Each site gets its own point of its cell: with u_y = c x^2 the shear is 2 c x."""
     sites = np.array([[0.31e-3, 0.72e-3], [0.33e-3, 0.71e-3], [0.9e-3, 0.93e-3]])
-    problem.u.interpolate(lambda x: np.stack([0 * x[0], 50 * x[0] ** 2]))
+    problem.w.interpolate(lambda x: np.stack([0 * x[0], 50 * x[0] ** 2]))
     expected = [energy_3d(NAIL, np.array([[1.0, 0.0], [100 * x, 1.0]])) for x, _ in sites]
     assert Receptors(problem, sites).sed() == pytest.approx(expected, rel=ROUNDOFF)
 

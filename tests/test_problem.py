@@ -35,7 +35,7 @@ def make(body, mu_f=0.25, solid=SKIN, element="P2", formulation=Penalty(EPS_N, E
 
 def wave(problem, lowest=-1.5e-6, height=6e-6):
     """Deform the bottom into waves from ``lowest`` up to ``lowest + height``, and shear it."""
-    problem.u.interpolate(
+    problem.w.interpolate(
         lambda x: np.stack(
             [
                 1e-6 * np.cos(5e3 * x[0]) - 4e-4 * x[1] + 2e-3 * x[0] * x[1] / 1e-3,
@@ -63,7 +63,7 @@ def anchor_apart(problem):
 
 def direction(problem, scale=NEAR):
     """Return a displacement without any symmetry."""
-    return scale * np.random.default_rng(1).uniform(-1, 1, len(problem.u.x.array))
+    return scale * np.random.default_rng(1).uniform(-1, 1, len(problem.w.x.array))
 
 
 def residual(problem):
@@ -100,16 +100,16 @@ def rates(remainders):
 
 def taylor(problem, move):
     """Return |r(u + e du) - r(u) - e J du| for the steps e."""
-    at = problem.u.x.array.copy()
+    at = problem.w.x.array.copy()
     r, J = residual(problem), jacobian(problem)
     x, y = J.createVecs()
     x.array_w[:] = move
     J.mult(x, y)
     remainders = []
     for step in STEPS:
-        problem.u.x.array[:] = at + step * move
+        problem.w.x.array[:] = at + step * move
         remainders.append(np.linalg.norm(residual(problem) - r - step * y.array_r))
-    problem.u.x.array[:] = at
+    problem.w.x.array[:] = at
     return np.array(remainders), np.linalg.norm(y.array_r)
 
 
@@ -177,13 +177,13 @@ def test_jacobian_of_every_formulation(square, formulation):
     x = problem.surface.evaluate(problem.surface.compile([ufl.SpatialCoordinate(square.mesh)[0]]))[0]
     problem.surface.set_history(problem.multiplier, 4e5 * (1 + np.cos(9e3 * x)))
     anchor_apart(problem)
-    at, move, before = problem.u.x.array.copy(), direction(problem), states(problem)
+    at, move, before = problem.w.x.array.copy(), direction(problem), states(problem)
     open_, above, forth, back = ~before[0], *before[1:]
     sticks = ~(open_ | forth | back)
     assert all(some.any() for some in (open_, above, ~above & open_, forth, back, sticks))
-    problem.u.x.array[:] = at + move
+    problem.w.x.array[:] = at + move
     assert (states(problem) == before).all()
-    problem.u.x.array[:] = at
+    problem.w.x.array[:] = at
     remainders, linear = taylor(problem, move)
     assert remainders[0] < 1e-2 * linear
     np.testing.assert_allclose(rates(remainders), 2, atol=0.02)
@@ -229,11 +229,11 @@ def test_energy(square):
     problem = make(square)
     problem.voltage.value = VOLTAGE
     wave(problem, lowest=0.3e-6)
-    at, move = problem.u.x.array.copy(), direction(problem, 1e-7)
+    at, move = problem.w.x.array.copy(), direction(problem, 1e-7)
     start, slope = fem.assemble_scalar(problem.energy), residual(problem) @ move
     remainders = []
     for step in STEPS:
-        problem.u.x.array[:] = at + step * move
+        problem.w.x.array[:] = at + step * move
         remainders.append(abs(fem.assemble_scalar(problem.energy) - start - step * slope))
     np.testing.assert_allclose(rates(np.array(remainders)), 2, atol=0.1)
 
@@ -247,10 +247,10 @@ def test_contact_is_no_part_of_the_energy(square):
     work = fem.form(ufl.dot(ufl.as_vector([problem.contact.t_t, problem.contact.p_n]), v) * problem.surface.measure)
     whole, contact = residual(problem), fem.assemble_vector(work).array
     move = direction(problem, 1e-10)
-    at = problem.u.x.array.copy()
+    at = problem.w.x.array.copy()
     energies = []
     for side in (1, -1):
-        problem.u.x.array[:] = at + side * move
+        problem.w.x.array[:] = at + side * move
         energies.append(fem.assemble_scalar(problem.energy))
     slope = (energies[0] - energies[1]) / 2
     # The energies' last digit is 1e-16 of 1e-2 N, the work of the contact on the move about 1e-11 N: some 1e-7
@@ -290,7 +290,7 @@ def make_like(body, problem, mu_f):
     """Return the problem at the same state with another friction coefficient."""
     interface = Interface(problem.interface.formulation, mu_f, H_0)
     other = Problem(body.mesh, body.cell_tags, problem.surface, {tags.STRATUM_CORNEUM: SKIN}, interface)
-    other.u.x.array[:] = problem.u.x.array
+    other.w.x.array[:] = problem.w.x.array
     return other
 
 

@@ -66,11 +66,11 @@ def test_leaves_the_state_alone(solver):
     """Displacement, shift and guess are as before, and the two factorisations are counted."""
     spring.place(solver, HEIGHTS[0])
     problem, counts = solver.problem, solver.counts
-    before = problem.u.x.array.copy(), solver.x.array_r.copy(), problem.guess.value.copy()
+    before = problem.w.x.array.copy(), solver.x.array_r.copy(), problem.guess.value.copy()
     count = counts.factorisations
     StabilityCheck(solver).check()
     StabilityCheck(solver).negative_pivots()
-    np.testing.assert_array_equal(problem.u.x.array, before[0])
+    np.testing.assert_array_equal(problem.w.x.array, before[0])
     np.testing.assert_array_equal(solver.x.array_r, before[1])
     assert problem.guess.value == before[2]
     assert problem.eta.value == 0

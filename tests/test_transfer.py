@@ -59,7 +59,7 @@ def test_polynomial_displacement_is_carried_exactly(bodies, element, cubic):
         return np.stack([1 + x[0] * x[1] * 1e6 + cubic * x[0] ** 2 * x[1], 2 - 3e6 * x[1] ** 2 + 1e3 * x[0]])
 
     coarse = prepare(bodies[COARSE], element)
-    coarse.solver.problem.u.interpolate(u)
+    coarse.solver.problem.w.interpolate(u)
     points = bodies[FINE].mesh.geometry.x
     found, outside = interpolate(carry(coarse.coupling, coarse.surface_state), points[:, :2])
     np.testing.assert_allclose(found.T, u(points.T), rtol=1e-11)
@@ -158,7 +158,8 @@ def test_forces_held_balance_any_state(bodies, reached):
 def test_body_comes_into_balance_under_skin_that_is_held(bodies, reached):
     """The skin stays where it is and all else is in balance, until it is released.
 
-    Tolerance: the solver's, 1e-9 of its force scale; the skin to the bit.
+    Tolerance: the solver's, 1e-9 of its force scale; of the skin's place, roundoff of the bone's way: the unknowns are
+    relative to the bone, which moves.
     """
     path = prepare(bodies[FINE])
     give(reached[COARSE][1], path.coupling, SLIDE)
@@ -169,7 +170,7 @@ def test_body_comes_into_balance_under_skin_that_is_held(bodies, reached):
     solver.solve()
     now = path.observer.state()
     np.testing.assert_array_equal(now.x, skin.x)
-    np.testing.assert_array_equal(now.y, skin.y)
+    np.testing.assert_allclose(now.y, skin.y, rtol=0, atol=4 * np.finfo(float).eps * np.abs(solver.bone).max())
     assert MPI.COMM_WORLD.allreduce(float(np.abs(solver.x.array_r - before).max()), op=MPI.MAX) > 1e-9
     assert solver.imbalance() < 1e-9
     held = len(solver.prescribed_rows())

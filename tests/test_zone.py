@@ -88,7 +88,7 @@ def brought_near(half_arc: float, clearance: float) -> Simulation:
     problem, (tip, before) = simulation.problem, simulation.profiles.point(np.array([6.0, 5.99]) * WAVELENGTH, 0.0)
     slope = -np.arctan2(*(tip - before)[::-1])
     turn = np.array([[np.cos(slope), -np.sin(slope)], [np.sin(slope), np.cos(slope)]])
-    problem.u.interpolate(lambda x: turn @ (x[:2] - tip[:, None]) + [[tip[0]], [clearance]] - x[:2])
+    problem.w.interpolate(lambda x: turn @ (x[:2] - tip[:, None]) + [[tip[0]], [clearance]] - x[:2])
     return simulation
 
 

@@ -42,6 +42,8 @@ class Skin:
 
     u: Any
     """Displacement (m)."""
+    w: Any
+    """Displacement relative to the bone (m), by which forms are differentiated."""
     y: Any
     """Current height above the screen (m)."""
     anchor: Any

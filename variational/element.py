@@ -64,6 +64,6 @@ ELEMENTS = {
 }
 
 
-def at_centroid(F, centroids: fem.Function):
-    """Return F (2, 2) at its triangle's centroid, for a displacement of degree 2 at most; ``centroids`` in m."""
-    return F + ufl.dot(ufl.grad(F), centroids - ufl.SpatialCoordinate(centroids.function_space.mesh))
+def at_centroid(H, centroids: fem.Function):
+    """Return H (2, 2) at its triangle's centroid, for a displacement of degree 2 at most; ``centroids`` in m."""
+    return H + ufl.dot(ufl.grad(H), centroids - ufl.SpatialCoordinate(centroids.function_space.mesh))

@@ -3,9 +3,19 @@
 import ufl
 
 
-def deformation_gradient(u):
-    """Return F = I + grad u, shape (2, 2)."""
-    return ufl.Identity(2) + ufl.grad(u)
+def deformation_gradient(H):
+    """Return F = I + H, shape (2, 2), for a displacement gradient H."""
+    return ufl.Identity(2) + H
+
+
+def displacement_gradient(F):
+    """Return H = F - I, shape (2, 2)."""
+    return F - ufl.Identity(2)
+
+
+def dilation(H):
+    """Return J - 1 = tr H + det H of a displacement gradient, (2, 2), without the difference of J and 1."""
+    return ufl.tr(H) + ufl.det(H)
 
 
 def cofactor(F):

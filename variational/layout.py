@@ -7,6 +7,10 @@ balance; the matrix stays square, as sparse as before and, where the laws are, s
 sees the rigid body as it sees every other unknown. (Bordering would need a second back-substitution an iteration and
 a norm of its own for the line search; a multipoint constraint eliminates the same unknowns with more code.)
 
+Displacements are unknowns either by themselves, as the forms are differentiated, or relative to the rigid body, as a
+solver keeps them so that a rigid translation adds no digits (:meth:`RigidRimLayout.translate` goes from one to the
+other).
+
 The pressures of a mixed element (:mod:`variational.pressure`) come first among the unknowns of each rank. The map then
 goes on from the displacement's local unknowns to the pressure's, and forms are added to the matrix block by block.
 """
@@ -30,6 +34,7 @@ class RigidRimLayout:
         rows: global row of each of the space's local unknowns, ghosts included.
         rigid_rows: global rows (2,) of the rigid body's translation in x and y.
         owns_rigid: whether this rank owns those rows.
+        rim: this rank's nodes on the rim, ghosts included.
     """
 
     def __init__(
@@ -63,6 +68,7 @@ class RigidRimLayout:
         nodes = numbers.array.astype(PETSc.IntType)
         self.rows = rows = (nodes[:, None] + np.arange(2, dtype=PETSc.IntType)).ravel()
         self._free = np.repeat(free, 2)
+        self.rim = np.flatnonzero(nodes == rigid)
         self._pressures = pressures
         self._scatter = self._scatter_from(rows)
         self._parts: list[PETSc.IS] = []
@@ -128,6 +134,11 @@ class RigidRimLayout:
         """Write nodal values and the rigid body's translation (2,) into a vector of unknowns."""
         values = nodal[: len(self._free)][self._free]
         x.array_w[self._pressures :] = np.concatenate([values, rigid]) if self.owns_rigid else values
+
+    def translate(self, x: PETSc.Vec, translation: Array) -> None:
+        """Add a translation (2,) to the displacements in a vector of unknowns, the rigid body's left out."""
+        free = x.array_w[self._pressures : self._pressures + int(self._free.sum())]
+        free.reshape(-1, 2)[:] += translation
 
     def rigid_part(self, x: PETSc.Vec) -> Array:
         """Return the rigid body's two entries of a vector of unknowns, on every rank."""

@@ -49,4 +49,4 @@ class Nitsche(Formulation):
             return work
         s = contact.springs
         off = ufl.as_vector([(contact.t_t - s.lambda_t) / s.gamma_t, (contact.p_n - s.lambda_n) / s.gamma_n])
-        return work + self.theta * ufl.dot(off, ufl.derivative(skin.elastic(), skin.u, v))
+        return work + self.theta * ufl.dot(off, ufl.derivative(skin.elastic(), skin.w, v))

@@ -11,6 +11,7 @@ from typing import Any
 
 import basix
 import numpy as np
+import ufl
 from dolfinx import fem
 from dolfinx.io import VTXWriter
 from numpy.typing import NDArray
@@ -26,7 +27,7 @@ class Fields:
     """Writes displacement (m), Cauchy stress (Pa, 3 x 3) and strain energy density (J/m^3 of reference volume).
 
     Attributes:
-        stress, sed: the last two as they were last written, discontinuous and linear in each cell.
+        displacement, stress, sed: as they were last written; the last two discontinuous and linear in each cell.
     """
 
     def __init__(self, problem: Problem, folder: Path | str) -> None:
@@ -40,16 +41,18 @@ class Fields:
         if mesh.comm.rank == 0:
             folder.mkdir(parents=True, exist_ok=True)
         mesh.comm.barrier()
-        F = kinematics.deformation_gradient(problem.u)
+        F = kinematics.deformation_gradient(ufl.grad(problem.u))
         stresses = {tags: stress.cauchy(law, F, problem.pressures[tags]) for tags, law in problem.laws.items()}
         self.stress, self._sample_stress = _sampled(problem, "stress", stresses)
         self.sed, self._sample_sed = _sampled(problem, "sed", problem.densities)
+        self._problem, self.displacement = problem, fem.Function(problem.V, name="displacement")
         # One writer a field: a file holds functions of one element.
-        files = {"displacement": problem.u, "stress": self.stress, "sed": self.sed}
+        files = {"displacement": self.displacement, "stress": self.stress, "sed": self.sed}
         self._writers = [VTXWriter(mesh.comm, folder / f"{name}.bp", [f], engine="BP4") for name, f in files.items()]
 
     def write(self, time: float) -> None:
         """Append the current state; ``time`` is what ParaView calls it, a step's number for instance."""
+        self.displacement.x.array[:] = self._problem.displacement().ravel()
         for function, sample in ((self.stress, self._sample_stress), (self.sed, self._sample_sed)):
             values = sample.evaluate()
             dofs = function.function_space.dofmap.list[: len(values)]
@@ -114,7 +117,7 @@ def gather_mesh(problem: Problem) -> Snapshot | None:
     cells, sed = sed_per_cell(problem)
     nodes = compat.cell_geometry(mesh)[cells]
     # The first three degrees of freedom of a Lagrange triangle are its vertices, in the geometry's order.
-    u = problem.u.x.array.reshape(-1, 2)[problem.V.dofmap.list[cells][:, :3]]
+    u = problem.displacement()[problem.V.dofmap.list[cells][:, :3]]
     tag = np.zeros(len(cells), dtype=np.int32)
     own = problem.cell_tags.indices < len(cells)
     tag[problem.cell_tags.indices[own]] = problem.cell_tags.values[own]

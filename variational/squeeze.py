@@ -23,7 +23,7 @@ def squeeze(solver: Solver, depth: float, reach: float) -> None:
         reach: l, height over which the body is compressed (m).
     """
     problem = solver.problem
-    u = problem.u.x.array.reshape(-1, 2).copy()
+    u = problem.displacement()
     now = problem.V.tabulate_dof_coordinates()[:, :2] + u
     nodes = fem.locate_dofs_topological(problem.V, 1, problem.surface.facets)
     skin = np.concatenate(problem.mesh.comm.allgather(now[nodes]))
@@ -32,5 +32,4 @@ def squeeze(solver: Solver, depth: float, reach: float) -> None:
     move = np.where(floor < -depth, -depth - floor, 0.0)
     over = np.where(move > 0, np.maximum(now[:, 1] - floor, 0.0), 0.0)
     u[:, 1] += move * np.maximum(1 - over / reach, 0.0)
-    solver.layout.from_nodes(u.ravel(), solver.bone, solver.x)
-    solver.to_fields(solver.x)
+    solver.set_displacement(u, solver.bone)

@@ -20,36 +20,39 @@ from variational import kinematics, ogden, saint_venant
 
 @dataclass(frozen=True)
 class Law:
-    """A solid in plane strain: functions of the deformation gradient F, (2, 2)."""
+    """A solid in plane strain, by its deformation gradient F or its displacement gradient H = F - I, (2, 2)."""
 
     distortion: Callable[[Any], Any]
-    """Strain energy density W (J/m^3 of reference volume) without its volumetric part, if it has one."""
+    """Strain energy density W(H) (J/m^3 of reference volume) without its volumetric part, if it has one."""
     distortion_zz: Callable[[Any], Any]
-    """Cauchy stress normal to the plane (Pa), likewise."""
+    """Cauchy stress normal to the plane (Pa) without that part, a function of F."""
     bulk: Any = None
     """Bulk modulus K (Pa) of the volumetric part K (J - 1)^2 / 2; None without one."""
 
-    def pressure(self, F):
-        """Return p = K (J - 1) (Pa), positive in tension; zero without a volumetric part."""
-        return ufl.as_ufl(0.0) if self.bulk is None else self.bulk * (ufl.det(F) - 1)
+    def pressure(self, H):
+        """Return p = K (J - 1) (Pa), positive in tension, of H; zero without a volumetric part."""
+        return ufl.as_ufl(0.0) if self.bulk is None else self.bulk * kinematics.dilation(H)
 
     def energy(self, F, p=None):
         """Return the strain energy density W (J/m^3 of reference volume); by default p is that of F."""
+        H = kinematics.displacement_gradient(F)
         if self.bulk is None:
-            return self.distortion(F)
-        return self.distortion(F) + (self.pressure(F) if p is None else p) ** 2 / (2 * self.bulk)
+            return self.distortion(H)
+        return self.distortion(H) + (self.pressure(H) if p is None else p) ** 2 / (2 * self.bulk)
 
 
 def ogden_law(shear_modulus, a, bulk) -> Law:
     """Return the law of an Ogden solid; arguments as in :func:`variational.ogden.energy`."""
     return Law(
-        lambda F: ogden.isochoric_energy(F, shear_modulus, a), lambda F: isochoric_sigma_zz(F, shear_modulus, a), bulk
+        lambda H: ogden.isochoric_energy(kinematics.deformation_gradient(H), shear_modulus, a),
+        lambda F: isochoric_sigma_zz(F, shear_modulus, a),
+        bulk,
     )
 
 
 def saint_venant_law(lame, shear_modulus) -> Law:
     """Return the law of a Saint Venant-Kirchhoff solid; arguments as in :func:`variational.saint_venant.energy`."""
-    return Law(lambda F: saint_venant.energy(F, lame, shear_modulus), lambda F: saint_venant_sigma_zz(F, lame))
+    return Law(lambda H: saint_venant.energy(H, lame, shear_modulus), lambda F: saint_venant_sigma_zz(F, lame))
 
 
 def isochoric_sigma_zz(F, shear_modulus, a):
@@ -78,13 +81,14 @@ def saint_venant_sigma_zz(F, lame):
 def first_piola_kirchhoff(law: Law, F, p=None):
     """Return the first Piola-Kirchhoff stress P = dW/dF (Pa), shape (2, 2); by default the pressure p is that of F."""
     F = ufl.variable(F)
-    p = law.pressure(F) if p is None else p
-    return ufl.diff(law.distortion(F), F) + p * kinematics.cofactor(F)
+    H = kinematics.displacement_gradient(F)
+    p = law.pressure(H) if p is None else p
+    return ufl.diff(law.distortion(H), F) + p * kinematics.cofactor(F)
 
 
 def cauchy(law: Law, F, p=None):
     """Return the Cauchy stress (Pa), shape (3, 3), z normal to the plane; by default the pressure p is that of F."""
-    p = law.pressure(F) if p is None else p
+    p = law.pressure(kinematics.displacement_gradient(F)) if p is None else p
     sigma = first_piola_kirchhoff(law, F, p) * F.T / ufl.det(F)
     return ufl.as_tensor(
         [[sigma[0, 0], sigma[0, 1], 0], [sigma[1, 0], sigma[1, 1], 0], [0, 0, law.distortion_zz(F) + p]]

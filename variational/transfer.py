@@ -98,7 +98,7 @@ def carry(coupling: Coupling, state: SurfaceState) -> Carried:
     mesh, surface = problem.mesh, problem.surface
     cells = np.arange(mesh.topology.index_map(2).size_local)
     corners = mesh.geometry.x[compat.cell_geometry(mesh)[cells]][:, :, :2]
-    u = problem.u.x.array.reshape(-1, 2)[problem.V.dofmap.list[cells]]
+    u = problem.displacement()[problem.V.dofmap.list[cells]]
     here = np.stack([*_reference(problem, state), state.anchor - _u_x(problem), state.p_n, state.x, state.y])
     points, ridge = _all(mesh.comm, here, 1), _all(mesh.comm, surface.ridge, 0)
     skin = {name: _ridge(points[:, ridge == k].reshape(6, -1), here.shape[2]) for k, name in enumerate(surface.names)}
@@ -146,8 +146,7 @@ def give(carried: Carried, coupling: Coupling, slide: float = 0.0) -> None:
             lower = there[:, 1] < u[on_ridge, 1]
             u[on_ridge[lower]] = there[lower]
     shift = np.array([slide, 0.0])
-    solver.layout.from_nodes((u + shift).ravel(), carried.bone + shift, solver.x)
-    solver.to_fields(solver.x)
+    solver.set_displacement(u + shift, carried.bone + shift)
     solver.control = replace(carried.control, x=carried.control.x + slide)
     problem.voltage.value = carried.voltage
     coupling.set_air_gaps(np.array([carried.d_eq[name] for name in names]))

@@ -81,14 +81,14 @@ def solve(case: Case, body: TaggedMesh, skin: np.ndarray) -> Answer:
     for before, now in steps(case):
         h, moved = problem.history, (now.x - before.x) * _MM
         problem.set_history(History(h.anchor - moved, h.pressure, h.x))
-        solver.x.array_w[::2] -= moved  # the first guess: no point slips
+        solver.x.array_w[-2] -= moved  # of the bone and all that is relative to it: no point slips at first
         solver.new_load(Control(0.0, now.y * _MM), 0.0, slipping=bool(now.x))
         solver.solve()
         s = observer.state()
         problem.set_history(History(s.anchor, s.p_n, s.x))
         if now.name:
             loads = observer.ridge_loads(s)
-            displacement = problem.u.x.array.reshape(-1, 2)[nodes] / _MM + (now.x, 0.0)
+            displacement = problem.displacement()[nodes] / _MM + (now.x, 0.0)
             order = np.argsort(s.x.ravel())
             answer.states.append(
                 State(

@@ -60,7 +60,7 @@ class Recorder(Continuation):
     def __init__(self, case: Case, coupling: Coupling, on_accept: Callable[[Target, float, Attempt], None]) -> None:
         super().__init__(coupling, on_accept, step_scale=case.step_scale)
         points, _ = basix.make_quadrature(basix.CellType.triangle, 2)
-        self._jacobian = fem.Expression(ufl.det(deformation_gradient(self.problem.u)), np.asarray(points))
+        self._jacobian = fem.Expression(ufl.det(deformation_gradient(ufl.grad(self.problem.u))), np.asarray(points))
         self.inverted: dict[str, int] = {}
 
     def least_j(self, tag: int) -> float:

@@ -72,8 +72,8 @@ def potential(small: bool) -> Outcome:
         run = over_screen(partial(block, 1e-3, 0.5e-3, 0.125e-3), SaintVenant(1e6, 0.3), interface, 1.0)
         problem = run.problem
         problem.set_air_gaps(np.array([2e-6]))
-        problem.u.interpolate(lambda x: np.stack([1e-2 * x[0], 3.3e-6 + 3e-6 * np.sin(7e3 * x[0] + 0.4) - 1e-3 * x[1]]))
-        start = problem.u.x.array.copy()
+        problem.w.interpolate(lambda x: np.stack([1e-2 * x[0], 3.3e-6 + 3e-6 * np.sin(7e3 * x[0] + 0.4) - 1e-3 * x[1]]))
+        start = problem.w.x.array.copy()
         way, up = np.random.default_rng(1).uniform(-1, 1, len(start)), np.tile([0.0, 1.0], len(start) // 2)
 
         def charged(form, problem=problem):
@@ -86,13 +86,13 @@ def potential(small: bool) -> Outcome:
             return values[0] - values[1]
 
         def energy(step: float, way=way, problem=problem, start=start, charged=charged) -> float:
-            problem.u.x.array[:] = start + step * way
+            problem.w.x.array[:] = start + step * way
             return float(charged(problem.energy))
 
         problem.voltage.value = 200.0
         pull = float(run.observer.ridge_loads().f_attraction[0])
         lift = (energy(1e-9, up) - energy(-1e-9, up)) / 2e-9
-        problem.u.x.array[:] = start
+        problem.w.x.array[:] = start
 
         slope = float(charged(problem.residual) @ way)
         remainders = np.array([abs(energy(step) - energy(0.0) - step * slope) for step in steps])

@@ -74,7 +74,7 @@ class FreeSolver(Solver):
 
     def start(self) -> None:
         """Start from the problem's displacement and, if it has one, pressure; on one rank."""
-        self.layout.from_nodes(self.problem.u.x.array, np.zeros(2), self.x)
+        self.set_displacement(self.problem.displacement(), np.zeros(2))
         if self.problem.pressure:
             rows = self.problem.pressure.rows(0)
             self.x.array_w[rows[rows >= 0]] = self.problem.pressure.unknown.x.array[rows >= 0]

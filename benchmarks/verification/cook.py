@@ -69,7 +69,7 @@ class Membrane:
         ksp.getPC().setType(PETSc.PC.Type.LU)
         ksp.getPC().setFactorSolverType("mumps")
         ksp.solve(self.full, x)
-        u = np.zeros_like(self.problem.u.x.array)
+        u = np.zeros_like(self.problem.w.x.array)
         layout.to_nodes(x, u)
         return float(u[2 * self._tip + 1]) * 1e3
 
@@ -79,7 +79,7 @@ class Membrane:
             self.full.copy(self.solver.load)
             self.solver.load.scale(part)
             self.solver.solve()
-        return float(self.problem.u.x.array[2 * self._tip + 1]) * 1e3
+        return float(self.problem.w.x.array[2 * self._tip + 1]) * 1e3
 
 
 def limit(rises: Sequence[float]) -> tuple[float, float]:

@@ -92,7 +92,7 @@ def deform(problem: Problem) -> None:
         X, Y = x[0] / SIZE, x[1] / SIZE
         return 0.1 * SIZE * np.stack([np.sin(2 * X + Y) + 0.5 * Y**2, np.cos(3 * Y) * X - 0.4 * Y])
 
-    problem.u.interpolate(u)
+    problem.w.interpolate(u)
     if problem.pressure:
         problem.pressure.unknown.interpolate(lambda x: 1e-5 * np.cos(3e3 * x[0] + 2e3 * x[1]))
 
@@ -100,8 +100,8 @@ def deform(problem: Problem) -> None:
 def turn(problem: Problem, Q: Array) -> None:
     """Rotate the deformed body about the origin."""
     X = problem.V.tabulate_dof_coordinates()[:, :2]
-    u = problem.u.x.array.reshape(-1, 2)
-    problem.u.x.array[:] = ((X + u) @ Q.T - X).ravel()
+    u = problem.w.x.array.reshape(-1, 2)
+    problem.w.x.array[:] = ((X + u) @ Q.T - X).ravel()
 
 
 def objectivity(small: bool) -> Outcome:
@@ -212,7 +212,7 @@ def tangent(small: bool) -> Outcome:
             apart(quantity, matrix[None], matrix.T[None], largest, 1e-14, "roundings of sums over triangles", _MESH)
         )
         if element in ("P1", "P2"):
-            problem.u.x.array[:] = 0.0
+            problem.w.x.array[:] = 0.0
             rows_ = solver.layout.rows
             ours, expected = dense(solver)[np.ix_(rows_, rows_)], linear_stiffness(problem)
             largest, quantity = (

@@ -41,7 +41,7 @@ class Tube:
         """Return the inner pressure (Pa of current area): the radial forces of the inner nodes over the arc."""
         X = self.X[self.inner]
         outwards = X / np.linalg.norm(X, axis=1)[:, None]
-        current = X + self.problem.u.x.array.reshape(-1, 2)[self.inner]
+        current = X + self.problem.w.x.array.reshape(-1, 2)[self.inner]
         radius = np.linalg.norm(current, axis=1).mean()
         return float((nodal_forces(self.problem)[self.inner] * outwards).sum() / (np.pi / 2 * radius))
 
@@ -49,7 +49,7 @@ class Tube:
     def outer_radius(self) -> float:
         """Return the radius (m) to which the outer surface's node on the horizontal plane of symmetry moves."""
         node = int(np.argmin(np.hypot(self.X[:, 0] - B, self.X[:, 1])))
-        return B + float(self.problem.u.x.array[2 * node])
+        return B + float(self.problem.w.x.array[2 * node])
 
 
 def widen(element: str, divisions: int, poisson: float, widened: float, exact: Exact | None = None) -> Tube:
@@ -72,7 +72,7 @@ def widen(element: str, divisions: int, poisson: float, widened: float, exact: E
         free = np.setdiff1d(driven, plane)
         fixed += held(2 * free + component, u[free, component])
     solver = FreeSolver(problem, NOTHING, 1.0, 1e-9, fixed)
-    problem.u.x.array[:] = u.ravel()
+    problem.w.x.array[:] = u.ravel()
     solver.start()
     solver.solve()
     return Tube(problem, inner, X)
@@ -156,7 +156,7 @@ def convergence(small: bool) -> Outcome:
     exact = exact_tube(0.48, WIDENED[-1])
 
     def errors(element: str, n: int) -> tuple[float, float]:
-        return orders.relative_errors(widen(element, n, 0.48, WIDENED[-1], exact).problem.u, exact)
+        return orders.relative_errors(widen(element, n, 0.48, WIDENED[-1], exact).problem.w, exact)
 
     found = {e: [errors(e, n) for n in meshes] for e in (("P2-P1",) if small else ("P1", "P2", "P2-P1"))}
     rows = orders.rows(found, meshes, 0.1, "not yet asymptotic")

@@ -1,0 +1,94 @@
+"""A rigid translation changes no force: the unknowns are relative to the bone, and a solve ends at its floor."""
+
+import numpy as np
+import pytest
+from dolfinx import fem
+from mpi4py import MPI
+
+from fingerpad.needs import plan
+from fingerpad.scene import from_data
+from fingerpad.simulation import Simulation
+from variational import solver as solver_module
+from variational.continuation import StepFailed
+
+FINGER = {
+    "geometry": {"ridge_count": 9},
+    "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
+}
+
+
+def slid(away: float, f_ext: float, voltage: float, tolerance: float) -> Simulation:
+    """Carry the bone sideways over the screen (m), press, charge and slide to full slip; keep each step's floor."""
+    loads = [
+        {"name": "away", "bone_height": 0.0, "bone_x": away},
+        {"name": "press", "f_ext": f_ext},
+        {"name": "charge", "voltage": voltage},
+        {"name": "slide", "bone_x": away + 0.9e-3, "until_full_slip": True},
+    ]
+    data = {"history": loads[away == 0.0 :], "numerics": {"tolerance": tolerance}, "output": {"errors": False}}
+    scene = from_data(FINGER | data)
+    floors = []
+    made = Simulation(
+        scene, plan(scene), MPI.COMM_WORLD, lambda step, done: floors.append(made.solver.floor), lambda: None
+    )
+    made.run()
+    made.floors = floors
+    return made
+
+
+def forces(made: Simulation) -> np.ndarray:
+    """Return the bone's reactions and each ridge's contact force, friction and length."""
+    loads = made.ridge_loads()
+    return np.concatenate([made.solver.reaction, loads.f_contact, loads.f_friction, 1e3 * loads.length])
+
+
+@pytest.fixture(scope="module")
+def at_the_start() -> Simulation:
+    return slid(0.0, 1.0, 100.0, 1e-11)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("away", [1e-3, 10e-3])
+def test_forces_do_not_depend_on_where_the_finger_is(at_the_start, away):
+    """Relative 1e-9 of the load, a hundred times the tolerance of the solve; before, the residual stalled above it."""
+    moved = slid(away, 1.0, 100.0, 1e-11)
+    assert moved.full_slip and at_the_start.full_slip
+    assert moved.solver.bone[0] - at_the_start.solver.bone[0] == pytest.approx(away, rel=1e-12)
+    np.testing.assert_allclose(forces(moved), forces(at_the_start), rtol=0, atol=1e-9)
+
+
+@pytest.mark.slow
+def test_light_press_at_200_v_after_5_mm():
+    """Half a newton a metre: friction is mu_0 times the contact force, to the solve's tolerance over some ridges."""
+    made = slid(5e-3, 0.5, 200.0, 1e-9)
+    assert made.full_slip
+    loads = made.ridge_loads()
+    assert abs(loads.f_friction.sum()) == pytest.approx(0.25 * loads.f_contact.sum(), rel=1e-8)
+    assert made.solver.reaction[1] == pytest.approx(0.5, rel=1e-8)
+
+
+def test_translated_body_bears_no_force():
+    """Off the screen, 10 mm aside: every nodal force is zero to the last bit."""
+    scene = from_data(FINGER | {"f_ext": 1.0})
+    made = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
+    u = np.tile([10e-3, 3e-3], (len(made.problem.displacement()), 1))
+    made.solver.set_displacement(u, np.array([10e-3, 3e-3]))
+    np.testing.assert_array_equal(made.problem.displacement(), u)
+    made.problem.set_history(made.problem.history)
+    np.testing.assert_array_equal(fem.assemble_vector(made.problem.residual).array, 0.0)
+
+
+@pytest.mark.slow
+def test_solve_ends_at_its_floor(at_the_start):
+    """A tolerance below roundoff: what is left is some units of it, is said, and the forces are the same."""
+    made = slid(0.0, 1.0, 100.0, 1e-14)
+    assert 1e-14 < max(made.floors) < 1e-10
+    assert max(at_the_start.floors) == 0.0, "a tolerance that can be met is met"
+    np.testing.assert_allclose(forces(made), forces(at_the_start), rtol=0, atol=1e-10)
+
+
+def test_residual_that_stalls_above_roundoff_is_no_floor(monkeypatch):
+    """With a thousandth of the roundoff allowed, the same solve finds no equilibrium."""
+    monkeypatch.setattr(solver_module, "_ROUNDINGS", 1e-3)
+    with pytest.raises(StepFailed, match="DIVERGED_"):
+        slid(0.0, 1.0, 100.0, 1e-15)
