@@ -9,11 +9,24 @@ import pytest
 from mpi4py import MPI
 
 from geometry import fingertip
+from geometry import mesh as meshing
 from geometry.benchmarks import block
 from geometry.mesh import TaggedMesh, load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
 from variational import jit
+
+
+def pytest_addoption(parser):
+    """Let the suite be run with other rounding: ``OPENBLAS_CORETYPE`` chooses the kernels, this the order of cells."""
+    parser.addoption("--renumber", action="store_true", help="mesh with the cells in reverse order")
+
+
+def pytest_configure(config):
+    """Reverse the cells of every mesh that comes from gmsh, so that all sums are taken in another order."""
+    if config.getoption("--renumber"):
+        create = meshing.gmshio.create_mesh
+        meshing.gmshio.create_mesh = lambda comm, cells, *rest, **more: create(comm, cells[::-1].copy(), *rest, **more)
 
 
 def pytest_sessionstart():

@@ -9,6 +9,7 @@ from mpi4py import MPI
 from geometry.benchmarks import block
 from geometry.mesh import load
 from tests.test_contact import H_0, HEIGHT, MU_F, WIDTH, make
+from variational import continuation
 from variational.continuation import Continuation, StepFailed, Target
 from variational.coupling import Coupling
 from variational.failure import NotConverged
@@ -49,6 +50,14 @@ def test_range_without_equilibrium_is_leapt_over(sliding):
     leaps = [(x, attempt) for x, attempt in reached if attempt.leapt]
     assert [x for x, _ in leaps] == [pytest.approx(0.27e-3)]
     assert [len(attempt.cutbacks) for _, attempt in reached if attempt.cutbacks] == [1]
+
+
+def test_load_that_creeps_is_given_up(sliding, monkeypatch):
+    """Steps that stay small do not go on for ever: the message says how many there were, and where they led."""
+    monkeypatch.setattr(continuation, "_MANY_STEPS", 0)
+    monkeypatch.setattr(continuation, "_FEW_STEPS", 7)
+    with pytest.raises(StepFailed, match=r"% done\) found no equilibrium beyond .* TOO_SMALL_STEPS, 7 of them"):
+        sliding(0.235e-3, 0.260e-3)
 
 
 def test_range_too_wide_for_one_leap(sliding):

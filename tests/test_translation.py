@@ -92,3 +92,21 @@ def test_residual_that_stalls_above_roundoff_is_no_floor(monkeypatch):
     monkeypatch.setattr(solver_module, "_ROUNDINGS", 1e-3)
     with pytest.raises(StepFailed, match="DIVERGED_"):
         slid(0.0, 1.0, 100.0, 1e-15)
+
+
+@pytest.mark.slow
+def test_points_of_little_friction_come_to_stick():
+    """At mu_0 = 0.002 a point sticks within 0.1 nm. The press goes on in full steps, and nothing is taken for a jump.
+
+    Without softened springs the first touch is cut to steps of a thousandth and creeps.
+    """
+    finger = {"geometry": {"ridge_count": 5}, "mesh": FINGER["mesh"] | {"contact": 30e-6, "touching_half_arc": 0.6e-3}}
+    scene = from_data(finger | {"friction": 0.002, "history": [{"name": "press", "f_ext": 0.2}]})
+    needed, rows = plan(scene).with_both_halves(), []
+    made = Simulation(scene, needed, MPI.COMM_WORLD, lambda step, done: rows.append(step.row), lambda: None)
+    made.run()
+    assert not any(row["jump"] for row in rows)
+    assert sum(row["cutbacks"] for row in rows) <= 1
+    assert float(made.problem.ease.value) == 1.0
+    limit = 0.002 * made.ridge_loads().f_contact
+    assert (np.abs(made.ridge_loads().f_friction) <= limit * (1 + 1e-9)).all()

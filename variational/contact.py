@@ -82,15 +82,23 @@ class Contact:
         new_anchor: anchor that a step leaves when it is accepted (m).
     """
 
-    def __init__(self, skin: Skin, springs: Springs, mu_f, guess) -> None:
-        """Project the trial tractions; ``guess`` as in :func:`variational.friction.traction`."""
+    def __init__(self, skin: Skin, springs: Springs, mu_f, guess, ease=1.0) -> None:
+        """Project the trial tractions.
+
+        Args:
+            skin: what touches.
+            springs: what the trial tractions are made of.
+            mu_f: friction coefficient.
+            guess: as in :func:`variational.friction.traction`.
+            ease: part of the tangential stiffness that acts.
+        """
         self.springs = s = springs
         self.gap = skin.y - s.lambda_n / s.gamma_n
         self.p_n = pressure(self.gap, s.gamma_n)
         if skin.anchor is None:
             self.t_t, self.new_anchor = ufl.zero(), skin.u[0]
         else:
-            self.t_t = friction.traction(skin.u[0], skin.anchor, mu_f * self.p_n, s.gamma_t, guess, s.lambda_t)
+            self.t_t = friction.traction(skin.u[0], skin.anchor, mu_f * self.p_n, ease * s.gamma_t, guess, s.lambda_t)
             self.new_anchor = friction.new_anchor(skin.u[0], self.t_t, s.gamma_t, s.lambda_t)
         self.traction = ufl.as_vector([self.t_t, self.p_n])
 

@@ -46,6 +46,7 @@ _LEAP = 1.5  # step tried where the loop over the scales cycles, over the one th
 _WAYS = "at once", "settled", "bit by bit", "creeping"  # to an equilibrium from a state from elsewhere
 _SMALLEST_BIT = 1 / 8  # of the forces that such a state is out of balance by
 _FEW = 6  # factorisations; a step that took no more lets the next one grow
+_MANY_STEPS, _FEW_STEPS = 20, 100  # most steps of a load: so many for each of its largest steps, and so many more
 _UNCUT = 3  # steps in a row that were not cut, after which the next one grows however hard they were
 _CUT = 4  # steps in a row that were, each a part of what is left up to a jump that none gets over
 
@@ -207,7 +208,11 @@ class Continuation:
     def _reach(self, target: Target) -> None:
         at, largest = self._loads(target), self._largest_step(target)
         part, step, uncut, cut = 0.0, largest, 0, 0
+        first, most = self.steps, _FEW_STEPS + int(np.ceil(_MANY_STEPS / largest))
         while part < 1:
+            if self.steps - first >= most:
+                slow = NotConverged(f"TOO_SMALL_STEPS, {most} of them, do not get to the end of the load", False)
+                raise StepFailed(self._describe(target, part, slow)) from slow
             step = min(step, 1 - part)
             if 1 - part - step < 0.05 * step:
                 step = 1 - part

@@ -89,6 +89,7 @@ class Problem:
         pressure: the mixed element's pressure, None for the others.
         voltage, eta: constants (V; Pa/m, the shift of the Jacobian).
         guess: constant, what points on the friction cone are first taken for: STICKS or SLIPS.
+        ease: constant, part of the tangential stiffness of the contact that acts: 1 but on the way to an equilibrium.
         d_eq: equivalent air gap (m), one value a cell, read on the ridges.
         anchor: accepted friction history (m), see :mod:`variational.friction`; None without friction.
         multiplier: accepted contact pressure (Pa), read by an augmented Lagrangian.
@@ -136,6 +137,7 @@ class Problem:
             return fem.Constant(mesh, np.float64(value))
 
         self.voltage, self.eta, self.guess = constant(0.0), constant(0.0), constant(STICKS)
+        self.ease = constant(1.0)
         mu_f, h_0 = constant(interface.mu_f), constant(interface.h_0)
 
         w, v = self.w, ufl.TestFunction(self.V)
@@ -177,7 +179,7 @@ class Problem:
             constant,
         )
         formulation = interface.formulation
-        self.contact = Contact(skin, formulation.springs(skin), mu_f, self.guess)
+        self.contact = Contact(skin, formulation.springs(skin), mu_f, self.guess, self.ease)
         self.opening = formulation.opening(skin, self.contact)
         dS = surface.measure
         if attraction:
