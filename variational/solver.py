@@ -80,8 +80,9 @@ class _Relative:
         self.K.mult(self._moved, y)
 
     def after_solve(self, ksp: PETSc.KSP, b: PETSc.Vec, x: PETSc.Vec) -> None:
-        """Make the solution of K x = b relative to the bone."""
-        self.layout.translate(x, -self.layout.rigid_part(x))
+        """Make the solution of K x = b relative to the bone; what a failed factorisation leaves stays as it is."""
+        if ksp.getConvergedReason() > 0:
+            self.layout.translate(x, -self.layout.rigid_part(x))
 
 
 @dataclass
