@@ -28,7 +28,8 @@ class Fingertip(BaseModel):
     ridge_amplitude: Length = 100e-6
     """Height of the papillary ridges, peak to peak."""
     ridge_profile: tuple[float, ...] = (1.0,)
-    """Cosine coefficients c_k (k = 1, 2, …) of the ridge profile, scaled to the amplitude above.
+    """Cosine coefficients c_k (k = 1, 2, …) of the ridge profile, scaled to the amplitude above; its crests, wherever
+    they are, reach the outline, and the layers and receptor sites below stay centred on the ridge's middle.
     *Assumption*: a sinusoid. The measured profile of the paper is not published."""
     ridge_count: Annotated[int, Field(ge=1, le=101)] = 55
     """Number of ridges (odd: one is centred on x = 0). *Assumption*: they cover the palmar half."""
