@@ -139,7 +139,7 @@ class Profiles:
         if self.crests == (0.0,):
             return across
         every = np.unique(np.array(self.crests)[:, None] + across)
-        return every[np.abs(every) <= self.finger.ridge_wavelength / 2]
+        return np.asarray(every[np.abs(every) <= self.finger.ridge_wavelength / 2])
 
     @property
     def _mean_depth(self) -> float:
@@ -249,7 +249,26 @@ class Profiles:
                 f"the skin layers are {float(self.d_sub(0.0)):.3g} m deep, more than the outline's radius of "
                 f"curvature, {sharpest:.3g} m: reduce dermis_thickness or make width and height more alike"
             )
+        self._check_sites()
         self._check_bone()
+
+    def _check_sites(self) -> None:
+        """Refuse receptor sites that are not in their layers."""
+        f = self.finger
+        tip = float(self.ve_d(0.0))
+        top = float(self.ve_d(f.ridge_wavelength / 4))
+        thickness = tip - float(self.sc_ve(0.0))
+        if f.merkel_offset >= thickness:
+            raise GeometryError(
+                f"merkel_offset is {f.merkel_offset:g} m; it must be below the thickness of the viable epidermis at "
+                f"the tips of its ridges, {thickness:.4g} m"
+            )
+        depth = float(self.d_sub(0.0)) - top
+        if f.meissner_offset >= depth:
+            raise GeometryError(
+                f"meissner_offset is {f.meissner_offset:g} m; it must be below the height of the papillae above the "
+                f"subcutis, {depth:.4g} m"
+            )
 
     def _check_bone(self) -> None:
         f = self.finger
