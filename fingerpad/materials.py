@@ -6,6 +6,7 @@ parameter has the reason.
 
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BaseModel, model_validator
 
 from fingerpad.sentences import show
@@ -100,6 +101,11 @@ class Roughness(Part):
     p_floor: Annotated[Finite, within(1e-3, 1e9, "Pa")] = 1e3
     """Pressure (Pa) below which the air gap is held (*assumption*): above that of light, below the pressure at zero
     separation."""
+
+    def largest_gap(self, h_0: float) -> float:
+        """Return the air gap (m) at which it is held, infinite where the surfaces no longer see each other."""
+        with np.errstate(all="ignore"):
+            return float(self.bearing_area(h_0)(self.p_floor).d_eq)
 
     def bearing_area(self, h_0: float) -> BearingArea:
         """Return the closure for an effective insulator thickness ``h_0`` (m)."""

@@ -71,6 +71,16 @@ class Scene(Part):
         return self
 
     @model_validator(mode="after")
+    def _ends_somewhere(self) -> "Scene":
+        gap = self.roughness.largest_gap(self.h_0)
+        if not gap < _LARGEST_GAP:
+            raise ValueError(
+                f"roughness.p_floor is {show(self.roughness.p_floor)}, where the air gap would be held at {gap:.3g} m; "
+                f"it must be below {_LARGEST_GAP:g} m: take a larger p_floor, or a smaller gamma or h_rms"
+            )
+        return self
+
+    @model_validator(mode="after")
     def _one_history(self) -> "Scene":
         if self.history is None:
             return self
@@ -135,6 +145,7 @@ class Scene(Part):
         return self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
 
 
+_LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
 _START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}
 _START_AT_SITES = 10e-6  # m; coarser elements do not see the tips of 6 µm, and to halve them tells nothing of the error
 _DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ValidationError
 
 from geometry.bounds import OUT_OF_RANGE
 
-MOST = 299  # characters of a sentence
+MOST = 280  # characters of a sentence; with the name of the program before it less than 300
 _MOST_VALUE = 60  # of a value that is quoted
 _MOST_KEY = 40  # of a key
 _MOST_LIST = 150  # of a list of keys

@@ -135,7 +135,7 @@ class Profiles:
             step: (m).
         """
         half = fraction * self.finger.ridge_wavelength / 2
-        across = np.linspace(-half, half, 1 + int(np.ceil(2 * half / step)))
+        across: Array = np.linspace(-half, half, 1 + int(np.ceil(2 * half / step)), dtype=np.float64)
         if self.crests == (0.0,):
             return across
         every = np.unique(np.array(self.crests)[:, None] + across)

@@ -181,6 +181,11 @@ def test_formulation(given, law):
             "roughness.p_floor", 1e6,
             "roughness.p_floor is 1000000; it must be below the pressure at zero separation, 2.597e+05 Pa",
         ),
+        (
+            "roughness.gamma", 5,
+            "roughness.p_floor is 1000, where the air gap would be held at inf m; it must be below 1 m: take a larger "
+            "p_floor, or a smaller gamma or h_rms",
+        ),
         ("contact.eps_n", 0, "contact.eps_n is 0 Pa/m; it must be from 1e+07 to 1e+17 Pa/m"),
         (
             "contact.formulation", "mortar",
