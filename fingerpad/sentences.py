@@ -17,10 +17,8 @@ MOST = 280  # characters of a sentence; with the name of the program before it l
 _MOST_VALUE = 60  # of a value that is quoted
 _MOST_KEY = 40  # of a key
 _MOST_LIST = 150  # of a list of keys
-_NEAR, _ELSEWHERE = (
-    0.6,
-    0.8,
-)  # likeness, from 0 to 1, at which a key may have been meant, of the table or of another one
+_NEAR = 0.6  # likeness, from 0 to 1, at which a key of the same table may have been meant,
+_ELSEWHERE = 0.85  # or one of another table
 _TYPES = {
     "float_type": "a number",
     "int_type": "a whole number",

@@ -242,6 +242,14 @@ def test_parameters_are_refused(given, message):
         ({"ve_thickness": 150e-6}, "SC-VE junction and VE-D junction cross by .*ve_thickness is 0.00015 m"),
         ({"limiting_ridge_height": 450e-6}, "SC-VE junction and VE-D junction cross by .*ve_thickness is 0.000175 m"),
         ({"dermis_thickness": 100e-6}, "VE-D junction and D-subcutis junction cross by .*dermis_thickness is 0.0001 m"),
+        (
+            {"merkel_offset": 900e-6},
+            "merkel_offset is 0.0009 m; it must be below the thickness of the viable epidermis",
+        ),
+        (
+            {"meissner_offset": 1e-3, "dermis_thickness": 800e-6},
+            "meissner_offset is 0.001 m; it must be below the height",
+        ),
         ({"ridge_count": 101}, "ridge_count 101 of ridge_wavelength 0.000483 m do not fit"),
         ({"dermis_thickness": 5e-3}, "0.00565 m deep, more than the outline's radius of curvature, 0.0049 m"),
         ({"bone_centre": 4.5e-3}, "bone touches the skin's layers at .*bone_centre"),
