@@ -184,9 +184,9 @@ def tip_radius(finger: Fingertip) -> float:
     step, profiles = 1e-3 * finger.ridge_wavelength, Profiles(finger)
     crest = profiles.crests[-1]
     low, high = (float(profiles.skin(s)) for s in (crest, crest + step))
-    several = len({round(s / step) % 1000 for s in profiles.crests}) > 1  # those in both grooves are the same one
-    if several or high <= low:
-        what = f"{len(profiles.crests)} crests" if several else "a flat tip"
+    places = {round(s / step) % 1000 for s in profiles.crests}  # one in either groove is the same one
+    if len(places) > 1 or high <= low:
+        what = f"{len(places)} crests" if len(places) > 1 else "a flat tip"
         raise SceneError(
             f"geometry.ridge_profile gives a ridge {what}; rung 1 takes ridges for cylinders, so use rung 2"
         )
