@@ -309,6 +309,17 @@ def test_refusal_reaches_every_rank(error):
 
 
 @pytest.mark.mpi
+def test_what_gmsh_refuses_is_one_sentence():
+    def refuse() -> float:
+        raise Exception("Invalid boundary mesh (overlapping facets) on surface 1")
+
+    with pytest.raises(
+        GeometryError, match="gmsh cannot mesh the body: Invalid boundary mesh .*; try smaller elements"
+    ):
+        load(MPI.COMM_WORLD, refuse)
+
+
+@pytest.mark.mpi
 def test_missing_tag_is_refused():
     build = partial(block, MM, MM, 0.5 * MM)
     load(MPI.COMM_WORLD, build, [tags.STRATUM_CORNEUM, tags.ridge(0), tags.BONE_RIM, tags.SIDES])
