@@ -21,6 +21,7 @@ from scipy.optimize import minimize_scalar
 from geometry.parameters import Fingertip
 
 Array = NDArray[np.float64]
+_APART = 1e-6  # m, between points that the mesh has where the nail begins
 _PHASES = np.linspace(0, np.pi, 2001)  # rad, half a period of a ridge's profile, which is even
 
 
@@ -251,6 +252,7 @@ class Profiles:
             )
         self._check_sites()
         self._check_bone()
+        self._check_edge()
 
     def _check_sites(self) -> None:
         """Refuse receptor sites that are not in their layers."""
@@ -292,6 +294,26 @@ class Profiles:
                 f"the bone reaches the nail: its top, bone_centre + bone_height / 2, is at {rim[:, 1].max():.4g} m "
                 f"and must stay below the nail's inner face at {f.height - f.nail_thickness:.4g} m"
             )
+
+    def _check_edge(self) -> None:
+        """Refuse layers that do not get from the nail's edge to the bone."""
+        f, end = self.finger, self.nail_arc
+        foot = self.bone(np.pi - np.arcsin(2 * f.nail_bed_half_width / f.bone_width))
+        start = self.point(end, self.d_sub(end))
+        line = start + np.linspace(0, 0.99, 100)[:, None] * (foot - start)
+        inside = (2 * line[:, 0] / f.bone_width) ** 2 + (2 * (line[:, 1] - f.bone_centre) / f.bone_height) ** 2 < 1
+        if inside.any() or (line[:, 0] <= 0).any():
+            raise GeometryError(
+                "the skin's layers end inside the bone at the nail's edge: reduce dermis_thickness "
+                f"({f.dermis_thickness:g} m) or bone_width ({f.bone_width:g} m), or change nail_half_width "
+                f"({f.nail_half_width:g} m) or nail_bed_half_width ({f.nail_bed_half_width:g} m)"
+            )
+        for name, depth in (("SC-VE", self.sc_ve(end)), ("VE-D", self.ve_d(end))):
+            if abs(float(depth) - f.nail_thickness) < _APART:
+                raise GeometryError(
+                    f"nail_thickness is {f.nail_thickness:g} m, the depth of the {name} junction at the nail's edge; "
+                    f"it must differ by {_APART:g} m or more"
+                )
 
 
 def _signed_distance(points: Array, curve: Array, inward: Array) -> tuple[NDArray[np.intp], Array]:

@@ -250,6 +250,11 @@ def test_parameters_are_refused(given, message):
             {"meissner_offset": 1e-3, "dermis_thickness": 800e-6},
             "meissner_offset is 0.001 m; it must be below the height",
         ),
+        ({"dermis_thickness": 3.8e-3}, "layers end inside the bone at the nail's edge: reduce dermis_thickness"),
+        (
+            {"nail_thickness": 475e-6},
+            "nail_thickness is 0.000475 m, the depth of the SC-VE junction at the nail's edge",
+        ),
         ({"ridge_count": 101}, "ridge_count 101 of ridge_wavelength 0.000483 m do not fit"),
         ({"dermis_thickness": 5e-3}, "0.00565 m deep, more than the outline's radius of curvature, 0.0049 m"),
         ({"bone_centre": 4.5e-3}, "bone touches the skin's layers at .*bone_centre"),
