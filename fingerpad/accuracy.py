@@ -29,6 +29,7 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import ArrayLike, NDArray
 
+from fingerpad.budget import refuse_beyond
 from fingerpad.estimate import Knob, errors, to_halve
 from fingerpad.interrupt import Interrupted
 from fingerpad.needs import Plan
@@ -278,6 +279,7 @@ class Search:
         """Return the states on a mesh, from those in use or from others where they are given."""
         self.pause()
         scene = self.scene.model_copy(update={"mesh": mesh})
+        refuse_beyond(scene, self._needed)
         found = solve_again(scene, self._needed, {**self.base.states, **(states or {})}, self.comm)
         self._note(found)
         return found

@@ -179,10 +179,15 @@ def tip_radius(finger: Fingertip) -> float:
     """Return the radius of curvature of a ridge's tip (m).
 
     Raises:
-        SceneError: the tip is flat or hollow.
+        SceneError: a ridge has several crests, or a flat one.
     """
-    step = 1e-3 * finger.ridge_wavelength
-    low, high = (float(Profiles(finger).skin(s)) for s in (0.0, step))
-    if high <= low:
-        raise SceneError("geometry.ridge_profile has no round tip; rung 1 takes ridges for cylinders, so use rung 2")
+    step, profiles = 1e-3 * finger.ridge_wavelength, Profiles(finger)
+    crest = profiles.crests[-1]
+    low, high = (float(profiles.skin(s)) for s in (crest, crest + step))
+    places = {round(s / step) % 1000 for s in profiles.crests}  # one in either groove is the same one
+    if len(places) > 1 or high <= low:
+        what = f"{len(places)} crests" if len(places) > 1 else "a flat tip"
+        raise SceneError(
+            f"geometry.ridge_profile gives a ridge {what}; rung 1 takes ridges for cylinders, so use rung 2"
+        )
     return step**2 / (2 * (high - low))

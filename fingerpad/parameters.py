@@ -1,44 +1,43 @@
-"""The tables of a scene: loads, materials, insulators, roughness, contact and numerics, with units and bounds."""
+"""The tables of a scene: loads, accuracy, contact, output and numerics, with units and the ranges that make sense.
+
+:mod:`fingerpad.materials` has the others. The docstring of each parameter has the reason of its range.
+"""
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
+from fingerpad.names import load_name
 from fingerpad.sentences import show
+from fingerpad.table import Finite, Part, Switch
+from geometry.bounds import within
 from variational.augmented import AugmentedLagrangian
 from variational.contact import Formulation
-from variational.electroadhesion import insulator_thickness
 from variational.nitsche import Nitsche
 from variational.penalty import Penalty
-from variational.roughness.bam import BearingArea
 
-Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0)]
-NonNegative = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0)]
-Permittivity = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=1)]
-Poisson = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=-1, lt=0.5)]
-Tolerance = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, lt=1)]
-
-
-class Part(BaseModel):
-    """A table that refuses keys it does not have, and cannot be changed."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
+Rest = Annotated[Finite, within(1e-12, 1e-3)]
+Asked = Annotated[Finite, within(1e-6, 0.5)]
+Voltage = Annotated[Finite, within(1e-3, 5e3, "V", zero=True)]
+Way = Annotated[Finite, within(1e-9, 0.1, "m", zero=True, sides=2)]
 
 
 class Load(Part):
     """A load to reach from the present one; what is left out stays as it is."""
 
-    name: str
-    f_ext: NonNegative | None = None
-    """External normal force on the bone (N/m); zero only under voltage, which then holds the skin on the screen."""
-    bone_height: Finite | None = None
-    """Change of the bone's height from the unloaded position (m), negative when pressed."""
-    voltage: NonNegative | None = None
-    """Instantaneous voltage U (V)."""
-    bone_x: Finite | None = None
-    """Horizontal position of the bone (m), zero when unloaded."""
-    until_full_slip: Annotated[bool, Field(strict=True)] = False
+    name: Annotated[str, AfterValidator(load_name)]
+    """Also of the load's pictures; see :mod:`fingerpad.names`."""
+    f_ext: Annotated[Finite, within(1e-3, 5e3, "N/m", zero=True)] | None = None
+    """External normal force on the bone (N/m); zero only under voltage, which then holds the skin on the screen. The
+    range is the default scene's."""
+    bone_height: Way | None = None
+    """Change of the bone's height from the unloaded position (m), negative when pressed; 1 nm is less than an atom of
+    skin feels, 0.1 m is more than any finger."""
+    voltage: Voltage | None = None
+    """Instantaneous voltage U (V), in the range of the default scene's."""
+    bone_x: Way | None = None
+    """Horizontal position of the bone (m), zero when unloaded; in the range of the height."""
+    until_full_slip: Switch = False
     """Stop as soon as every point in contact slips one way; with bone_x alone."""
 
     @model_validator(mode="after")
@@ -74,10 +73,11 @@ class Accuracy(Part):
     densities are those of normal contact and of full slip.
     """
 
-    mu_app: Tolerance | None = None
-    f_t: Tolerance | None = None
-    contact_length: Tolerance | None = None
-    sed: Tolerance | None = None
+    mu_app: Asked | None = None
+    """This and the others are from 1e-6, to which no mesh comes that a machine can hold, to 0.5, which says nothing."""
+    f_t: Asked | None = None
+    contact_length: Asked | None = None
+    sed: Asked | None = None
     """At the Merkel sites of the ridges that can touch, over the largest of them."""
 
     @model_validator(mode="after")
@@ -91,100 +91,6 @@ class Accuracy(Part):
         return {name: value for name in type(self).model_fields if (value := getattr(self, name)) is not None}
 
 
-class Skin(Part):
-    """Ogden solid (Eqs. 1 and 2)."""
-
-    shear_modulus: Positive
-    """Initial shear modulus G_0 (Pa)."""
-    alpha: Finite
-    poisson: Poisson = 0.48
-
-    @model_validator(mode="after")
-    def _consistent(self) -> "Skin":
-        if self.alpha == 0:
-            raise ValueError("alpha is 0; it must be another number, positive or negative")
-        return self
-
-
-class Stiff(Part):
-    """Saint Venant-Kirchhoff solid: linear elastic at finite rotation (*assumption*; the paper: linear elastic)."""
-
-    young: Positive
-    """Young's modulus (Pa)."""
-    poisson: Poisson = 0.3
-
-
-class Materials(Part):
-    """Materials of the layers (Table 2). A table that gives some keys of a layer keeps the others' defaults."""
-
-    subcutis: Skin = Skin(shear_modulus=25e3, alpha=5.0)
-    dermis: Skin = Skin(shear_modulus=2.55e3, alpha=-14.53)
-    viable_epidermis: Skin = Skin(shear_modulus=61.75e3, alpha=-14.53)
-    stratum_corneum: Skin = Skin(shear_modulus=86.76e3, alpha=-14.53)
-    nail: Stiff = Stiff(young=170e6)
-    nail_bed: Stiff = Stiff(young=1e6)
-    exponent: Literal["printed", "abaqus"] = "printed"
-    """Power of the stretches: ``"printed"`` for the paper's -alpha, ``"abaqus"`` for +alpha.
-    *Assumption*: the paper computed with Abaqus but prints -alpha."""
-
-    @model_validator(mode="before")
-    @classmethod
-    def _complete(cls, data: Any) -> Any:
-        if not isinstance(data, dict):
-            return data
-        defaults = {name: field.default for name, field in cls.model_fields.items()}
-        return {
-            name: defaults[name].model_dump() | given
-            if isinstance(given, dict) and isinstance(defaults.get(name), BaseModel)
-            else given
-            for name, given in data.items()
-        }
-
-
-class Electric(Part):
-    """Insulators between finger and electrode (Table 3)."""
-
-    eps_sc: Permittivity = 1650.0
-    """Relative permittivity of the stratum corneum, at 3 kHz."""
-    d_i: Positive = 1e-6
-    """Thickness of the screen's insulating layer (m)."""
-    eps_i: Permittivity = 3.9
-    """Relative permittivity of that layer."""
-
-    def h_0(self, d_sc: float) -> float:
-        """Return the effective insulator thickness (m) under stratum corneum of thickness ``d_sc`` (m)."""
-        return insulator_thickness(d_sc, self.eps_sc, self.d_i, self.eps_i)
-
-
-class Roughness(Part):
-    """Roughness of a ridge (Table 3), see :class:`variational.roughness.bam.BearingArea`."""
-
-    h_rms: Positive = 3.1e-6
-    """Root mean square height (m)."""
-    wavelength: Positive = 100e-6
-    """Largest wavelength lambda_0 (m)."""
-    young: Positive = 1e6
-    """Elastic modulus of the stratum corneum on the microscale (Pa)."""
-    gamma: Positive = 0.5
-    beta: Positive = 1.0
-    """Prefactor of the repulsion: 1 in Eq. 9; Eq. 15 takes 3/4. *Assumption*: Eq. 9 is meant."""
-    p_floor: Positive = 1e3
-    """Pressure (Pa) below which the air gap is held (*assumption*)."""
-
-    def bearing_area(self, h_0: float) -> BearingArea:
-        """Return the closure for an effective insulator thickness ``h_0`` (m)."""
-        return BearingArea(h_0, **self.model_dump())
-
-    @model_validator(mode="after")
-    def _consistent(self) -> "Roughness":
-        full = self.bearing_area(1.0).full_pressure
-        if self.p_floor >= full:
-            raise ValueError(
-                f"p_floor is {show(self.p_floor)}; it must be below the pressure at zero separation, {full:.4g} Pa"
-            )
-        return self
-
-
 class Contact(Part):
     """How contact and friction are discretised, and what is called contact.
 
@@ -193,16 +99,18 @@ class Contact(Part):
 
     formulation: Literal["penalty", "nitsche", "augmented"] = "penalty"
     """Springs of the screen, Nitsche's method, or an augmented Lagrangian; see :mod:`variational.contact`."""
-    eps_n: Positive = 1.5e12
+    eps_n: Annotated[Finite, within(1e7, 1e17, "Pa/m")] = 1.5e12
     """Normal stiffness of the penalty and the augmented Lagrangian (Pa/m of reference area). *Assumption*: penetration
-    stays below a tenth of d_eq. The augmented Lagrangian's default is ten times as stiff, for fewer sweeps."""
-    eps_t: Positive = 5e10
+    stays below a tenth of d_eq. The augmented Lagrangian's default is ten times as stiff, for fewer sweeps. With 1e7
+    the finger sinks in by millimetres; with 1e17 roundoff of a length of 1 mm makes 20 kPa."""
+    eps_t: Annotated[Finite, within(1e6, 1e17, "Pa/m")] = 5e10
     """Tangential stiffness of the two (Pa/m of reference area) (*assumption*); the augmented Lagrangian's likewise."""
-    tolerance: Positive = 5e-9
-    """Penetration and elastic slip that the augmented Lagrangian leaves (m): a three-hundredth of the smallest d_eq."""
-    gamma_0: Positive = 1.0
+    tolerance: Annotated[Finite, within(1e-12, 1e-6, "m")] = 5e-9
+    """Penetration and elastic slip that the augmented Lagrangian leaves (m): a three-hundredth of the smallest d_eq.
+    Below 1e-12 it is roundoff, above 1 µm the air gap itself."""
+    gamma_0: Annotated[Finite, within(1e-3, 1e6)] = 1.0
     """Nitsche's stiffness over the skin's constrained modulus per facet length; with 10 the default finger finds no
-    equilibrium while it is pressed (``docs/chart.md``)."""
+    equilibrium while it is pressed (``docs/chart.md``). Of order 1 by its meaning, with powers of ten to try."""
     theta: Literal[-1, 0, 1] = 0
     """Nitsche's variant; 1 and -1 compile for longer, and 1 needs a larger gamma_0."""
     length: Literal["pressure", "gap"] = "pressure"
@@ -248,9 +156,9 @@ _FORMULATION_KEYS = {
 class Output(Part):
     """What a run is asked for; what is not wanted is not computed."""
 
-    receptors: Annotated[bool, Field(strict=True)] = True
+    receptors: Switch = True
     """Strain energy density at the Merkel and Meissner sites, with elements of ``mesh.receptor`` at them."""
-    errors: Annotated[bool, Field(strict=True)] = True
+    errors: Switch = True
     """Discretisation errors of the results; see :mod:`fingerpad.accuracy`. Where an accuracy is asked for they are
     estimated in any case."""
 
@@ -262,14 +170,22 @@ class Numerics(Part):
     """Displacement, and pressure where there is one; see :mod:`variational.element`."""
     quadrature_points: Annotated[int, Field(strict=True, ge=2, le=8)] = 4
     """Gauss points on a surface facet."""
-    tolerance: Tolerance = 1e-9
-    """Residual of the equilibrium over f_ext at which Newton's method ends."""
-    coupling_tolerance: Tolerance = 1e-6
-    """Relative change of d_eq at which the loop over the scales ends."""
-    coupling_cap: Annotated[int, Field(strict=True, ge=1)] = 30
-    """Most sweeps of that loop."""
-    step_scale: Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=10)] = 1.0
-    """Factor on the largest steps of force, voltage and displacement."""
+    tolerance: Rest = 1e-9
+    """Residual of the equilibrium over f_ext at which Newton's method ends: from 1e-12, near roundoff, to 1e-3, with
+    which no force is off by more than some thousandths."""
+    coupling_tolerance: Rest = 1e-6
+    """Relative change of d_eq at which the loop over the scales ends, in the same range. What is left of the loop is
+    its gain g times as much over 1 - g, and the attraction is off by up to twice that: by less than 1e-2 with 1e-3
+    up to a gain of 0.8."""
+    coupling_cap: Annotated[int, Field(strict=True, ge=1, le=1000)] = 30
+    """Most sweeps of that loop; one that needs a thousand does not converge."""
+    step_scale: Annotated[Finite, within(1e-3, 10.0)] = 1.0
+    """Factor on the largest steps of force, voltage and displacement: a thousandth makes thousands of steps of each
+    load, and of ten times the largest steps few are accepted."""
+    memory: Annotated[Finite, within(1e8, 1e15, "B")] = 16e9
+    """Most memory (bytes) that a run may need on all ranks together, by the estimate of :mod:`fingerpad.budget`. A
+    scene beyond it is refused before meshing; the default leaves a machine of 24 GB some room. From 0.1 GB, which the
+    program itself takes, to 1000 TB."""
 
     @model_validator(mode="after")
     def _consistent(self) -> "Numerics":

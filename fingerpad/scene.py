@@ -2,33 +2,21 @@
 
 import json
 import re
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import Field, ValidationError, model_validator
 
-from fingerpad.parameters import (
-    Accuracy,
-    Contact,
-    Electric,
-    Load,
-    Materials,
-    NonNegative,
-    Numerics,
-    Output,
-    Part,
-    Positive,
-    Roughness,
-)
-from fingerpad.sentences import first_error, qualify, show
+from fingerpad.materials import Electric, Materials, Roughness
+from fingerpad.names import first_clash
+from fingerpad.parameters import Accuracy, Contact, Load, Numerics, Output, Voltage
+from fingerpad.reading import plain, read
+from fingerpad.sentences import SceneError, first_error, key_of, qualify, show
+from fingerpad.table import Finite, Part
+from geometry.bounds import within
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
-
-
-class SceneError(ValueError):
-    """A scene that cannot be run; one sentence that names the key, its value and what is allowed."""
 
 
 class Scene(Part):
@@ -38,16 +26,20 @@ class Scene(Part):
     every ridge slips. With ``history`` the loads say it all and the three keys of the default one are refused.
     """
 
-    f_ext: Positive = 75.0
-    """External normal force on the bone (N/m)."""
-    voltage: NonNegative = 200.0
-    """Instantaneous voltage U (V). *Assumption*: Eq. 3's, not Table 3's peak to peak."""
-    slide_length: Positive = 5e-3
-    """Farthest the bone slides (m) on its way to full slip (*assumption*)."""
-    history: Annotated[tuple[Load, ...], Field(min_length=1)] | None = None
-    """Loads one after the other, in place of the default press, charge and slide."""
-    friction: Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0, le=2)] = 0.25
-    """Friction coefficient mu_0 of skin on the screen."""
+    f_ext: Annotated[Finite, within(1e-3, 5e3, "N/m")] = 75.0
+    """External normal force on the bone (N/m): 1e-3 N/m is the weight of a grain of sand on a finger, 5000 N/m are
+    100 N on 20 mm of it, which hurts."""
+    voltage: Voltage = 200.0
+    """Instantaneous voltage U (V). *Assumption*: Eq. 3's, not Table 3's peak to peak. None, or from 1 mV, which
+    attracts with less than 1 µPa, to 5 kV, ten times what displays have."""
+    slide_length: Annotated[Finite, within(1e-9, 0.1, "m")] = 5e-3
+    """Farthest the bone slides (m) on its way to full slip (*assumption*): a screen is no longer than 0.1 m to a
+    finger, and 1 nm is less than the skin's own slip before sliding."""
+    history: Annotated[tuple[Load, ...], Field(min_length=1, max_length=1000)] | None = None
+    """Loads one after the other, in place of the default press, charge and slide; a thousand take a machine days."""
+    friction: Annotated[Finite, within(1e-6, 2.0, zero=True)] = 0.25
+    """Friction coefficient mu_0 of skin on the screen: none, or from 1e-6, a part of f_ext that the balance of the
+    equilibrium leaves open, to 2, that of rubber."""
     geometry: Fingertip = Fingertip()
     mesh: MeshSize = MeshSize()
     materials: Materials = Materials()
@@ -79,6 +71,16 @@ class Scene(Part):
         return self
 
     @model_validator(mode="after")
+    def _ends_somewhere(self) -> "Scene":
+        gap = self.roughness.largest_gap(self.h_0)
+        if not gap < _LARGEST_GAP:
+            raise ValueError(
+                f"roughness.p_floor is {show(self.roughness.p_floor)}, where the air gap would be held at {gap:.3g} m; "
+                f"it must be below {_LARGEST_GAP:g} m: take a larger p_floor, or a smaller gamma or h_rms"
+            )
+        return self
+
+    @model_validator(mode="after")
     def _one_history(self) -> "Scene":
         if self.history is None:
             return self
@@ -93,6 +95,13 @@ class Scene(Part):
             raise ValueError(
                 f"history[0].name is {show(first.name)}, with neither f_ext nor bone_height; "
                 "the first load must give one of them"
+            )
+        clash = first_clash([load.name for load in self.history])
+        if clash is not None:
+            one, other = (show(self.history[k].name) for k in clash)
+            raise ValueError(
+                f"history[{clash[1]}].name is {other} and history[{clash[0]}].name is {one}; each load must have a "
+                "name of its own, also where spaces become _ and letters have no case, since files are named by it"
             )
         self._refuse_floating()
         return self
@@ -131,11 +140,12 @@ class Scene(Part):
         unused |= {"accuracy": True} if self.accuracy is None else {}
         if self.output == Output():  # not a word of it, so that runs made before it was a key are found
             unused["output"] = True
-        if self.numerics.step_scale == 1.0:  # likewise
-            unused["numerics"] = {"step_scale"}
+        default = Numerics()  # likewise
+        unused["numerics"] = {n for n in ("step_scale", "memory") if getattr(self.numerics, n) == getattr(default, n)}
         return self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
 
 
+_LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
 _START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}
 _START_AT_SITES = 10e-6  # m; coarser elements do not see the tips of 6 µm, and to halve them tells nothing of the error
 _DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
@@ -152,14 +162,7 @@ def load(path: Path | None = None, overrides: Mapping[str, Any] | None = None) -
     Raises:
         SceneError: the file cannot be read, or the first key at fault.
     """
-    data: dict[str, Any] = {}
-    if path is not None:
-        try:
-            data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-        except OSError as error:
-            raise SceneError(f"scene file {path} cannot be read: {error.strerror or error}") from None
-        except ValueError as error:  # of the encoding or of TOML
-            raise SceneError(f"scene file {path} is not TOML: {error}") from None
+    data: dict[str, Any] = plain(read(Path(path))) if path is not None else {}
     for key, value in (overrides or {}).items():
         _put(data, key.split("."), value)
     return from_data(data)
@@ -171,9 +174,12 @@ def from_data(data: Mapping[str, Any]) -> Scene:
     Raises:
         SceneError: the first key at fault.
     """
+    data = plain(data)
+    if not isinstance(data, dict):
+        raise SceneError(f"a scene is {show(data)}; it must be a table of keys")
     try:
         # As JSON, because there a list is a tuple and a table is a model even under strict rules.
-        return Scene.model_validate_json(json.dumps(_coarse_start(data), default=str), strict=True)
+        return Scene.model_validate_json(json.dumps(_coarse_start(data)), strict=True)
     except ValidationError as error:
         raise SceneError(first_error(error, Scene)) from None
 
@@ -195,12 +201,15 @@ def check(scene: Scene) -> None:
     """Refuse a scene whose finger cannot be built or meshed.
 
     Raises:
-        SceneError: layers touch or cross, ridges do not fit, the bone touches the skin, or elements are too large.
+        SceneError: layers touch or cross, ridges do not fit, the bone touches the skin, elements are too large, or so
+            many that they need more memory than the scene allows.
     """
+    from fingerpad.budget import refuse_beyond
     from geometry import fingertip  # gmsh: not for those who only read scenes
 
     try:
         fingertip.check(scene.geometry, scene.mesh)
+        refuse_beyond(scene)
     except GeometryError as error:
         message = re.sub(r"\bcontact size (\S+) m is", r"mesh.contact is \1 m,", str(error))
         raise SceneError(qualify(message, "geometry.", Fingertip.model_fields)) from None
@@ -210,5 +219,5 @@ def _put(data: dict[str, Any], keys: Sequence[str], value: Any) -> None:
     for depth, key in enumerate(keys[:-1], start=1):
         data = data.setdefault(key, {})
         if not isinstance(data, dict):
-            raise SceneError(f"{'.'.join(keys[:depth])} is {show(data)}; it must be a table of keys")
+            raise SceneError(f"{key_of(keys[:depth])} is {show(data)}; it must be a table of keys")
     data[keys[-1]] = value

@@ -1,11 +1,24 @@
-"""What is wrong with a model's input, in one sentence: the dotted key, the value given, and what is allowed."""
+"""What is wrong with a scene, in one sentence: the dotted key, the value given, and what is allowed.
+
+No sentence is longer than :data:`MOST` characters, whatever a user wrote: texts of the user's own are shortened where
+they are quoted, and their control characters are written out.
+"""
 
 import re
 from collections.abc import Iterable, Iterator
+from difflib import SequenceMatcher
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
+from geometry.bounds import OUT_OF_RANGE
+
+MOST = 280  # characters of a sentence; with the name of the program before it less than 300
+_MOST_VALUE = 60  # of a value that is quoted
+_MOST_KEY = 40  # of a key
+_MOST_LIST = 150  # of a list of keys
+_NEAR = 0.6  # likeness, from 0 to 1, at which a key of the same table may have been meant,
+_ELSEWHERE = 0.85  # or one of another table
 _TYPES = {
     "float_type": "a number",
     "int_type": "a whole number",
@@ -25,19 +38,57 @@ _BOUNDS = {
 }
 
 
+class SceneError(ValueError):
+    """A scene that cannot be run; one sentence that names the key, its value and what is allowed."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(clip(message, MOST))
+
+
+# -- texts ---------------------------------------------------------------------------------------------
+def clip(text: str, most: int = _MOST_VALUE) -> str:
+    """Return a text in one line of printable characters, at most so many of them."""
+    text = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text[: most + 1])
+    return text if len(text) <= most else text[: most - 3] + "..."
+
+
+def show(value: Any) -> str:
+    """Return a value as a person would type it, shortened."""
+    if isinstance(value, bool) or value is None:
+        return {True: "true", False: "false", None: "empty"}[value]
+    if isinstance(value, int | float):
+        return f"{value:.12g}"
+    return clip(repr(value))
+
+
+def key_of(parts: Iterable[int | str]) -> str:
+    """Return the dotted key of a place in a scene; parts that are no plain keys are quoted."""
+    key = ""
+    for part in parts:
+        if isinstance(part, int):
+            key += f"[{part}]"
+            continue
+        plain = re.fullmatch(r"[A-Za-z0-9_-]+", part)
+        key += "." * bool(key) + (clip(part, _MOST_KEY) if plain else clip(repr(part), _MOST_KEY))
+    return key
+
+
+# -- errors --------------------------------------------------------------------------------------------
 def first_error(error: ValidationError, root: type[BaseModel]) -> str:
     """Return the first error of a validation of ``root`` as one sentence."""
     first = error.errors(include_url=False)[0]
-    kind, context, given = first["type"], first.get("ctx", {}), show(first["input"])
-    key = re.sub(r"\.(\d+)", r"[\1]", ".".join(str(part) for part in first["loc"]))
+    kind, context, given, loc = first["type"], first.get("ctx", {}), show(first["input"]), first["loc"]
+    key = key_of(loc)
+    if kind == OUT_OF_RANGE:
+        return f"{key} {first['msg']}"
     if kind == "extra_forbidden":
-        table, _, _ = key.rpartition(".")
-        keys = ", ".join(_model_at(root, first["loc"][:-1]).model_fields)
-        return f"{key} is not a key of {table or 'a scene'}; keys are {keys}"
+        return f"{key} is not a key of {key_of(loc[:-1]) or 'a scene'}; {_instead(root, loc)}"
     if kind == "missing":
         return f"{key} is missing; it must be given"
     if kind == "value_error":
-        model = _model_at(root, first["loc"])
+        model = _model_at(root, loc)
+        if model is None:
+            return f"{key} is {given}; {context['error']}"
         return qualify(str(context["error"]), f"{key}." if key else "", model.model_fields)
     if kind in _BOUNDS:
         name, words = _BOUNDS[kind]
@@ -46,17 +97,20 @@ def first_error(error: ValidationError, root: type[BaseModel]) -> str:
         return f"{key} is {given}; it must be {context['expected']}"
     if kind == "too_short":
         return f"{key} is empty; it must have at least one entry"
+    if kind == "too_long":
+        return f"{key} has too many entries; it must have at most {context['max_length']}"
     if kind in _TYPES:
-        return f"{key} is {given}; it must be {_TYPES[kind]}"
-    return f"{key} is {given}; {first['msg']}"
+        return f"{key or 'a scene'} is {given}; it must be {_TYPES[kind]}"
+    return f"{key or 'a scene'} is {given}; {first['msg']}"
 
 
-def _model_at(model: type[BaseModel], loc: Iterable[int | str]) -> type[BaseModel]:
-    """Return the model at a place in another one."""
+def _model_at(model: type[BaseModel], loc: Iterable[int | str]) -> type[BaseModel] | None:
+    """Return the model at a place in another one, None where there is a value."""
+    found: type[BaseModel] | None = model
     for part in loc:
-        if isinstance(part, str):
-            model = next(_models_in(model.model_fields[part].annotation))
-    return model
+        if isinstance(part, str) and found is not None:
+            found = next(_models_in(found.model_fields[part].annotation), None)
+    return found
 
 
 def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
@@ -67,18 +121,40 @@ def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
         yield from _models_in(part)
 
 
+# -- unknown keys --------------------------------------------------------------------------------------
+def _instead(root: type[BaseModel], loc: tuple[int | str, ...]) -> str:
+    """Return what may have been meant by an unknown key: the nearest key of all tables, or those of its own."""
+    table, name = key_of(loc[:-1]), str(loc[-1])
+    own = list(getattr(_model_at(root, loc[:-1]), "model_fields", ()))
+    wanted = clip(name, _MOST_KEY).lower().replace("-", "_")
+    keys = [(table, key, _NEAR) for key in own]
+    keys += [(where, key, _ELSEWHERE) for where, key in _keys(root) if where != table]
+    near = [
+        (likeness, -k)
+        for k, (_, key, least) in enumerate(keys)
+        if (likeness := SequenceMatcher(None, wanted, key.lower()).ratio()) >= least
+    ]
+    if near:
+        where, key, _ = keys[-max(near)[1]]
+        return f"did you mean {where}{'.' * bool(where)}{key}?"
+    known = ", ".join(own)
+    return f"keys are {known if len(known) <= _MOST_LIST else known[:_MOST_LIST].rpartition(',')[0] + ' and others'}"
+
+
+def _keys(model: type[BaseModel], table: str = "") -> Iterator[tuple[str, str]]:
+    """Yield every table and key that a model has, from the top down."""
+    for name in model.model_fields:
+        yield table, name
+    for name, field in model.model_fields.items():
+        for inner in _models_in(field.annotation):
+            entry = "[0]" if "tuple" in str(field.annotation) else ""
+            yield from _keys(inner, f"{table}{'.' * bool(table)}{name}{entry}")
+
+
 def qualify(message: str, prefix: str, names: Iterable[str]) -> str:
-    """Put the table's name before the keys a message speaks of."""
-    for name in names:
-        message = re.sub(rf"(?<![\w.]){name}\b", prefix + name, message)
-    return message
-
-
-def show(value: Any) -> str:
-    """Return a value as a person would type it, shortened."""
-    if isinstance(value, bool) or value is None:
-        return {True: "true", False: "false", None: "empty"}[value]
-    if isinstance(value, int | float):
-        return f"{value:.12g}"
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+    """Put the table's name before the keys a message speaks of, but not inside quotations."""
+    parts = re.split(r"""((?<!\w)(?:'[^']*'|"[^"]*"))""", message)
+    for k in range(0, len(parts), 2):
+        for name in names:
+            parts[k] = re.sub(rf"(?<![\w.]){name}\b", prefix + name, parts[k])
+    return "".join(parts)

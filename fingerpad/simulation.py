@@ -208,7 +208,8 @@ class Simulation:
         loads = self.ridge_loads()
         self._check_balance(loads)
         self._zone.check(self.ridges, loads)
-        if direction and not self._slides_on(Load(name=name, bone_x=self.solver.control.x + direction)):
+        ahead = Load.model_construct(name=name, bone_x=self.solver.control.x + direction)
+        if direction and not self._slides_on(ahead):
             raise StepFailed(
                 f"{name}, solved again with a contact size of {self.scene.mesh.contact:g} m, is not steady"
             )

@@ -24,6 +24,7 @@ from fingerpad.simulation import solids
 from geometry import fingertip, tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
+from geometry.profiles import Profiles
 from variational.continuation import Attempt, Continuation, StepFailed, Target
 from variational.coupling import Coupling
 from variational.problem import Interface, Problem
@@ -45,7 +46,7 @@ def smoothed(finger: Fingertip) -> Fingertip:
     changes = {
         "width": finger.width - 2 * depth,
         "height": finger.height - 2 * depth,
-        "bone_centre": finger.bone_centre - depth,
+        "bone_centre": finger.bone_centre - depth + Profiles(finger).lowered,
         "ridge_amplitude": 1e-9,
     }
     return Fingertip.model_validate(finger.model_dump() | changes)
@@ -181,7 +182,8 @@ class _SmoothFinger:
         pressure = np.divide(force, length, out=np.zeros_like(force), where=length > 0)
         closure = self.scene.roughness.bearing_area(self.scene.h_0)
         d_eq = closure(pressure).d_eq if self.scene.voltage else np.full_like(pressure, np.nan)
-        up = np.array([0.0, ridge_cell.mean_depth(self.scene.geometry)])
+        finger = self.scene.geometry
+        up = np.array([0.0, ridge_cell.mean_depth(finger) - Profiles(finger).lowered])
         return replace(
             found,
             corners=found.corners + up,

@@ -234,8 +234,7 @@ def _sizes(p: Profiles, size: MeshSize, c: _Curves, touching: list[int], recepto
         return int(growth)
 
     # The tips that can touch, as points half a facet apart.
-    half = size.touching_fraction * f.ridge_wavelength / 2
-    across = np.linspace(-half, half, 1 + int(np.ceil(2 * half / max(size.contact / 2, 2e-6))))
+    across = p.touching_arcs(size.touching_fraction, max(size.contact / 2, 2e-6))
     s = (np.array(touching)[:, None] * f.ridge_wavelength + across).ravel()
     tips = _mesh_points(p.point(s, p.skin(s)))
     cones = [cone(size.contact, PointsList=tips)]

@@ -40,7 +40,7 @@ def load(comm: MPI.Comm, build: Callable[[], float], needed: Iterable[int] = ())
         needed: tags of cells or facets that must exist.
 
     Raises:
-        GeometryError: what ``build`` refuses, on every rank; or a needed tag without any entity.
+        GeometryError: what ``build`` or gmsh refuses, on every rank; or a needed tag without any entity.
     """
     unit, failure = 1.0, None
     if comm.rank == 0:
@@ -50,7 +50,8 @@ def load(comm: MPI.Comm, build: Callable[[], float], needed: Iterable[int] = ())
         try:
             unit = build()
         except Exception as error:  # whatever it is, the other ranks must not wait for a mesh
-            failure = error
+            plain = type(error) is Exception  # gmsh's own, which are of no other kind
+            failure = GeometryError(f"gmsh cannot mesh the body: {error}; try smaller elements") if plain else error
     failure = comm.bcast(failure)
     try:
         if failure is not None:

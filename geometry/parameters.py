@@ -1,10 +1,23 @@
-"""Geometric parameters of the fingertip and of its mesh, validated, in SI units."""
+"""Geometric parameters of the fingertip and of its mesh, validated, in SI units.
+
+Ranges are wide enough for any primate's finger and for artificial ones; each has its reason in the docstring of its
+parameter, or of the one before. What the parameters are together is checked by :mod:`geometry.fingertip`.
+"""
 
 from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+from geometry.bounds import within
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Outline = Annotated[Finite, within(1e-3, 0.1, "m")]
+Part = Annotated[Finite, within(1e-5, 0.1, "m")]
+Layer = Annotated[Finite, within(1e-6, 1e-2, "m")]
+Wave = Annotated[Finite, within(1e-9, 2e-3, "m")]
+Offset = Annotated[Finite, within(1e-7, 1e-3, "m")]
+ElementSize = Annotated[Finite, within(1e-8, 1e-2, "m")]
+MOST_HARMONICS = 16
 
 
 class Fingertip(BaseModel):
@@ -16,40 +29,48 @@ class Fingertip(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    width: Length = 20e-3
-    height: Length = 14e-3
-    sc_thickness: Length = 425e-6
-    """Mean thickness of the stratum corneum; SC and viable epidermis meet in a curve parallel to the skin."""
-    ve_thickness: Length = 175e-6
+    width: Outline = 20e-3
+    """Of the outline, as the height: 1 mm (a mouse's digit) to 0.1 m (a hand)."""
+    height: Outline = 14e-3
+    sc_thickness: Layer = 425e-6
+    """Mean thickness of the stratum corneum; SC and viable epidermis meet in a curve parallel to the skin. The layers
+    are of 1 µm, of which cells are made, to 10 mm, the thickness of a finger."""
+    ve_thickness: Layer = 175e-6
     """Mean thickness of the viable epidermis."""
-    dermis_thickness: Length = 1400e-6
-    ridge_wavelength: Length = 483e-6
-    """Arc length of one papillary ridge along the outline."""
-    ridge_amplitude: Length = 100e-6
-    """Height of the papillary ridges, peak to peak."""
-    ridge_profile: tuple[float, ...] = (1.0,)
-    """Cosine coefficients c_k (k = 1, 2, …) of the ridge profile, scaled to the amplitude above.
-    *Assumption*: a sinusoid. The measured profile of the paper is not published."""
+    dermis_thickness: Layer = 1400e-6
+    ridge_wavelength: Annotated[Finite, within(2e-5, 5e-3, "m")] = 483e-6
+    """Arc length of one papillary ridge along the outline; ten times as fine or coarse as any skin's."""
+    ridge_amplitude: Wave = 100e-6
+    """Height of the papillary ridges, peak to peak; 1 nm is as good as no ridges, 2 mm is beyond any skin."""
+    ridge_profile: Annotated[
+        tuple[Annotated[Finite, within(1e-6, 1e6, zero=True, sides=2)], ...],
+        Field(min_length=1, max_length=MOST_HARMONICS),
+    ] = (1.0,)
+    """Cosine coefficients c_k (k = 1, 2, …) of the ridge profile, scaled to the amplitude above; its crests, wherever
+    they are, reach the outline, and the layers and receptor sites below stay centred on the ridge's middle.
+    *Assumption*: a sinusoid. The measured profile of the paper is not published. Curves have 32 points a ridge, which
+    16 harmonics use up; of coefficients only the ratios matter."""
     ridge_count: Annotated[int, Field(ge=1, le=101)] = 55
     """Number of ridges (odd: one is centred on x = 0). *Assumption*: they cover the palmar half."""
-    intermediate_ridge_height: Length = 450e-6
-    """Height of the epidermal ridge under a papillary ridge's centre (A2)."""
-    limiting_ridge_height: Length = 150e-6
+    intermediate_ridge_height: Wave = 450e-6
+    """Height of the epidermal ridge under a papillary ridge's centre (A2); 1 nm is a plane junction."""
+    limiting_ridge_height: Wave = 150e-6
     """Height of the epidermal ridge under a groove (A1)."""
-    bone_width: Length = 8e-3
-    """*Assumption*, with the next two: an elliptical bone."""
-    bone_height: Length = 5.2e-3
-    bone_centre: Length = 8.2e-3
+    bone_width: Part = 8e-3
+    """*Assumption*, with the next two: an elliptical bone. Bone and nail are of 10 µm (a foil) to 0.1 m (a hand)."""
+    bone_height: Part = 5.2e-3
+    bone_centre: Part = 8.2e-3
     """Height of the bone's centre above the screen."""
-    nail_thickness: Length = 0.5e-3
+    nail_thickness: Part = 0.5e-3
     """*Assumption*, with the next two: a nail along the dorsal outline, on a bed that reaches to the bone."""
-    nail_half_width: Length = 6e-3
-    nail_bed_half_width: Length = 3e-3
+    nail_half_width: Part = 6e-3
+    nail_bed_half_width: Part = 3e-3
     """Half the chord of the bone to which the nail bed is attached."""
-    merkel_offset: Length = 20e-6
+    merkel_offset: Offset = 20e-6
     """Height of a Merkel site above the tip of its intermediate ridge, inside the viable epidermis
-    (*assumption*: on the interface itself the modulus jumps 24 times)."""
-    meissner_offset: Length = 20e-6
+    (*assumption*: on the interface itself the modulus jumps 24 times). From 0.1 µm, a part of a cell, to 1 mm, more
+    than any epidermis."""
+    meissner_offset: Offset = 20e-6
     """Depth of a Meissner site below the top of its dermal papilla (*assumption*)."""
 
     @model_validator(mode="after")
@@ -79,19 +100,22 @@ class MeshSize(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    contact: Length = 5e-6
-    """Size of surface facets where ridges can touch."""
-    receptor: Length = 5e-6
+    contact: ElementSize = 5e-6
+    """Size of surface facets where ridges can touch. Sizes are of 10 nm, below which skin is no continuum, to 10 mm,
+    the finger itself; what a machine can hold is checked by itself (:mod:`geometry.count`)."""
+    receptor: ElementSize = 5e-6
     """Size at the Merkel sites of the ridges that can touch: what they sense needs an element at the tips of the
     intermediate ridges, of a radius of 6 µm, which friction and contact length hardly know of."""
-    interface: Length = 80e-6
+    interface: ElementSize = 80e-6
     """Largest size on wavy interfaces and on ridges that cannot touch."""
-    coarsest: Length = 1e-3
-    growth: Annotated[float, Field(gt=0, le=1, allow_inf_nan=False)] = 0.25
-    """Increase of the element size per distance."""
-    touching_half_arc: Length | None = None
+    coarsest: ElementSize = 1e-3
+    growth: Annotated[Finite, within(1e-4, 1)] = 0.25
+    """Increase of the element size per distance; 1e-4 is as good as none across a finger, and beyond 1 elements are no
+    longer graded."""
+    touching_half_arc: Annotated[Finite, within(1e-6, 0.2, "m")] | None = None
     """Arc length on either side of the centre within which ridges can touch; a run that finds contact at
     its end says so and begins again with more. Without it the run asks a coarse finger
-    (:mod:`fingerpad.reach`); a finger is meshed with a number only."""
-    touching_fraction: Annotated[float, Field(gt=0, le=1)] = 0.4
-    """Part of a ridge's period, about its tip, that can touch; the grooves are coarser."""
+    (:mod:`fingerpad.reach`); a finger is meshed with a number only. 1 µm is ridge 0 alone, 0.2 m goes round any
+    finger."""
+    touching_fraction: Annotated[Finite, within(1e-3, 1)] = 0.4
+    """Part of a ridge's period, about its crest, that can touch; the grooves are coarser. A thousandth is a point."""

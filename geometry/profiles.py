@@ -4,6 +4,10 @@ Every curve is a depth below the elliptical outline, measured along its inward n
 arc length s from the lowest point (positive towards x > 0). The phase of a ridge is theta = 2 pi s / wavelength,
 so all interfaces have the same number of periods (Table 1's three wavelengths are the one of the outline,
 mapped to deeper offset curves).
+
+The crests of the ridges are on the outline. A measured profile may have them beside the middle of its ridge, where the
+outline is already a micrometre or two above its lowest point; then the whole skin is lowered by that much, so that the
+lowest crest is at y = 0 in every case.
 """
 
 from dataclasses import dataclass
@@ -12,10 +16,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import cumulative_simpson
+from scipy.optimize import minimize_scalar
 
 from geometry.parameters import Fingertip
 
 Array = NDArray[np.float64]
+_APART = 1e-6  # m, between points that the mesh has where the nail begins
+_PHASES = np.linspace(0, np.pi, 2001)  # rad, half a period of a ridge's profile, which is even
 
 
 class GeometryError(ValueError):
@@ -52,7 +59,7 @@ class Profiles:
         phi = self._angle(s)
         normal = np.stack([-np.sin(phi) / a, np.cos(phi) / b], axis=-1)
         normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
-        outline = np.stack([a * np.sin(phi), b * (1 - np.cos(phi))], axis=-1)
+        outline = np.stack([a * np.sin(phi), b * (1 - np.cos(phi)) - self.lowered], axis=-1)
         return np.asarray(outline + np.asarray(depth, dtype=float)[..., None] * normal, dtype=float)
 
     @property
@@ -80,19 +87,84 @@ class Profiles:
     def _ridge_series(self) -> Array:
         """Cosine coefficients of the ridge's height above its mean, with the given peak-to-peak amplitude."""
         c = np.asarray(self.finger.ridge_profile, dtype=float)
-        theta = np.linspace(0, np.pi, 2001)
-        shape = np.cos(np.outer(theta, np.arange(1, len(c) + 1))) @ c
+        shape = np.cos(np.outer(_PHASES, np.arange(1, len(c) + 1))) @ c
         return c * self.finger.ridge_amplitude / np.ptp(shape)
+
+    def _wave(self, theta: ArrayLike) -> Array:
+        """Height of a ridge above its mean at the phase theta."""
+        harmonics = np.arange(1, len(self._ridge_series) + 1)
+        return np.asarray(np.cos(np.asarray(theta)[..., None] * harmonics) @ self._ridge_series, dtype=float)
 
     def _ridge_height(self, s: ArrayLike) -> Array:
         theta = 2 * np.pi * np.asarray(s, dtype=float) / self.finger.ridge_wavelength
-        harmonics = np.arange(1, len(self._ridge_series) + 1)
-        return np.asarray(np.cos(theta[..., None] * harmonics) @ self._ridge_series * self._window(s), dtype=float)
+        return np.asarray(self._wave(theta) * self._window(s), dtype=float)
+
+    @cached_property
+    def _summits(self) -> tuple[tuple[float, float], ...]:
+        """Phases from 0 to pi, and heights above the mean, of the profile's maxima, the highest first."""
+        values = self._wave(_PHASES)
+        padded = np.concatenate([values[1:2], values, values[-2:-1]])  # even about both ends
+        found = []
+        for k in np.flatnonzero((padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:])):
+            theta, height = float(_PHASES[k]), float(values[k])
+            if 0 < k < len(_PHASES) - 1:
+                inside = minimize_scalar(
+                    lambda t: -float(self._wave(t)),
+                    bounds=(_PHASES[k - 1], _PHASES[k + 1]),
+                    method="bounded",
+                    options={"xatol": 1e-10},
+                )
+                theta, height = float(inside.x), -float(inside.fun)
+            found.append((theta, height))
+        return tuple(sorted(found, key=lambda pair: -pair[1]))
+
+    @property
+    def crests(self) -> tuple[float, ...]:
+        """Arc lengths of a ridge's crests from its middle, from -1/2 to 1/2 wavelength, in order.
+
+        Every maximum in the upper half of the profile is one; of a profile with its crest at the middle, that alone.
+        """
+        least = self._summits[0][1] - self.finger.ridge_amplitude / 2
+        right = [t / (2 * np.pi) * self.finger.ridge_wavelength for t, height in self._summits if height >= least]
+        return tuple(sorted({side * s + 0.0 for s in right for side in (-1.0, 1.0)}))
+
+    def touching_arcs(self, fraction: float, step: float) -> Array:
+        """Return arc lengths from a ridge's middle, at most ``step`` apart, of what touches: a part about each crest.
+
+        Args:
+            fraction: width of a part, over the wavelength.
+            step: (m).
+        """
+        half = fraction * self.finger.ridge_wavelength / 2
+        across: Array = np.linspace(-half, half, 1 + int(np.ceil(2 * half / step)), dtype=np.float64)
+        if self.crests == (0.0,):
+            return across
+        every = np.unique(np.array(self.crests)[:, None] + across)
+        return np.asarray(every[np.abs(every) <= self.finger.ridge_wavelength / 2])
 
     @property
     def _mean_depth(self) -> float:
-        """Depth of the skin's mean line: the tips are on the outline."""
-        return float(self._ridge_series.sum())
+        """Depth of the skin's mean line: the highest crests are on the outline."""
+        return self._summits[0][1]
+
+    @cached_property
+    def lowered(self) -> float:
+        """How far the outline's lowest point is below y = 0 (m): by what the outline rises up to the first crest."""
+        if self._summits[0][0] == 0:
+            return 0.0
+        f = self.finger
+        a, b = f.width / 2, f.height / 2
+
+        def height(s: ArrayLike) -> Array:
+            phi, depth = self._angle(s), self.skin(s)
+            along = np.cos(phi) / b / np.hypot(np.sin(phi) / a, np.cos(phi) / b)
+            return np.asarray(b * (1 - np.cos(phi)) + depth * along)
+
+        s = np.linspace(0, 1.5 * f.ridge_wavelength, 3001)
+        k = int(np.argmin(height(s)))
+        ends = s[max(k - 1, 0)], s[min(k + 1, len(s) - 1)]
+        options = {"xatol": 1e-9 * f.ridge_wavelength}
+        return float(minimize_scalar(lambda at: float(height(at)), bounds=ends, method="bounded", options=options).fun)
 
     def skin(self, s: ArrayLike) -> Array:
         """Return the depth of the outer surface."""
@@ -178,7 +250,27 @@ class Profiles:
                 f"the skin layers are {float(self.d_sub(0.0)):.3g} m deep, more than the outline's radius of "
                 f"curvature, {sharpest:.3g} m: reduce dermis_thickness or make width and height more alike"
             )
+        self._check_sites()
         self._check_bone()
+        self._check_edge()
+
+    def _check_sites(self) -> None:
+        """Refuse receptor sites that are not in their layers."""
+        f = self.finger
+        tip = float(self.ve_d(0.0))
+        top = float(self.ve_d(f.ridge_wavelength / 4))
+        thickness = tip - float(self.sc_ve(0.0))
+        if f.merkel_offset >= thickness:
+            raise GeometryError(
+                f"merkel_offset is {f.merkel_offset:g} m; it must be below the thickness of the viable epidermis at "
+                f"the tips of its ridges, {thickness:.4g} m"
+            )
+        depth = float(self.d_sub(0.0)) - top
+        if f.meissner_offset >= depth:
+            raise GeometryError(
+                f"meissner_offset is {f.meissner_offset:g} m; it must be below the height of the papillae above the "
+                f"subcutis, {depth:.4g} m"
+            )
 
     def _check_bone(self) -> None:
         f = self.finger
@@ -202,6 +294,26 @@ class Profiles:
                 f"the bone reaches the nail: its top, bone_centre + bone_height / 2, is at {rim[:, 1].max():.4g} m "
                 f"and must stay below the nail's inner face at {f.height - f.nail_thickness:.4g} m"
             )
+
+    def _check_edge(self) -> None:
+        """Refuse layers that do not get from the nail's edge to the bone."""
+        f, end = self.finger, self.nail_arc
+        foot = self.bone(np.pi - np.arcsin(2 * f.nail_bed_half_width / f.bone_width))
+        start = self.point(end, self.d_sub(end))
+        line = start + np.linspace(0, 0.99, 100)[:, None] * (foot - start)
+        inside = (2 * line[:, 0] / f.bone_width) ** 2 + (2 * (line[:, 1] - f.bone_centre) / f.bone_height) ** 2 < 1
+        if inside.any() or (line[:, 0] <= 0).any():
+            raise GeometryError(
+                "the skin's layers end inside the bone at the nail's edge: reduce dermis_thickness "
+                f"({f.dermis_thickness:g} m) or bone_width ({f.bone_width:g} m), or change nail_half_width "
+                f"({f.nail_half_width:g} m) or nail_bed_half_width ({f.nail_bed_half_width:g} m)"
+            )
+        for name, depth in (("SC-VE", self.sc_ve(end)), ("VE-D", self.ve_d(end))):
+            if abs(float(depth) - f.nail_thickness) < _APART:
+                raise GeometryError(
+                    f"nail_thickness is {f.nail_thickness:g} m, the depth of the {name} junction at the nail's edge; "
+                    f"it must differ by {_APART:g} m or more"
+                )
 
 
 def _signed_distance(points: Array, curve: Array, inward: Array) -> tuple[NDArray[np.intp], Array]:

@@ -1,8 +1,9 @@
 r"""One to three papillary ridges side by side on a flat layered strip, as a gmsh model.
 
 The finger's junctions without its outline: with x along the strip and y upwards from the screen, each curve is
-:math:`y = \text{depth}(x)` of :class:`~geometry.profiles.Profiles`, so that ridge tips are at y = 0 and one of them is
-at x = 0. The dermis ends in a flat top, the bone's rim; the lateral faces are in the grooves beyond the outer ridges.
+:math:`y = \text{depth}(x)` of :class:`~geometry.profiles.Profiles`, so that ridge tips are at y = 0 and the middle
+of one ridge is at x = 0. The dermis ends in a flat top, the bone's rim; the lateral faces are in the grooves beyond the
+outer ridges.
 """
 
 import gmsh
@@ -106,8 +107,7 @@ def _point(x: float, y: float | NDArray[np.float64]) -> int:
 def _sizes(p: Profiles, size: MeshSize, ridges: int, wavy: list[int]) -> None:
     """Let the element size grow from the tips and from the junctions."""
     wavelength = p.finger.ridge_wavelength
-    reach = size.touching_fraction * wavelength / 2
-    across = np.linspace(-reach, reach, 1 + int(np.ceil(4 * reach / size.contact)))
+    across = p.touching_arcs(size.touching_fraction, size.contact / 2)
     x = ((np.arange(ridges) - ridges // 2)[:, None] * wavelength + across).ravel()
     tips = [_point(*xy) for xy in zip(x, p.skin(x), strict=True)]
     gmsh.model.geo.synchronize()

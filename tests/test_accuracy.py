@@ -43,7 +43,8 @@ def known(scene, needed, states, comm) -> Solve:
 
 
 def search(monkeypatch, asked, solve=known, pause=lambda: None) -> Search:
-    scene = from_data({"accuracy": asked} if asked else {})
+    memory = {"numerics": {"memory": 1e15}}  # of solves that are none
+    scene = from_data(({"accuracy": asked} if asked else {}) | memory)
     monkeypatch.setattr(accuracy, "solve_again", solve)
     found = Search(scene, plan(scene), known(scene, None, {}, MPI.COMM_SELF), MPI.COMM_SELF, lambda text: None, pause)
     found.run()
@@ -217,7 +218,7 @@ def test_parameters_in_use_give_the_same_scene():
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({"accuracy": {"mu_app": 1.5}}, "accuracy.mu_app is 1.5; it must be less than 1"),
+        ({"accuracy": {"mu_app": 1.5}}, "accuracy.mu_app is 1.5; it must be from 1e-06 to 0.5"),
         ({"accuracy": {"f_n": 0.1}}, "accuracy.f_n is not a key of accuracy"),
         ({"accuracy": {}}, "accuracy is empty; give at least one of accuracy.mu_app, accuracy.f_t"),
         ({"accuracy": {"f_t": 0.1}, "numerics": {"element": "P2-P1"}}, "cannot be carried to another mesh"),

@@ -103,6 +103,15 @@ def test_branch_in_contact_is_taken_and_the_others_are_named():
     assert max(state.others) < closure.contact_pressure(closure.pull_off_fold(VOLTAGE)) < state.p_c
 
 
+@pytest.mark.parametrize("voltage", [1e4, 1e6, 1e9])
+def test_absurd_voltage_is_refused(voltage):
+    """In one sentence, whatever the force, by either way to close the equations."""
+    for solve in (lambda: ridge().under_load(1.0, voltage), lambda: ridge().over_length(1e-4, 1.0, voltage)):
+        with pytest.raises(NoEquilibriumError) as refusal:
+            solve()
+        assert len(str(refusal.value)) < 300
+
+
 def test_what_nothing_bears_is_refused():
     with pytest.raises(NoEquilibriumError, match="bears 1 N/m on a ridge at 0 V"):
         ridge().over_length(1e-8, 1.0, 0.0)

@@ -242,6 +242,19 @@ def test_parameters_are_refused(given, message):
         ({"ve_thickness": 150e-6}, "SC-VE junction and VE-D junction cross by .*ve_thickness is 0.00015 m"),
         ({"limiting_ridge_height": 450e-6}, "SC-VE junction and VE-D junction cross by .*ve_thickness is 0.000175 m"),
         ({"dermis_thickness": 100e-6}, "VE-D junction and D-subcutis junction cross by .*dermis_thickness is 0.0001 m"),
+        (
+            {"merkel_offset": 900e-6},
+            "merkel_offset is 0.0009 m; it must be below the thickness of the viable epidermis",
+        ),
+        (
+            {"meissner_offset": 1e-3, "dermis_thickness": 800e-6},
+            "meissner_offset is 0.001 m; it must be below the height",
+        ),
+        ({"dermis_thickness": 3.8e-3}, "layers end inside the bone at the nail's edge: reduce dermis_thickness"),
+        (
+            {"nail_thickness": 475e-6},
+            "nail_thickness is 0.000475 m, the depth of the SC-VE junction at the nail's edge",
+        ),
         ({"ridge_count": 101}, "ridge_count 101 of ridge_wavelength 0.000483 m do not fit"),
         ({"dermis_thickness": 5e-3}, "0.00565 m deep, more than the outline's radius of curvature, 0.0049 m"),
         ({"bone_centre": 4.5e-3}, "bone touches the skin's layers at .*bone_centre"),
@@ -298,6 +311,17 @@ def test_refusal_reaches_every_rank(error):
         load(MPI.COMM_WORLD, refuse)
     assert not gmsh.isInitialized()
     assert load(MPI.COMM_WORLD, partial(block, MM, MM, MM)).mesh.topology.index_map(2).size_global == 2
+
+
+@pytest.mark.mpi
+def test_what_gmsh_refuses_is_one_sentence():
+    def refuse() -> float:
+        raise Exception("Invalid boundary mesh (overlapping facets) on surface 1")
+
+    with pytest.raises(
+        GeometryError, match="gmsh cannot mesh the body: Invalid boundary mesh .*; try smaller elements"
+    ):
+        load(MPI.COMM_WORLD, refuse)
 
 
 @pytest.mark.mpi

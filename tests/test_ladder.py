@@ -96,7 +96,7 @@ def test_other_finger_with_its_length_is_answered():
 
 
 def test_ridge_without_a_round_tip_is_refused():
-    with pytest.raises(SceneError, match="no round tip"):
+    with pytest.raises(SceneError, match="gives a ridge 2 crests; rung 1 takes ridges for cylinders"):
         closed_form.solve(scene(geometry={"ridge_profile": [1.0, -0.5]}), closed_form.given(1.5e-3, 16))
 
 

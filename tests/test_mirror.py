@@ -42,7 +42,7 @@ SKIN, BOTTOM, TOP, LINE = 1, 2, 3, 4
     ],
 )
 def test_half_the_finger_where_the_bone_never_moves_sideways(loads, both):
-    history = [{"name": "load"} | load for load in loads]
+    history = [{"name": f"load {k}"} | load for k, load in enumerate(loads)]
     needed = plan(from_data({"history": history}))
     assert needed.both_halves is both
     assert any("mirror image" in omission.reason for omission in needed.omitted) is not both

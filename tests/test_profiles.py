@@ -111,6 +111,40 @@ def test_measured_profile_keeps_the_amplitude():
     assert profiles.skin(0.0) == pytest.approx(0, abs=1e-18)
 
 
+@pytest.mark.parametrize(
+    ("profile", "crests"),
+    [
+        ((1.0, -0.6), (-0.18159912, 0.18159912)),
+        ((-1.0,), (-0.5, 0.5)),
+        ((0.0, -1.0), (-0.25, 0.25)),
+        ((3.0, -0.5), (0,)),
+    ],
+)
+def test_lowest_point_is_on_the_screen_wherever_the_crest_is(profile, crests):
+    """Crests are where the profile's derivative vanishes; the lowest of them touches the screen, none is beyond.
+
+    cos t - 0.6 cos 2t has its maxima where cos t = 1 / 2.4. Tolerance: points 25 nm apart on a tip of some 100 um; the
+    table of arc lengths.
+    """
+    profiles = Profiles(Fingertip(ridge_profile=profile))
+    assert np.array(profiles.crests) == pytest.approx(np.array(crests) * WAVE, abs=1e-7 * WAVE)
+    skin = dense(profiles, profiles.skin)
+    assert skin[:, 1].min() == pytest.approx(0, abs=1e-10)
+    s = np.linspace(0, WAVE, 20001)
+    assert np.ptp(profiles.skin(s)) == pytest.approx(100 * UM, rel=1e-6)
+    assert profiles.skin(s).min() == pytest.approx(0, abs=1e-12)
+
+
+def test_fine_facets_are_about_the_crests():
+    """Parts of 0.2 wavelengths about two crests, no farther than the ridge."""
+    arcs = Profiles(Fingertip(ridge_profile=(0.0, -1.0))).touching_arcs(0.2, 1e-6) / WAVE
+    distance = np.abs(np.abs(arcs) - 0.25)
+    assert distance.max() == pytest.approx(0.1, abs=1e-9)
+    assert distance.min() <= 0.5 * UM / WAVE
+    grooves = Profiles(Fingertip(ridge_profile=(-1.0,))).touching_arcs(0.2, 1e-6) / WAVE
+    assert (np.abs(grooves).min(), np.abs(grooves).max()) == pytest.approx((0.4, 0.5), abs=0.5 * UM / WAVE)
+
+
 def test_merkel_sites_are_in_the_epidermis(profiles):
     """One a ridge, 20 um above the intermediate ridge's tip and below the SC. Tolerance: roundoff of centimetres."""
     s = np.array(profiles.ridges) * WAVE

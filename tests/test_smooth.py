@@ -73,6 +73,17 @@ def test_history_is_refused(tmp_path):
         smooth.solve(from_data({"history": [{"name": "press", "f_ext": 5.0}]}), tmp_path, MPI.COMM_WORLD)
 
 
+@pytest.mark.parametrize("profile", [(-1.0,), (1.0, -0.6)])
+def test_mean_line_where_the_crest_is_beside_the_middle(profile):
+    """The bone is as far from the smooth outline as from the mean line, which crests beside the middle lower."""
+    finger = Fingertip(ridge_profile=profile)
+    ridged, flat = Profiles(finger), smooth.smoothed(finger)
+    mean = ridge_cell.mean_depth(finger)
+    lowest = ridged.point(0.0, mean)[1]
+    assert lowest == pytest.approx(mean - ridged.lowered, rel=1e-9) and ridged.lowered > 1e-7
+    assert flat.bone_centre == pytest.approx(finger.bone_centre - lowest, rel=1e-12)
+
+
 def test_smooth_outline_is_the_mean_line():
     """Lowered to the screen it lies half an amplitude inside the tips, as far from the bone as before.
 

@@ -86,7 +86,7 @@ class Cylinder:
             voltage: (V).
 
         Raises:
-            NoEquilibriumError: no branch in contact.
+            NoEquilibriumError: no branch in contact, or the attraction is beyond what a finger can bear.
         """
         return self._root(lambda sigma, d: self._from_load(f, sigma, d), f, voltage)
 
@@ -114,6 +114,11 @@ class Cylinder:
     def _from_half_width(self, a: float, sigma: float, d_eq: float) -> float:
         """Return m - 1 of a contact of half-width ``a`` (m); the gap at c grows with c."""
         reach = self.h_0 + 2 * d_eq
+        if float(self._opening(a, _BEYOND[-1], sigma)) < reach:
+            raise NoEquilibriumError(
+                f"a contact of {2 * a:.3g} m is too short for an attraction that reaches {reach:.3g} m; "
+                "try a longer one"
+            )
         return float(brentq(lambda b: float(self._opening(a, b, sigma)) - reach, 0.0, _BEYOND[-1], xtol=1e-15))
 
     def _from_load(self, f: float, sigma: float, d_eq: float) -> tuple[float, float]:
@@ -132,7 +137,13 @@ class Cylinder:
             return np.asarray(elastic - 2 * sigma * a * self._shapes(beyond)[0])
 
         borne = force(_BEYOND)
-        k = int(np.flatnonzero((borne[:-1] >= f) & (borne[1:] < f))[0])
+        brackets = np.flatnonzero((borne[:-1] >= f) & (borne[1:] < f))
+        if not brackets.size:
+            raise NoEquilibriumError(
+                f"no contact bears {f:g} N/m under an attraction of {sigma:.3g} Pa; try a smaller voltage "
+                "or another force"
+            )
+        k = int(brackets[0])
         beyond = float(brentq(lambda b: float(force(b)) - f, _BEYOND[k], _BEYOND[k + 1], xtol=1e-16))
         return float(half_width(beyond)), beyond
 

@@ -38,8 +38,8 @@ def sine(size: float) -> Scene:
         x = _SLIP + k * _BETWEEN
         voltage = float(PEAK * np.sin(phase)) if k < len(PHASES) - 1 else 0.0
         history += [
-            {"name": "change", "voltage": voltage, "bone_x": x - _BETWEEN / 2},
-            {"name": "sine", "bone_x": x, "until_full_slip": True},
+            {"name": f"change {k}", "voltage": voltage, "bone_x": x - _BETWEEN / 2},
+            {"name": f"sine {k}", "bone_x": x, "until_full_slip": True},
         ]
     return _scene(size, history=history)
 

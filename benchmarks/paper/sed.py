@@ -77,7 +77,7 @@ def _response(run: Run) -> tuple[Array, Array, Array, Array, Array]:
 def _ends(run: Run, k: int) -> bool:
     """Whether a step is the last of a load that slides to full slip."""
     last = k + 1 == len(run.loads) or run.loads[k + 1] != run.loads[k]
-    return last and run.loads[k] in ("slide", "sine")
+    return last and run.loads[k].split()[0] in ("slide", "sine")
 
 
 def _chosen(run: Run) -> dict[str, int]:

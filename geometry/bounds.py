@@ -1,0 +1,80 @@
+"""Ranges of physical quantities, in SI units, each beyond what anyone has measured or would try.
+
+A value outside its range is a slip, of the keyboard or of units, and not a choice. Most slips of units are a power of a
+thousand; where one of them leads back into the range, the refusal says so.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import ValidatorFunctionWrapHandler, WrapValidator
+from pydantic_core import PydanticCustomError
+
+# What a number may have been meant in, over the SI unit that it is taken for.
+_SLIPS = {
+    "m": ("lengths are in m", (1e-3, 1e-6, 1e-9, 1e-2)),
+    "Pa": ("pressures and moduli are in Pa", (1e3, 1e6, 1e9)),
+    "N/m": ("forces per length are in N/m", (1e-3, 1e3)),
+    "Pa/m": ("stiffnesses are in Pa/m", (1e9, 1e6, 1e12)),
+    "V": ("voltages are in V", (1e-3, 1e3)),
+    "B": ("memory is in bytes", (1e9, 1e6)),
+}
+OUT_OF_RANGE = "out_of_range"  # kind of the error that a range raises
+
+
+@dataclass(frozen=True)
+class Range:
+    """Values that a quantity can have.
+
+    Args:
+        low: smallest value, of the amount where ``sides`` is 2.
+        high: largest value.
+        unit: empty for a number.
+        zero: whether zero is allowed too, which stands for "none".
+        sides: 2 where the sign is free.
+    """
+
+    low: float
+    high: float
+    unit: str = ""
+    zero: bool = False
+    sides: int = 1
+
+    def __contains__(self, value: float) -> bool:
+        """Return whether a value is allowed."""
+        amount = abs(value) if self.sides == 2 else value
+        return (self.zero and value == 0) or self.low <= amount <= self.high
+
+    def __call__(self, value: Any, handler: ValidatorFunctionWrapHandler) -> float:
+        """Validate a value; whole numbers are numbers."""
+        if type(value) is int and abs(value) < 10**300:
+            value = float(value)
+        number = float(handler(value))
+        if number not in self:
+            raise PydanticCustomError(OUT_OF_RANGE, self.words(number))  # type: ignore[arg-type]
+        return number
+
+    def words(self, value: float) -> str:
+        """Return why a value is refused, to follow the key."""
+        unit = f" {self.unit}" if self.unit else ""
+        allowed = f"from {self.low:g} to {self.high:g}{unit}"
+        if self.sides == 2:
+            allowed += ", with either sign"
+        if self.zero:
+            allowed = f"0 or {allowed}"
+        return f"is {value:.12g}{unit}; it must be {allowed}{self._slip(value)}"
+
+    def _slip(self, value: float) -> str:
+        """Return the question whether another unit was meant, empty where none leads to an allowed value."""
+        name, factors = _SLIPS.get(self.unit, ("", ()))
+        meant = [value * factor for factor in factors if value and value * factor in self]
+        if not meant:
+            return ""
+        middle = math.sqrt(self.low * self.high)
+        return f" ({name}; did you mean {min(meant, key=lambda v: abs(math.log(abs(v) / middle))):.6g}?)"
+
+
+def within(low: float, high: float, unit: str = "", zero: bool = False, sides: int = 1) -> WrapValidator:
+    """Return the annotation of a number that must be in a :class:`Range`."""
+    return WrapValidator(Range(low, high, unit, zero, sides))

@@ -1,0 +1,107 @@
+"""The estimate of triangles against meshes, and what it is for: a scene beyond its memory is refused before meshing."""
+
+from functools import partial
+
+import pytest
+from mpi4py import MPI
+
+from fingerpad import budget
+from fingerpad.accuracy import Search, Solve
+from fingerpad.needs import plan
+from fingerpad.scene import Numerics, SceneError, check, from_data
+from geometry import count, fingertip
+from geometry.mesh import load
+from geometry.parameters import Fingertip, MeshSize
+from geometry.profiles import GeometryError
+
+FINE = {"contact": 10e-6, "receptor": 10e-6, "touching_half_arc": 1.0e-3}
+COARSE = {"contact": 30e-6, "receptor": 60e-6, "interface": 120e-6, "growth": 0.5, "touching_half_arc": 2.0e-3}
+EVEN = {"contact": 100e-6, "receptor": 100e-6, "interface": 150e-6, "coarsest": 150e-6, "touching_half_arc": 1.0e-3}
+STEEP = {"contact": 100e-6, "receptor": 100e-6, "interface": 100e-6, "growth": 1.0, "touching_half_arc": 1.0e-3}
+
+
+@pytest.mark.parametrize(
+    ("finger", "size", "receptors", "half"),
+    [
+        ({}, COARSE, True, False),
+        ({}, FINE, True, True),
+        ({"ridge_count": 21}, FINE, False, True),
+        ({}, EVEN, True, True),
+        ({}, STEEP, True, True),
+        ({"ridge_profile": (1.0, -0.6), "ridge_count": 15}, FINE, True, True),
+    ],
+)
+def test_triangles_of_a_mesh(finger, size, receptors, half):
+    """Within a factor of 1.5, of meshes fine at the crests, at the sites, everywhere and nowhere."""
+    finger, size = Fingertip(**finger), MeshSize(**size)
+    body = load(MPI.COMM_SELF, partial(fingertip.build, finger, size, receptors, half))
+    triangles = body.mesh.topology.index_map(2).size_global
+    assert triangles / 1.5 < count.triangles(finger, size, receptors, half) < 1.5 * triangles
+
+
+@pytest.mark.parametrize(
+    ("size", "triangles"),
+    [
+        ({}, 31871),
+        ({"contact": 2.5e-6, "receptor": 20e-6}, 35995),
+        ({"contact": 60e-6, "receptor": 60e-6, "interface": 60e-6, "coarsest": 60e-6}, 123295),
+        ({"contact": 60e-6, "receptor": 60e-6, "interface": 30e-6, "growth": 0.1}, 62297),
+    ],
+)
+def test_triangles_of_larger_meshes(size, triangles):
+    """The same for numbers that gmsh 4.13 gave, which are not made again here."""
+    found = count.triangles(Fingertip(), MeshSize(**({"touching_half_arc": 5e-3} | size)))
+    assert triangles / 1.5 < found < 1.5 * triangles
+
+
+@pytest.mark.parametrize(("unknowns", "memory"), [(27258, 0.354), (73208, 0.561), (186302, 1.171), (873366, 5.729)])
+def test_memory_of_runs(monkeypatch, unknowns, memory):
+    """Measured, in GB, of runs with quadratic elements; the fit is within a fifth."""
+    monkeypatch.setattr(budget.count, "triangles", lambda *arguments: unknowns / 4)
+    found = budget.estimate(from_data({}))
+    assert found.unknowns == unknowns
+    assert found.memory / 1e9 == pytest.approx(memory, rel=0.2)
+
+
+def test_two_million_unknowns_are_allowed(monkeypatch):
+    monkeypatch.setattr(budget.count, "triangles", lambda *arguments: 2e6 / 4)
+    budget.refuse_beyond(from_data({}))
+    monkeypatch.setattr(budget.count, "triangles", lambda *arguments: 3e6 / 4)
+    with pytest.raises(GeometryError):
+        budget.refuse_beyond(from_data({}))
+
+
+@pytest.mark.parametrize(
+    ("mesh", "key"),
+    [
+        ({"contact": 1e-8}, "contact"),
+        ({"interface": 1e-8}, "interface"),
+        ({"coarsest": 1e-8}, "coarsest"),
+        ({"growth": 1e-4}, "growth"),
+        ({"receptor": 1e-8, "growth": 1e-3}, "growth"),
+    ],
+)
+def test_too_fine_a_mesh(mesh, key):
+    """The size that would help most is named, and a larger bound lets the scene pass."""
+    with pytest.raises(SceneError, match=f"numerics.memory allows 16 GB: raise it, or make mesh.{key} larger"):
+        check(from_data({"mesh": mesh}))
+    if key == "contact":
+        check(from_data({"mesh": mesh, "numerics": {"memory": 1e12}}))
+
+
+def test_default_memory_is_no_parameter():
+    """Runs that were kept before it was a key are found; another one is kept with the rest."""
+    assert "memory" not in from_data({}).parameters()["numerics"]
+    assert from_data({"numerics": {"memory": 2e9}}).parameters()["numerics"]["memory"] == 2e9
+    assert Numerics().memory == 16e9
+
+
+def test_refinement_ends_where_memory_does():
+    """A search says that the accuracy could not be established, and meshes nothing."""
+    scene = from_data({"accuracy": {"mu_app": 0.01}, "mesh": COARSE})
+    numerics = scene.numerics.model_copy(update={"memory": 3e8})
+    scene = scene.model_copy(update={"numerics": numerics})
+    path = Solve({"slip": None}, scene.mesh, 1, 1, 0.0)
+    search = Search(scene, plan(scene), path, MPI.COMM_SELF, lambda line: None, lambda: None)
+    search.run()
+    assert search.failure.startswith("the accuracy asked for could not be established: the mesh would have some ")
