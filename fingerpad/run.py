@@ -107,7 +107,7 @@ def _sentence(s: dict[str, Any], folder: Path) -> str:
         end += f", contact length {_show(s, 'contact_length', 3, 1e3)} mm"
         end += " (±: estimated discretisation error)" if s.get("slip_mu_app_error") is not None else ""
         penalty = s.get("slip_contact_length_penalty")
-        end += "" if penalty is None else f"; penalty: contact length {1e3 * penalty:+.2g} mm over a rigid screen"
+        end += "" if penalty is None else f"; penalty: contact length {1e3 * penalty:+.2g} mm with a rigid screen"
     work = f"{s['newton_iterations']} Newton iterations, {s['factorisations']} factorisations, {s['memory_mb']:.0f} MB"
     return f"{end}; {work}, {s['wall_seconds']:.0f} s; results in {folder}"
 

@@ -46,10 +46,9 @@ Array = NDArray[np.float64]
 _GROWTH = 0.5
 _COARSEST = 1e-3  # m
 _STEPS = 2.0  # largest steps of the loads, over those with which ridges are followed
-_LARGEST = 0.25
-"""Largest error of an answer, over its value. An error of first order is the first term of a series in the size of the
-facets: at a quarter of the value the next, its square, is as large as what rung 2 leaves out (``docs/ladder.md``), and
-the two tables no longer are approximations of one law."""
+_LARGEST = 0.5
+"""Largest error of an answer, over its value: beyond it the answer is not known to a factor of three, and an estimate
+of first order, the first term of a series in the size of the facets, leaves out a square of a quarter."""
 _PRESSED = 0.01
 """Force that a table's last ridge in contact may bear, over the largest in it. A ridge lets go when it is pulled or,
 without attraction, when nothing presses it."""
