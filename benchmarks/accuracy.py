@@ -32,8 +32,9 @@ _HEADER = f"""# Does the error estimate find the error?
 
 Made by `environment/run python3 benchmarks/accuracy.py`; do not edit. *Estimate*: what the run estimates of its own
 discretisation error, without the factors of safety with which it prints and refines (last section). *Error*: the
-distance from the limit, over the same screen: the penalty's share is no part of it. *Effectivity*: estimate over error, wanted between {LOW:g} and {HIGH:g}; one in
-brackets is of an error below its own bar, which says nothing. Numbers are per cent of the limit."""
+distance from the limit, over the same screen: the penalty's share is no part of it. *Effectivity*: estimate over error,
+wanted between {LOW:g} and {HIGH:g}; one in brackets is of an error below its own bar, which says nothing. Numbers are
+per cent of the limit."""
 _LOOPS = """## Accuracy asked for
 
 The default scene as it is comes with its estimate from coarser meshes, as every run does. Each other scene is run with

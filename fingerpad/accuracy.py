@@ -32,11 +32,11 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.estimate import Knob, errors, to_halve
+from fingerpad.estimate import Knob, errors, plus_minus, to_halve
 from fingerpad.interrupt import Interrupted
 from fingerpad.needs import Plan
 from fingerpad.scene import Load, Scene
-from fingerpad.screen import rigid, stiffened
+from fingerpad.screen import over_stiffer, rigid, stiffened
 from fingerpad.simulation import Simulation, Step
 from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError
@@ -64,11 +64,6 @@ class State:
     """Length in contact (m) of every ridge of the finger, shape (ridges,)."""
     sed: dict[int, float]
     """Strain energy density (J/m^3) at the Merkel sites of the ridges that can touch."""
-
-    def stiffened(self) -> "State":
-        """Return the state with springs of the screen of twice the stiffness, which bear the same friction."""
-        skin = {j: replace(ridge, elastic_slip=ridge.elastic_slip / 2) for j, ridge in self.carried.skin.items()}
-        return replace(self, carried=replace(self.carried, skin=skin))
 
 
 @dataclass(frozen=True)
@@ -233,7 +228,7 @@ class Search:
     def _stiffen(self) -> None:
         """Solve again over a screen of twice the stiffness."""
         scene = self.scene.model_copy(update={"mesh": self.base.mesh, "contact": stiffened(self.scene.contact)})
-        states = {name: state.stiffened() for name, state in self.base.states.items()}
+        states = {name: replace(s, carried=over_stiffer(s.carried)) for name, s in self.base.states.items()}
         try:
             found = self._again(scene, states)
         except (StepFailed, GeometryError) as error:
@@ -399,9 +394,3 @@ def loads_to_normal_contact(scene: Scene) -> tuple[Load, ...]:
     loads = scene.loads()
     moving = next((k for k, load in enumerate(loads) if load.bone_x), len(loads))
     return loads[:moving]
-
-
-def plus_minus(value: float, error: float) -> str:
-    """Return a value with its error, which is given to two digits: ``0.4750 ± 0.0041``."""
-    digits = int(max(0, 1 - np.floor(np.log10(error)))) if error > 0 else 6
-    return f"{value:.{digits}f} ± {error:.{digits}f}"

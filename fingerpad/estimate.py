@@ -113,3 +113,9 @@ def to_halve(knobs: Mapping[str, Knob], allowed: Mapping[str, float]) -> list[st
             left -= shares[key] * (1 - 2 ** -order(name))
             found.add(key)
     return [key for key in knobs if key in found]
+
+
+def plus_minus(value: float, error: float) -> str:
+    """Return a value with its error, which is given to two digits: ``0.4750 ± 0.0041``."""
+    digits = int(max(0, 1 - np.floor(np.log10(error)))) if error > 0 else 6
+    return f"{value:.{digits}f} ± {error:.{digits}f}"

@@ -6,8 +6,9 @@ from typing import Any
 
 from mpi4py import MPI
 
-from fingerpad.accuracy import Keeper, Search, plus_minus
+from fingerpad.accuracy import Keeper, Search
 from fingerpad.advice import advice
+from fingerpad.estimate import plus_minus
 from fingerpad.interrupt import Interrupt, Interrupted
 from fingerpad.needs import plan
 from fingerpad.reach import decide

@@ -24,8 +24,10 @@ beside the mesh.
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from fingerpad.parameters import Contact
+from variational.transfer import Carried
 
 ORDER = 0.75
 """In one over the stiffness, of what the penalty changes."""
@@ -34,6 +36,12 @@ ORDER = 0.75
 def stiffened(contact: Contact) -> Contact:
     """Return a penalty of twice the stiffness, normal and tangential."""
     return contact.model_copy(update={"eps_n": 2 * contact.eps_n, "eps_t": 2 * contact.eps_t})
+
+
+def over_stiffer(carried: Carried) -> Carried:
+    """Return a state whose springs, of twice the stiffness, bear the same friction."""
+    skin = {j: replace(ridge, elastic_slip=ridge.elastic_slip / 2) for j, ridge in carried.skin.items()}
+    return replace(carried, skin=skin)
 
 
 def rigid(values: Mapping[str, float], stiffer: Mapping[str, float]) -> dict[str, float]:

@@ -11,8 +11,8 @@ from mpi4py import MPI
 
 from fingerpad import accuracy
 from fingerpad import run as running
-from fingerpad.accuracy import Search, Solve, State, plus_minus
-from fingerpad.estimate import MORE, ONCE
+from fingerpad.accuracy import Search, Solve, State
+from fingerpad.estimate import MORE, ONCE, plus_minus
 from fingerpad.interrupt import Interrupted
 from fingerpad.needs import plan
 from fingerpad.scene import SceneError, from_data
