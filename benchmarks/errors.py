@@ -19,7 +19,7 @@ from benchmarks import arguments, limits
 from benchmarks.convergence import Limit, limit
 from benchmarks.runs import Run
 from benchmarks.traces import SITES as AT_SITES
-from fingerpad.accuracy import plus_minus
+from fingerpad.estimate import plus_minus
 from fingerpad.files import replace, replace_json
 from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, from_data

@@ -57,6 +57,10 @@ are rounded; charged, its numbers are predictions. It misses the ridges that jum
 thirteen at 25 N/m and 200 V. Rung 2 has seen no full run. It counts ridges by their mean height, which misses
 some that barely touch, and lets those at the contact's edge hang on as far as a lifted one does.
 
+Each rung tells an estimated discretisation error (±). Rung 1 has no mesh, and so none of its own. Rung 2 is solved
+with the ridge's tables of facets of `mesh.contact` and of half of it; where the ridge is lost before it lets go, or the
+error is more than half of the answer, the mesh is refused. Rung 3 solves its states again on other meshes.
+
     environment/run python3 -m fingerpad.ladder --scene scene.toml --rung 1 2 3
 
 With `--from-rung 2` rung 3's full slip is solved for from rung 2's (`fingerpad/start.py`), without its path, and

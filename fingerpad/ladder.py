@@ -67,29 +67,35 @@ def from_summary(summary: Mapping[str, Any], seconds: float | None = None) -> An
     found = {key: summary[key] for key in ("full_slip", *keys) if summary.get(key) is not None}
     took = summary["wall_seconds"] if seconds is None else seconds
     notes = (summary["failure"],) if "failure" in summary else ()
-    return Answer(3, found, Cost(took, summary["factorisations"], summary["unknowns"]), notes)
+    errors = {key: summary[f"{key}_error"] for key in found if summary.get(f"{key}_error") is not None}
+    return Answer(3, found, Cost(took, summary["factorisations"], summary["unknowns"]), notes, errors=errors)
 
 
 def table(answers: Sequence[Answer]) -> str:
-    """Return the answers side by side, and their notes."""
+    """Return the answers side by side, ± their estimated discretisation errors, and their notes."""
     rows = [["", *(f"rung {answer.rung}" for answer in answers)]]
     for state in STATES:
         for name in NAMES:
             unit = f" ({_UNITS[name]})" if name in _UNITS else ""
-            rows.append([f"{state} {name}{unit}", *(_show(a.summary.get(f"{state}_{name}")) for a in answers)])
+            rows.append([f"{state} {name}{unit}", *(_cell(a, f"{state}_{name}") for a in answers)])
     rows.append(["processor time (s)", *(f"{a.cost.seconds:.2f}" for a in answers)])
     rows.append(["factorisations", *(str(a.cost.factorisations) for a in answers)])
     rows.append(["unknowns", *(str(a.cost.unknowns) for a in answers)])
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
     notes = [f"rung {answer.rung}: {note}" for answer in answers for note in answer.notes]
+    if any(answer.errors for answer in answers):
+        notes.insert(0, "±: estimated discretisation error")
     return "\n".join(lines + notes)
 
 
-def _show(value: float | int | None) -> str:
+def _cell(answer: Answer, key: str) -> str:
+    value, error = answer.summary.get(key), answer.errors.get(key)
     if value is None:
         return "–"
-    return str(value) if isinstance(value, int) else f"{value:.5g}"
+    if isinstance(value, int):
+        return str(value)
+    return f"{value:.5g}" + (f" ± {error:.2g}" if error else "")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -6,8 +6,9 @@ from typing import Any
 
 from mpi4py import MPI
 
-from fingerpad.accuracy import Keeper, Search, plus_minus
+from fingerpad.accuracy import Keeper, Search
 from fingerpad.advice import advice
+from fingerpad.estimate import plus_minus
 from fingerpad.interrupt import Interrupt, Interrupted
 from fingerpad.needs import plan
 from fingerpad.reach import decide
@@ -105,6 +106,9 @@ def _sentence(s: dict[str, Any], folder: Path) -> str:
     if s["slip_mu_app"] is not None:
         end += f" at mu_app {_show(s, 'mu_app', 4)}, f_T {_show(s, 'f_t', 3)} N/m"
         end += f", contact length {_show(s, 'contact_length', 3, 1e3)} mm"
+        end += " (±: estimated discretisation error)" if s.get("slip_mu_app_error") is not None else ""
+        penalty = s.get("slip_contact_length_penalty")
+        end += "" if penalty is None else f"; penalty: contact length {1e3 * penalty:+.2g} mm with a rigid screen"
     work = f"{s['newton_iterations']} Newton iterations, {s['factorisations']} factorisations, {s['memory_mb']:.0f} MB"
     return f"{end}; {work}, {s['wall_seconds']:.0f} s; results in {folder}"
 

@@ -38,6 +38,8 @@ class Answer:
     """Where its inputs come from, what it left out, and what a reader should know of the state."""
     more: dict[str, Any] = field(default_factory=dict)
     """What this rung alone knows."""
+    errors: dict[str, float] = field(default_factory=dict)
+    """Estimated discretisation errors, by the summary's keys; none of a closed form, which has no mesh."""
 
     def missing(self) -> list[str]:
         """Return the keys that this rung cannot know."""

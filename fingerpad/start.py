@@ -11,6 +11,8 @@ Not every guess is near enough; where it is not, the path is to be followed. Nor
 path comes to: where a voltage makes ridges jump there are several, and full slip knows of the path by the ridges that
 hang on. The notes say so.
 
+Its discretisation error is estimated as a run's is (:mod:`fingerpad.accuracy`).
+
 Normal contact is left out, since friction makes it depend on the path, of which rung 2 knows nothing.
 """
 
@@ -20,7 +22,7 @@ from pathlib import Path
 from mpi4py import MPI
 
 from fingerpad import ridge_cell, smooth
-from fingerpad.accuracy import Keeper, Solve
+from fingerpad.accuracy import Keeper, Search, Solve
 from fingerpad.needs import plan
 from fingerpad.reach import by_rule
 from fingerpad.rungs import Answer, Cost, Stopwatch, at_slip
@@ -89,10 +91,22 @@ def answer(scene: Scene, folder: Path, comm: MPI.Comm) -> Answer:
     row = found.solve.states["slip"].row
     names = ("f_contact", "f_electrostatic", "bone_height", "ridges_in_contact", "contact_length")
     summary = at_slip(scene.f_ext, scene.friction, {name: row[name] for name in names})
+    errors, notes = _errors(by_rule(scene), found.solve, comm)
     more = {
         "table_version": ridge_cell.VERSION,
         "rung_2_factorisations": found.smooth.factorisations,
         "rung_2_unknowns": found.smooth.unknowns,
     }
     cost = Cost(clock.seconds(), found.solve.factorisations, found.solve.unknowns)
-    return Answer(3, summary, cost, found.notes, more)
+    return Answer(3, summary, cost, (*found.notes, *notes), more, {k: e for k, e in errors.items() if k in summary})
+
+
+def _errors(scene: Scene, solve: Solve, comm: MPI.Comm) -> tuple[dict[str, float], list[str]]:
+    """Return the estimated discretisation errors of a state, as a run has them, and what is to be said of them."""
+    needed = plan(scene)
+    if not needed.errors:
+        return {}, [str(omission) for omission in needed.omitted if omission.what == "discretisation errors"]
+    plain = scene.model_copy(update={"accuracy": None})
+    search = Search(plain, needed, solve, comm, lambda text: None, lambda: None)
+    search.run()
+    return search.estimates(), search.notes

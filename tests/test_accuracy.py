@@ -11,10 +11,12 @@ from mpi4py import MPI
 
 from fingerpad import accuracy
 from fingerpad import run as running
-from fingerpad.accuracy import Search, Solve, State, plus_minus
+from fingerpad.accuracy import Search, Solve, State
+from fingerpad.estimate import MORE, ONCE, plus_minus
 from fingerpad.interrupt import Interrupted
 from fingerpad.needs import plan
 from fingerpad.scene import SceneError, from_data
+from fingerpad.screen import ORDER
 from fingerpad.simulation import Simulation
 from fingerpad.sweep import key
 from variational.continuation import StepFailed
@@ -64,18 +66,20 @@ def test_estimate_is_of_the_true_errors_size(monkeypatch):
     found = search(monkeypatch, {"mu_app": 0.01})
     mesh = found.base.mesh
     parts = EXACT * (0.08 * mesh.contact / 20e-6 + 0.02 * (mesh.growth / 0.5) ** 2)
-    assert parts * (1 - 1e-9) <= found.estimates()["slip_mu_app"] <= 3 * parts
+    told = found.summary()["accuracy"]["quantities"]["slip_mu_app"]
+    assert parts * (1 - 1e-9) <= told["estimate"] <= 3 * parts
+    assert MORE * told["estimate"] * (1 - 1e-9) <= told["error"] <= ONCE * told["estimate"] * (1 + 1e-9)
 
 
 def test_only_what_costs_accuracy_is_refined(monkeypatch):
-    """Each once, for its share; then 0.04 is asked for: the contact's, 0.04, is more than half of it, the growth's,
-    estimated at 0.015, is not."""
-    found = search(monkeypatch, {"mu_app": 0.04})
+    """Each once, for its share; then 0.08 is asked for: the contact's, twice 0.04, is more than half of it, the
+    growth's, twice 0.015, is not."""
+    found = search(monkeypatch, {"mu_app": 0.08})
     assert found.halved == {"contact": 2, "bulk": 1}
 
 
 def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
-    """An error of first order in the steps, a tenth with the scene's: two halvings leave 2.5 % of the 3 % asked for.
+    """An error of first order in the steps, a tenth with the scene's: two halvings leave 2.5 %, and 4 % are asked for.
 
     States solved again keep the steps of the path that they came from.
     """
@@ -96,14 +100,14 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
     monkeypatch.setattr(
         accuracy, "solve_again", lambda scene, needed, states, comm: Solve(dict(states), scene.mesh, 1000, 10, 1.0)
     )
-    scene = from_data({"accuracy": {"contact_length": 0.03}, "numerics": {"step_scale": 2.0}})
+    scene = from_data({"accuracy": {"contact_length": 0.04}, "numerics": {"step_scale": 2.0}})
     path = stepped(1.0, scene.mesh)
     found = Search(scene, plan(scene), path, MPI.COMM_SELF, lambda text: None, lambda: None)
     found.run()
     assert paths == [-1, 1, 2]
     assert found.halved == {"contact": 1, "bulk": 1, "steps": 2}
     assert found.base.values()["normal_contact_length"] == pytest.approx(1.025e-3, rel=1e-12)
-    assert found.estimates()["normal_contact_length"] == pytest.approx(0.025e-3, rel=1e-9)
+    assert found.estimates()["normal_contact_length"] == pytest.approx(MORE * 0.025e-3, rel=1e-9)
     assert found.summary()["accuracy"]["step_scale"] == 0.5, "a quarter of the scene's"
 
 
@@ -117,7 +121,7 @@ def test_receptors_are_halved_where_energy_density_is_asked_for(monkeypatch):
 
 
 def test_estimate_alone_refines_nothing(monkeypatch):
-    """Coarser meshes tell the error: none is finer than the scene's."""
+    """Coarser meshes tell the error: none is finer than the scene's. The last one tells of the penalty."""
     sizes = []
 
     def noted(scene, needed, states, comm):
@@ -131,9 +135,59 @@ def test_estimate_alone_refines_nothing(monkeypatch):
         (2, 1, 1),
         (1, 2, 1),
         (1, 1, 2),
+        (1, 1, 1),
     ]
     parts = EXACT * (0.08 * own.contact / 20e-6 + 0.02 * (own.growth / 0.5) ** 2)
-    assert parts * (1 - 1e-9) <= found.estimates()["slip_mu_app"] <= 3 * parts
+    told = found.summary()["accuracy"]["quantities"]["slip_mu_app"]
+    assert parts * (1 - 1e-9) <= told["estimate"] <= 3 * parts
+    assert told["error"] == pytest.approx(ONCE * told["estimate"], rel=1e-12)
+
+
+def springs(scene, needed, states, comm) -> Solve:
+    """A contact that springs of the screen make longer, by their law."""
+    solve = known(scene, needed, states, comm)
+    if scene.contact.formulation == "penalty":
+        solve.states["slip"].row["contact_length"] += 1e-5 * (scene.contact.eps_n / 1.5e12) ** -ORDER
+    return solve
+
+
+def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
+    """A rigid screen takes off what the springs put on, and no part of that is in the error of the mesh."""
+    monkeypatch.setattr(accuracy, "solve_again", springs)
+    scene, lines = from_data({}), list[str]()
+    path = springs(scene, None, {}, MPI.COMM_SELF)
+    found = Search(scene, plan(scene), path, MPI.COMM_SELF, lines.append, lambda: None)
+    found.run()
+    summary = found.summary()
+    assert summary["slip_contact_length_penalty"] == pytest.approx(-1e-5, rel=1e-9)
+    assert summary["accuracy"]["quantities"]["slip_contact_length"]["penalty"] == summary["slip_contact_length_penalty"]
+    assert summary["slip_contact_length_error"] == 0
+    assert "penalty: a rigid screen would change" in lines[-1]
+    assert all("estimated discretisation error" in line for line in lines if "±" in line)
+
+
+@pytest.mark.parametrize("formulation", ["nitsche", "augmented"])
+def test_formulations_without_a_penalty_tell_none(monkeypatch, formulation):
+    monkeypatch.setattr(accuracy, "solve_again", springs)
+    scene = from_data({"contact": {"formulation": formulation}})
+    found = Search(scene, plan(scene), springs(scene, None, {}, None), MPI.COMM_SELF, lambda text: None, lambda: None)
+    found.run()
+    assert found.penalty == {}
+    assert "slip_contact_length_penalty" not in found.summary()
+
+
+def test_penalty_that_cannot_be_told_is_noted(monkeypatch):
+    """The run and its error stay."""
+
+    def lost(scene, needed, states, comm):
+        if scene.contact.eps_n > 1.5e12:
+            raise StepFailed("full slip found no equilibrium")
+        return known(scene, needed, states, comm)
+
+    found = search(monkeypatch, {}, lost)
+    assert not found.failure
+    assert found.notes == ["what the penalty changes could not be estimated: full slip found no equilibrium"]
+    assert found.estimates()["slip_mu_app"] > 0
 
 
 def test_estimate_alone_that_is_lost_is_no_failure(monkeypatch):
@@ -144,7 +198,10 @@ def test_estimate_alone_that_is_lost_is_no_failure(monkeypatch):
 
     found = search(monkeypatch, {}, lost)
     assert not found.failure
-    assert found.notes == ["errors could not be estimated: full slip found no equilibrium"]
+    assert found.notes == [
+        "discretisation errors could not be estimated: full slip found no equilibrium",
+        "what the penalty changes could not be estimated: full slip found no equilibrium",
+    ]
 
 
 def test_says_when_the_accuracy_is_out_of_reach(monkeypatch):
@@ -286,6 +343,19 @@ def test_small_finger_comes_with_its_error(tmp_path: Path):
     again = found["solves"][1]
     assert again["factorisations"] < found["solves"][0]["factorisations"] / 2
     assert summary["slip_f_t"] == pytest.approx(0.25 * summary["slip_f_contact"], rel=1e-6)
+
+
+@pytest.mark.slow
+def test_small_finger_tells_what_its_penalty_changes(tmp_path: Path):
+    """Springs make a contact longer, here by a hundredth of it; meshes of twice the sizes have no part in that."""
+    scene = {name: value for name, value in SMALL.items() if name != "accuracy"}
+    summary = running.run(from_data(scene | {"output": {"receptors": False}}), tmp_path, MPI.COMM_WORLD)
+    for state in ("normal", "slip"):
+        assert -0.03 < summary[f"{state}_contact_length_penalty"] / summary[f"{state}_contact_length"] < -0.003
+    assert abs(summary["slip_mu_app_penalty"]) < 0.01 * summary["slip_mu_app"]
+    spent = summary["accuracy"]["solves"]
+    assert spent[-1]["mesh"] == spent[0]["mesh"], "on the same mesh"
+    assert spent[-1]["factorisations"] < spent[0]["factorisations"] / 2
 
 
 @pytest.mark.slow

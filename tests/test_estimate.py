@@ -2,7 +2,7 @@
 
 import pytest
 
-from fingerpad.estimate import Knob, errors, to_halve
+from fingerpad.estimate import MORE, ONCE, Knob, errors, to_halve
 
 
 def law(order: float, c: float = 0.1):
@@ -60,17 +60,25 @@ def test_ridges_that_change_one_way_add_up():
 def test_errors_of_knobs_add_up_whatever_their_signs():
     """Two knobs of first order whose errors cancel on this mesh."""
     knobs = {"a": knob(law(1.0, 0.1), 0), "b": knob(law(1.0, -0.1), 0)}
-    assert errors(knobs, ["q"])["q"] == pytest.approx(0.1, rel=1e-12)
+    assert errors(knobs, ["q"])["q"] == pytest.approx(ONCE * 0.1, rel=1e-12)
+
+
+def test_each_knob_has_its_own_factor_of_safety():
+    """Shares of 0.05, known from one change, and 0.025, from two."""
+    knobs = {"a": knob(law(1.0), 0), "b": knob(law(1.0), 0, 1)}
+    assert errors(knobs, ["q"])["q"] == pytest.approx(ONCE * 0.05 + MORE * 0.025, rel=1e-12)
 
 
 def test_a_knob_that_does_not_act_on_a_quantity_is_left_out():
     """The steps of normal contact say nothing of full slip."""
     knobs = {"a": knob(law(1.0), 0), "steps": Knob([{"other": 1.0}])}
-    assert errors(knobs, ["q"])["q"] == pytest.approx(0.05, rel=1e-12)
+    assert errors(knobs, ["q"])["q"] == pytest.approx(ONCE * 0.05, rel=1e-12)
 
 
 def test_nothing_is_halved_within_the_tolerance():
-    assert to_halve({"a": knob(law(1.0), 0)}, {"q": 0.0501}) == []
+    """The tolerance holds for the share of 0.05 with its factor of safety."""
+    assert to_halve({"a": knob(law(1.0), 0)}, {"q": ONCE * 0.0501}) == []
+    assert to_halve({"a": knob(law(1.0), 0)}, {"q": ONCE * 0.0499}) == ["a"]
 
 
 @pytest.mark.parametrize(
@@ -79,7 +87,7 @@ def test_nothing_is_halved_within_the_tolerance():
 def test_as_few_are_halved_as_will_do(allowed, keys):
     """Shares of 0.05 and 0.005 become half at first order; each may spend half of what is allowed."""
     knobs = {"b": knob(law(1.0, 0.01), 0), "a": knob(law(1.0, 0.1), 0)}
-    assert to_halve(knobs, {"q": allowed}) == keys
+    assert to_halve(knobs, {"q": ONCE * allowed}) == keys
 
 
 def test_one_that_does_not_matter_is_not_halved_for_another():

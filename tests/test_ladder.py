@@ -140,6 +140,21 @@ def test_full_summary_is_an_answer(tmp_path):
     assert (answer.cost.seconds, answer.cost.factorisations, answer.cost.unknowns) == (9.0, 3, 5)
 
 
+def test_errors_of_a_run_are_the_answer_s(tmp_path):
+    """Beside their values, with what ± is; a state that comes without has its value alone."""
+    answer = ladder.from_summary(keep(tmp_path, slip_contact_length_error=2e-5))
+    assert answer.errors == {"slip_contact_length": 2e-5}
+    lines = ladder.table([answer]).splitlines()
+    assert next(line for line in lines if line.startswith("slip contact_length")).endswith("0.0016 ± 2e-05")
+    assert next(line for line in lines if line.startswith("normal contact_length")).endswith("  0.0017")
+    assert "±: estimated discretisation error" in lines
+
+
+def test_closed_form_has_no_discretisation_error(default):
+    assert default.errors == {}
+    assert any("no discretisation error" in note for note in default.notes)
+
+
 # -- the command -------------------------------------------------------------------------------------------
 def test_command_prints_keys_and_notes(capsys):
     assert ladder.main(["--rung", "1", "--f-ext", "50", "--voltage", "0"]) == 0

@@ -5,6 +5,7 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad import ridge_cell, smooth
+from fingerpad.estimate import ONCE
 from fingerpad.scene import SceneError, from_data
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
@@ -47,8 +48,67 @@ def test_contact_is_that_of_the_full_model(answer):
 
 
 def test_one_table_is_kept(answer):
-    """Without voltage the scene's table and the uncharged one are one."""
-    assert len(list(answer[1].glob("*.json"))) == 1
+    """Without voltage the scene's table and the uncharged one are one; there is one of each size of facets."""
+    assert len(list(answer[1].glob("*.json"))) == 2
+
+
+# -- the discretisation error ------------------------------------------------------------------------------
+ROUGH = {"h_rms": 2e-6, "wavelength": 80e-6}  # its air gaps are smaller, and attraction falls faster over the gap
+
+
+def rough(voltage: float, contact: float):
+    mesh = SCENE["mesh"] | {"contact": contact}
+    return from_data(SCENE | {"voltage": voltage, "roughness": ROUGH, "mesh": mesh})
+
+
+def test_facets_that_lose_the_ridge_are_refused(tmp_path):
+    """At 200 V a lifted ridge of facets of 20 um is lost while it is pressed on the screen: no answer comes of that."""
+    with pytest.raises(SceneError, match=r"mesh.contact is 2e-05 m, .* is lost at .*; give a mesh.contact of 1e-05 m"):
+        smooth.solve(rough(200.0, 20e-6), tmp_path)
+
+
+def test_error_covers_the_difference_to_finer_facets(tmp_path):
+    """Facets of 20 um at 100 V, against those of a quarter of their size."""
+    coarse = smooth.solve(rough(100.0, 20e-6), tmp_path)
+    finer = smooth._solved(rough(100.0, 5e-6), tmp_path, MPI.COMM_WORLD)[1]
+    for state in ("normal", "slip"):
+        for name in ("f_electrostatic", "contact_length"):
+            key = f"{state}_{name}"
+            assert 0 < abs(coarse.summary[key] - finer[key]) <= coarse.errors[key]
+    assert abs(coarse.summary["slip_mu_app"] - finer["slip_mu_app"]) <= coarse.errors["slip_mu_app"]
+
+
+def test_error_of_first_order():
+    """1 + h: halving h = 0.2 changes 0.1, and the error left, 0.1, counts with its factor of safety."""
+    found = smooth.errors({"slip_mu_app": 1.2, "slip_ridges_in_contact": 16}, {"slip_mu_app": 1.1})
+    assert found == pytest.approx({"slip_mu_app": 0.1 + ONCE * 0.1}, rel=1e-12)
+
+
+def test_error_too_large_to_mean_anything_is_refused(monkeypatch, answer):
+    """The issue's scene: 0.788 with facets of 20 um, 1.019 with those of half the size."""
+    known = {"full_slip": True, "normal_mu_app": 0.0, "slip_contact_length": 1e-3}
+    scene, coarse, fine = rough(200.0, 20e-6), known | {"slip_mu_app": 0.788}, known | {"slip_mu_app": 1.019}
+    with pytest.raises(SceneError, match=r"rung 2's slip_mu_app is 0.788 with an estimated .* error of 0.69") as caught:
+        smooth._refuse_coarse(scene, coarse, smooth.errors(coarse, fine))
+    assert "give a mesh.contact of 1e-05 m or less" in str(caught.value)
+    assert len(str(caught.value)) < 300
+    near = known | {"slip_mu_app": 0.80}
+    smooth._refuse_coarse(scene, coarse, smooth.errors(coarse, near))
+
+
+def test_error_that_is_not_known_is_refused():
+    """Full slip with one size of facets and none with the other."""
+    coarse, fine = {"full_slip": True, "slip_mu_app": 0.5}, {"full_slip": False}
+    with pytest.raises(SceneError, match="slip_mu_app is not known with facets of half the size"):
+        smooth._refuse_coarse(rough(200.0, 20e-6), coarse, smooth.errors(coarse, fine))
+
+
+def test_every_number_comes_with_its_error(answer):
+    """But ridges, which are counted, and what is zero by symmetry."""
+    s, errors = answer[0].summary, answer[0].errors
+    assert {key for key in s if isinstance(s[key], float)} == set(errors)
+    assert 0 < errors["slip_contact_length"] < 0.5 * s["slip_contact_length"]
+    assert answer[0].cost.factorisations > 0
 
 
 def test_table_that_ends_too_soon_is_said(answer, monkeypatch):

@@ -1,0 +1,32 @@
+"""What a penalty changes: on a law that is known, and on the default scene's runs with other stiffnesses."""
+
+from pathlib import Path
+
+import pytest
+
+from benchmarks.calibration import stiffer
+from fingerpad.scene import from_data
+from fingerpad.screen import ORDER, rigid, stiffened
+
+
+def test_law_is_extrapolated_exactly():
+    """To roundoff."""
+
+    def q(eps):
+        return 1 + 0.3 * eps**-ORDER
+
+    assert rigid({"q": q(4.0)}, {"q": q(8.0)})["q"] == pytest.approx(1 - q(4.0), rel=1e-12)
+
+
+def test_both_stiffnesses_are_doubled():
+    contact = from_data({}).contact
+    assert stiffened(contact).eps_n == 2 * contact.eps_n
+    assert stiffened(contact).eps_t == 2 * contact.eps_t
+
+
+@pytest.mark.parametrize("state", ["press", "normal", "slip"])
+def test_order_predicts_the_contact_over_a_stiffer_screen(state):
+    """From 500 and 1500 MPa/mm, what 5000 changes of the default scene's contact: to a factor of two."""
+    predicted, found = stiffer(Path(__file__).parents[1] / "docs")[state]
+    assert found < 0
+    assert 0.5 < predicted / found < 2
