@@ -118,12 +118,12 @@ def _run(scene: Scene, place: Place, comm: MPI.Comm, failed_starts: list[dict[st
             if "failure" in ended:
                 report.say(f"fingerpad: {ended['failure']}")
                 report.log.error(ended["failure"])
-        report.load_reached()
-        report.draw()
-        summary = report.summary(ended)
-        report.say(_sentence(summary, place.folder))
-        report.close()
-        return summary
+            report.load_reached()
+            report.draw()
+            summary = report.summary(ended)
+            report.say(_sentence(summary, place.folder))
+            report.close()
+            return summary
     except BaseException as error:
         # On more ranks than this, or not: what waits for the others would never return.
         report.close(whole=comm.size == 1 and no_room(error) is None)
