@@ -13,6 +13,10 @@ from collections.abc import Sequence
 
 _ELSEWHERE = "/"  # belongs to the system; nothing is configured there
 
+# What PETSc did not read is found by fingerpad.petsc_options, not listed when everything is over; its handlers of
+# signals would end a run that the caller has ignore SIGHUP.
+_QUIET = ("-options_left", "no", "-no_signal_handler")
+
 with contextlib.chdir(_ELSEWHERE):
     from mpi4py import MPI
 
@@ -28,8 +32,7 @@ def start(options: Sequence[str] = ()) -> None:
     with contextlib.chdir(_ELSEWHERE):
         import petsc4py
 
-        # What PETSc did not read is found by fingerpad.petsc_options, not listed when everything is over.
-        petsc4py.init([sys.argv[0], "-options_left", "no", *options])
+        petsc4py.init([sys.argv[0], *_QUIET, *options])
         import dolfinx.jit
         import ffcx.options
         import matplotlib  # noqa: F401

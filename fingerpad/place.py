@@ -42,7 +42,8 @@ class Place:
 
     def __init__(self, folder: Path, scene: Scene, comm: MPI.Comm) -> None:
         """Choose a folder for a scene; nothing is touched before :meth:`take`, except that the folder is made."""
-        self.folder, self._comm, self._parameters = folder, comm, scene.parameters()
+        self.folder, self._comm = folder, comm
+        self._parameters = json.loads(json.dumps(scene.parameters()))  # as they are read back
         self._lock: TextIO | None = None
 
     def __enter__(self) -> "Place":
