@@ -24,7 +24,7 @@ __all__ = ["MPI", "start"]
 
 
 def start(options: Sequence[str] = ()) -> None:
-    """Start the libraries; where they have been started already, nothing happens.
+    """Start the libraries, or give PETSc further options where they have been started.
 
     Args:
         options: PETSc's, as on a command line; they override those of the environment and of the user's home.
@@ -33,6 +33,9 @@ def start(options: Sequence[str] = ()) -> None:
         import petsc4py
 
         petsc4py.init([sys.argv[0], *_QUIET, *options])
+        from petsc4py import PETSc
+
+        PETSc.Options().insertString(" ".join(options))  # for the case that PETSc had been started
         import dolfinx.jit
         import ffcx.options
         import matplotlib  # noqa: F401

@@ -17,8 +17,7 @@ from mpi4py import MPI
 
 from variational.continuation import StepFailed
 
-
-_MEANING = {
+_MEANING: dict[int, signal.Signals] = {
     signal.SIGINT: signal.SIGINT,
     signal.SIGTERM: signal.SIGTERM,
     signal.SIGHUP: signal.SIGHUP,
@@ -65,7 +64,7 @@ class Interrupt:
     def _note(self, number: int, frame: FrameType | None) -> None:
         now = time.monotonic()
         if not self._signal:
-            self._signal, self._time = _MEANING[signal.Signals(number)], now
+            self._signal, self._time = _MEANING[number], now
             if number == signal.SIGHUP:
                 _leave_terminal()
             if self._comm.rank == 0:

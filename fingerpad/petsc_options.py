@@ -3,6 +3,7 @@
 import contextlib
 import ctypes
 import difflib
+import io
 import os
 import tempfile
 from collections.abc import Iterator
@@ -112,7 +113,8 @@ def _silent() -> Iterator[None]:
     try:
         with tempfile.TemporaryFile() as nowhere:
             os.dup2(nowhere.fileno(), 1)
-            yield
+            with contextlib.redirect_stdout(io.StringIO()):  # which petsc4py prints to if somebody else has done so
+                yield
             flush(None)
     finally:
         os.dup2(kept, 1)

@@ -6,12 +6,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from mpi4py import MPI
-
-from fingerpad.accuracy import Keeper, Search, plus_minus
+import fingerpad.started  # noqa: F401
 from fingerpad import petsc_options
+from fingerpad.accuracy import Keeper, Search, plus_minus
 from fingerpad.advice import advice
 from fingerpad.ending import all_together, no_room
+from fingerpad.entry import MPI
 from fingerpad.interrupt import Interrupt, Interrupted
 from fingerpad.needs import plan
 from fingerpad.place import Place
