@@ -1,6 +1,7 @@
-"""What tests measure of a meshed body, on any number of ranks."""
+"""What tests measure of a meshed body, on any number of ranks, and of a folder of results."""
 
 import csv
+from pathlib import Path
 
 import numpy as np
 import ufl

@@ -151,7 +151,8 @@ def test_what_one_rank_raises_ends_all(tmp_path, rank):
 # -- a full disk -------------------------------------------------------------------------------------------
 def test_full_disk(tmp_path):
     """ADIOS2 cannot write the first load's fields; a limit of file sizes stands for the disk."""
-    code = "import resource, runpy, sys\nfrom fingerpad.entry import start; start()\nresource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))\n"
+    code = "import resource, runpy, sys\nfrom fingerpad.entry import start; start()\n"
+    code += "resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))\n"
     code += "sys.argv = sys.argv[1:]\nrunpy.run_path(sys.argv[0], run_name='__main__')"
     demo, scene = ROOT / "demos" / "demo_fingerpad.py", ROOT / "demos" / "scenes" / "coarse.toml"
     command = [sys.executable, "-c", code, str(demo), "--scene", str(scene), "--out", str(tmp_path)]
