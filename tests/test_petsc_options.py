@@ -10,14 +10,16 @@ from fingerpad.petsc_options import OptionError
 @pytest.fixture
 def given():
     """Return a function that gives options as a command line does; they are gone afterwards."""
-    options, before = PETSc.Options(), set(PETSc.Options().getAll())
+    options, before = PETSc.Options(), PETSc.Options().getAll()
 
     def give(text: str) -> None:
         options.insertString(text)
 
     yield give
-    for name in set(options.getAll()) - before:
+    for name in options.getAll():
         options.delValue(name)
+    for name, value in before.items():
+        options.setValue(name, value)
 
 
 @pytest.mark.mpi
