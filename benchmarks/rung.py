@@ -31,13 +31,14 @@ def ask(kind: str, scene: Scene, folder: Path) -> End:
 
 def _main(arguments: Sequence[str]) -> None:
     limit_processor_time(float(arguments[3]))
-    from mpi4py import MPI
+    from fingerpad import entry
 
+    entry.start()
     from fingerpad import smooth, start
 
     scene, folder = from_data(json.loads(Path(arguments[1]).read_text(encoding="utf-8"))), Path(arguments[2])
     answer = smooth.solve if arguments[0] == "2" else start.answer
-    print(json.dumps(kept(answer(scene, folder, MPI.COMM_WORLD))))
+    print(json.dumps(kept(answer(scene, folder, entry.MPI.COMM_WORLD))))
 
 
 if __name__ == "__main__":

@@ -6,10 +6,8 @@ python3 benchmarks/trace.py [the options of demos/demo_fingerpad.py]
 import argparse
 import sys
 
-import petsc4py
-from mpi4py import MPI
-
 from fingerpad.command import add_arguments, command_line
+from fingerpad.entry import MPI, start
 
 _PHASES = {
     "setup": "meshing, compiling, setting up",
@@ -27,8 +25,8 @@ def main(comm: MPI.Comm) -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     add_arguments(parser)
     scene, args, petsc = command_line(parser, quiet=comm.rank != 0)
-    petsc4py.init([sys.argv[0], *petsc])
-    from fingerpad.run import run
+    start(petsc)
+    from fingerpad.run import exit_code, run
 
     s = run(scene, args.out, comm)
     if comm.rank == 0:
@@ -41,7 +39,7 @@ def main(comm: MPI.Comm) -> int:
         for name in _COUNTS:
             print(f"{name.replace('_', ' '):40s} {s[name]:7d}")
         print(f"{'peak memory, all ranks (MB)':40s} {s['memory_mb']:7.0f}")
-    return 1 if "failure" in s else 0
+    return exit_code(s)
 
 
 if __name__ == "__main__":

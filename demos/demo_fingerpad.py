@@ -16,10 +16,9 @@
 import argparse
 import sys
 
-import petsc4py
-from mpi4py import MPI
-
 from fingerpad.command import add_arguments, command_line
+from fingerpad.entry import MPI, start
+from fingerpad.scene import SceneError
 
 
 def main(comm: MPI.Comm, argv: list[str] | None = None) -> int:
@@ -27,12 +26,17 @@ def main(comm: MPI.Comm, argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Press, charge and slide a fingerpad.", add_help=True)
     add_arguments(parser)
     scene, args, petsc = command_line(parser, argv, quiet=comm.rank != 0)
-    petsc4py.init([sys.argv[0], *petsc])
+    start(petsc)
 
     # PETSc has its options from here on.
-    from fingerpad.run import run
+    from fingerpad.run import exit_code, run
 
-    result = run(scene, args.out, comm)
+    try:
+        result = run(scene, args.out, comm)
+    except SceneError as error:
+        if comm.rank == 0:
+            print(f"fingerpad: {error}", file=sys.stderr)
+        return 2
 
     # What must hold in every run: the bone's load is what the screen bears less the attraction, and at full slip
     # the friction is mu_0 times the contact force, exactly.
@@ -41,7 +45,7 @@ def main(comm: MPI.Comm, argv: list[str] | None = None) -> int:
         assert abs(balance) <= 1e-6 * result["f_ext"], balance
         friction = abs(result["slip_f_t"]) - scene.friction * result["slip_f_contact"]
         assert abs(friction) <= 1e-6 * abs(result["slip_f_t"]), friction
-    return 1 if "failure" in result else 0
+    return exit_code(result)
 
 
 if __name__ == "__main__":

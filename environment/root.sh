@@ -10,11 +10,36 @@ set -euo pipefail
 
 suite=${SUITE:-trixie}
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-cache=${XDG_CACHE_HOME:-$HOME/.cache}/fingerpad
 need_gb=6  # the root and, for a moment, mmdebstrap's own copy of it
 
 stop() { echo "fingerpad: $*" >&2; exit 1; }
 say() { echo "fingerpad: $*" >&2; }
+
+home=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6 || true)}
+cache=${XDG_CACHE_HOME:-${home:+$home/.cache}}/fingerpad
+case $cache in
+    /fingerpad) stop "you have no home folder; set HOME, or XDG_CACHE_HOME to a folder for 3 GB of Debian." ;;
+    /*) ;;
+    *) stop "XDG_CACHE_HOME is $XDG_CACHE_HOME; it must be a whole path, from / on." ;;
+esac
+
+# What runs in the root is the root's maker's choice: only the caller and the administrator may be that.
+check_owner() {  # FOLDER
+    local owner rights
+    read -r owner rights < <(stat -L -c '%u %A' "$1")
+    if [ "$owner" != "$(id -u)" ] && [ "$owner" != 0 ]; then
+        stop "$1 belongs to $(stat -L -c %U "$1"), whose programs would be run; delete it, or set XDG_CACHE_HOME to a folder of your own."
+    fi
+    case $rights in
+        d???????w[!tT]) stop "$1 can be written to by everybody, whose programs would be run; chmod o-w it, or set XDG_CACHE_HOME to another folder." ;;
+    esac
+}
+found() {
+    [ -d "$root" ] || return 1
+    check_owner "$cache"
+    check_owner "$root"
+    echo "$root"
+}
 
 case $suite in
     trixie) name="Debian 13" ;;
@@ -32,12 +57,13 @@ options=(--variant=apt --components=main
 key=$(printf '%s\n' "$suite" "$packages" "${options[@]}" | sha256sum | cut -c1-12)
 root=$cache/$suite-$key
 
-if [ -d "$root" ]; then echo "$root"; exit 0; fi
+if found; then exit 0; fi
 
 mkdir -p "$cache" 2>/dev/null || stop "cannot write to $cache; set XDG_CACHE_HOME to a folder you may write to."
+check_owner "$cache"
 exec 9>"$cache/build.lock"
 flock -n 9 || { say "another build is running, waiting for it"; flock 9; }
-if [ -d "$root" ]; then echo "$root"; exit 0; fi
+if found; then exit 0; fi
 
 # Under the lock whatever else is here is a leftover of a build that was killed.
 rm -rf --one-file-system "$cache"/build.????????
@@ -71,13 +97,50 @@ trap 'rm -rf "$build" 2>/dev/null || true' EXIT
 chmod 755 "$build"
 mkdir -m 1777 "$build/tmp"
 
+# Say which phase it is and how far it got: one line that changes on a terminal, else a line a quarter.
+progress() {
+    local line phase= of=0 count=0 text shown=
+    while IFS= read -r line; do
+        printf '%s\n' "$line" >>"$cache/build.log"
+        case $line in
+            *" newly installed, "*) [[ $line =~ ([0-9]+)\ newly ]] && of=${BASH_REMATCH[1]}; continue ;;
+            "I: running apt-get update"*) text="fetching lists of packages" ;;
+            Get:*) [ "$of" = 0 ] && continue; text="downloading packages" ;;
+            "Setting up "*) text="installing packages" ;;
+            "I: creating tarball"*) text="moving into place" ;;
+            "unpacked "*) text="moving into place" ;;
+            *) continue ;;
+        esac
+        if [ "$text" != "$phase" ]; then phase=$text count=0 shown=; fi
+        count=$((count + 1))
+        case $line in
+            Get:* | Setting*) text="$text: $count of $of" ;;
+            unpacked*) text="$text: ${line#unpacked }" ;;
+        esac
+        if [ -t 2 ]; then
+            printf '\r\033[Kfingerpad: %s s, %s' $((SECONDS - start)) "$text" >&2
+        elif [ -z "$shown" ] || { [ "$of" -gt 3 ] && [ $((count % (of / 4))) = 0 ]; } || [[ $line == unpacked* ]]; then
+            say "$((SECONDS - start)) s, $text"
+        fi
+        shown=yes
+    done
+    if [ -t 2 ]; then printf '\r\033[K' >&2; fi
+}
+
 say "making a private $name with dolfinx in $cache (once; about 3 minutes and 3 GB)"
 start=$SECONDS
+: >"$cache/build.log"
+exec 8> >(progress 9>&-)
+told=$!
+built=yes
 # mmdebstrap's user namespace owns files by other ids; through tar they become the caller's.
-if ! TMPDIR=$build/tmp mmdebstrap --quiet --mode=$mode --format=tar "${options[@]}" --include="$packages" "$suite" - \
-        2>"$cache/build.log" | { mkdir "$build/root" && tar -x -C "$build/root" --no-same-owner --exclude='./dev/*' 2>>"$cache/build.log"; }; then
+TMPDIR=$build/tmp mmdebstrap --verbose --mode=$mode --format=tar "${options[@]}" --include="$packages" "$suite" - 2>&8 |
+    { mkdir "$build/root" && tar -x -C "$build/root" --no-same-owner --exclude='./dev/*' --checkpoint=25000 \
+        --checkpoint-action='exec=echo "unpacked $((TAR_CHECKPOINT / 100)) MB" >&2' 2>&8; } || built=
+exec 8>&-
+wait "$told" || true
+[ -n "$built" ] ||
     stop "the build failed: $(grep -E '^E:' "$cache/build.log" | tail -n 1 || true); is there a network? All of it: $cache/build.log"
-fi
 touch "$build/root/etc/resolv.conf"
 mv "$build/root" "$root"
 say "made in $((SECONDS - start)) s"

@@ -1,6 +1,9 @@
-"""Files that are there as a whole or not at all."""
+"""Files that are there as a whole or not at all, and tables of whole rows."""
 
+import csv
+import io
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -8,10 +11,40 @@ from typing import Any
 def replace(file: Path, text: str) -> None:
     """Write a text file; what was there stays until all of it is written."""
     part = file.with_name(f"{file.name}.part")
-    part.write_text(text, encoding="utf-8")
-    part.replace(file)
+    try:
+        part.write_text(text, encoding="utf-8")
+        part.replace(file)
+    except OSError:
+        part.unlink(missing_ok=True)
+        raise
 
 
 def replace_json(file: Path, data: Any) -> None:
     """Write data as JSON, as :func:`replace` does."""
     replace(file, json.dumps(data, indent=1, ensure_ascii=False) + "\n")
+
+
+class Table:
+    """Writes a CSV file row by row: each is on disk, whole, when :meth:`write` returns."""
+
+    def __init__(self, file: Path, columns: Mapping[str, Any]) -> None:
+        """Start the file with its header; an earlier one goes."""
+        self._file = file.open("wb", buffering=0)
+        self._columns = list(columns)
+        self.write(dict(zip(self._columns, self._columns, strict=True)))
+
+    def write(self, row: Mapping[str, Any]) -> None:
+        """Append a row; where there is no room for all of it, none of it stays."""
+        text = io.StringIO()
+        csv.DictWriter(text, self._columns).writerow(row)
+        data, start = text.getvalue().encode(), self._file.tell()
+        try:
+            while data:
+                data = data[self._file.write(data) :]
+        except OSError:
+            self._file.truncate(start)
+            raise
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()

@@ -18,9 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import petsc4py
-
-from fingerpad import closed_form
+from fingerpad import closed_form, entry
 from fingerpad.command import add_arguments, command_line, positive
 from fingerpad.rungs import NAMES, STATES, Answer, Cost, Stopwatch
 from fingerpad.scene import Scene, SceneError
@@ -30,24 +28,20 @@ _UNITS = {"f_t": "N/m", "f_electrostatic": "N/m", "f_contact": "N/m", "bone_heig
 
 def full(scene: Scene, folder: Path) -> Answer:
     """Return rung 3's answer, leaving the run in a folder; collective."""
-    from mpi4py import MPI
-
     from fingerpad.run import run
 
     clock = Stopwatch()
-    return from_summary(run(scene, folder, MPI.COMM_WORLD), clock.seconds())
+    return from_summary(run(scene, folder, entry.MPI.COMM_WORLD), clock.seconds())
 
 
 def started(scene: Scene, folder: Path) -> Answer:
     """Return rung 3's full slip from rung 2's, or its answer along the path with a note why; collective."""
-    from mpi4py import MPI
-
     from fingerpad import start
     from variational.continuation import StepFailed
 
     clock = Stopwatch()
     try:
-        return start.answer(scene, folder / "ridge_tables", MPI.COMM_WORLD)
+        return start.answer(scene, folder / "ridge_tables", entry.MPI.COMM_WORLD)
     except StepFailed as error:
         found = full(scene, folder / "full")
         notes = (*found.notes, f"{error}; the path was followed instead")
@@ -108,7 +102,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--ridges", type=positive(int), metavar="N", help="on so many ridges")
     parser.add_argument("--run", type=Path, metavar="DIR", help="for rung 1: contact lengths of this full run")
     scene, args, petsc = command_line(parser, argv)
-    petsc4py.init([sys.argv[0], *petsc])
+    entry.start(petsc)
     climb: dict[int, Callable[[], Answer]] = {
         1: lambda: closed_form.solve(scene, _footprint(scene, args)),
         2: lambda: smooth(scene, args.out / "ridge_tables"),

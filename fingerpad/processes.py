@@ -51,7 +51,7 @@ def run(module: str, arguments: Sequence[str], limit: float) -> End:
     """
     path = os.pathsep.join([str(_ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
     env = os.environ | {"PYTHONPATH": path, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-    command = [sys.executable, "-m", module, *arguments]
+    command = [sys.executable, "-P", "-m", module, *arguments]  # -P: no modules of the current folder
     try:
         done = subprocess.run(command, env=env, capture_output=True, text=True, timeout=_STUCK * limit)
     except subprocess.TimeoutExpired:

@@ -1,12 +1,11 @@
 """What a run leaves: printed steps, tables, fields, summary, log and a progress bar; rank 0 alone writes text."""
 
-import csv
 import json
 import logging
+import logging.handlers
 import time
 from collections.abc import Iterator
-from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -14,7 +13,9 @@ from numpy.typing import NDArray
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from fingerpad import mirror, pictures
-from fingerpad.files import replace_json
+from fingerpad.files import Table, replace_json
+from fingerpad.place import Place
+from fingerpad.provenance import provenance
 from fingerpad.scene import Scene
 from fingerpad.simulation import Simulation, Step
 from fingerpad.zone import Woken
@@ -37,15 +38,17 @@ class Report:
         rows: accepted steps, on every rank.
     """
 
-    def __init__(self, scene: Scene, folder: Path, comm: MPI.Comm) -> None:
-        """Open the log and the tables.
+    def __init__(self, scene: Scene, place: Place, comm: MPI.Comm) -> None:
+        """Start the progress bar; nothing is written before there is a step.
 
         Args:
             scene: what is run.
-            folder: made if need be; files of an earlier run in it are overwritten.
+            place: the folder, locked.
             comm: communicator of the run.
         """
-        self.scene, self.folder, self.comm = scene, folder, comm
+        self.scene, self.folder, self.comm = scene, place.folder, comm
+        self._place, self._taken = place, False
+        self._fields: Fields | None = None
         self.rows: list[dict[str, Any]] = []
         self.seconds = 0.0
         self._start = self._begun = time.perf_counter()
@@ -54,15 +57,10 @@ class Report:
         self._simulation: Simulation | None = None
         self._profiles: list[dict[str, Any]] = []
         self._kept: dict[str, tuple[Snapshot | None, Any]] = {}
-        self._tables: dict[str, tuple[TextIO, Any]] = {}
+        self._tables: dict[str, Table] = {}
         self._written = self._checks = 0
         self._woken: list[dict[str, Any]] = []
         self.log = logging.getLogger("fingerpad")
-        if comm.rank == 0:
-            folder.mkdir(parents=True, exist_ok=True)
-            for name in ("summary.json", "receptors.csv"):
-                (folder / name).unlink(missing_ok=True)
-        comm.barrier()
         self._progress = Progress(
             TextColumn("{task.description}"),
             BarColumn(),
@@ -74,12 +72,9 @@ class Report:
         )
         self._progress.disable |= not self._progress.console.is_terminal
         self._task = self._progress.add_task("meshing the finger", total=1.0)
-        if comm.rank == 0:
-            handler = logging.FileHandler(folder / "run.log", mode="w", encoding="utf-8")
-            handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
-            self.log.handlers = [handler]
-            self.log.setLevel(logging.INFO)
-            self.log.info("scene %s", scene.model_dump_json())
+        self.log.handlers = [logging.handlers.MemoryHandler(1000, logging.CRITICAL, flushOnClose=False)]
+        self.log.setLevel(logging.INFO)
+        self.log.info("scene %s", scene.model_dump_json())
         self._progress.start()
 
     def say(self, text: str) -> None:
@@ -91,7 +86,6 @@ class Report:
         """Meet the simulation, once it is set up."""
         self._simulation = simulation
         self._setup += time.perf_counter() - self._begun
-        self._fields = Fields(simulation.problem, self.folder)
         profiles = simulation.profiles
         sites = np.concatenate([profiles.merkel_sites(), profiles.meissner_sites()])
         if not simulation.plan.both_halves:  # where their mirror images are
@@ -103,6 +97,17 @@ class Report:
         self.say(f"{simulation.unknowns} unknowns, {len(simulation.ridges)} ridges that can touch")
         self.say(_HEADER)
         self.say(_UNITS)
+
+    def _take(self) -> None:
+        """Open the log and the fields where that has not been done, an earlier run's files gone; collective."""
+        assert self._simulation is not None
+        if not self._taken:
+            self._taken = True
+            self._place.take()
+            if self.comm.rank == 0:
+                _send(self.log, _LogFile(self.folder / "run.log", mode="w", encoding="utf-8"))
+        if self._fields is None:
+            self._fields = Fields(self._simulation.problem, self.folder)
 
     def restart(self, wake: Woken) -> None:
         """Forget every step: the loads are gone through again, with what was left out."""
@@ -125,9 +130,7 @@ class Report:
                 "factorisations": counts.factorisations,
             }
         )
-        self._fields.close()
-        for file, _ in self._tables.values():
-            file.close()
+        self._close_files()
         for kept in (self.rows, self._profiles, self._kept, self._tables):
             kept.clear()
         self._written = self._checks = 0
@@ -138,6 +141,7 @@ class Report:
         """Report an accepted step; collective."""
         start = time.perf_counter()
         assert self._simulation is not None
+        self._take()
         row = step.row | {"processor_seconds": self._processor_seconds()}
         self.rows.append(row)
         surface = self._simulation.problem.surface
@@ -211,18 +215,14 @@ class Report:
 
     def _table(self, name: str, row: dict[str, Any]) -> None:
         if name not in self._tables:
-            file = (self.folder / f"{name}.csv").open("w", newline="", encoding="utf-8")
-            writer = csv.DictWriter(file, list(row))
-            writer.writeheader()
-            self._tables[name] = (file, writer)
-        self._tables[name][1].writerow(row)
-        self._tables[name][0].flush()
+            self._tables[name] = Table(self.folder / f"{name}.csv", row)
+        self._tables[name].write(row)
 
     def load_reached(self) -> None:
         """Write the present state for ParaView and keep it for the pictures; collective."""
         start = time.perf_counter()
         if self.rows and self._written != self.rows[-1]["step"]:
-            assert self._simulation is not None
+            assert self._simulation is not None and self._fields is not None
             self._written = self.rows[-1]["step"]
             self._fields.write(float(self._written))
             self._log_checks()
@@ -250,6 +250,7 @@ class Report:
     def summary(self, ended: dict[str, Any]) -> dict[str, Any]:
         """Write ``summary.json`` and return it; ``ended`` is what else is to be said of the run's end."""
         assert self._simulation is not None
+        self._take()
         solver, rows = self._simulation.solver, self.rows
         last: dict[str, Any] = rows[-1] if rows else {}
         seconds = {"setup": self._setup, **solver.timings.seconds, "output": self.seconds}
@@ -282,6 +283,7 @@ class Report:
             result[f"{prefix}_lambda_min"] = None if check is None else check.frozen.lambda_min
             result[f"{prefix}_gain"] = None if check is None else check.gain
         result |= ended | {"omitted": self._simulation.plan.table(), "woken": self._woken}
+        result["provenance"] = provenance()
         result["parameters"] = self.scene.parameters()
         if self.comm.rank == 0:
             replace_json(self.folder / "summary.json", result)
@@ -342,12 +344,41 @@ class Report:
         x, y, p, t, p_el, gap = arrays
         return pictures.SurfaceProfile(title, x, y, p, t, p_el, gap, row["f_ext"], row["contact_length"])
 
-    def close(self) -> None:
-        """Close every file."""
-        if self._simulation is not None:
-            self._fields.close()
-        for file, _ in self._tables.values():
-            file.close()
+    def close(self, whole: bool = True) -> None:
+        """Close every file.
+
+        Args:
+            whole: all ranks do so; else fields stay as they are, since closing them waits for all ranks.
+        """
         self._progress.stop()
+        if whole:
+            self._close_files()
+        elif self._fields is not None:
+            self._fields.abandon()
         for handler in self.log.handlers:
             handler.close()
+
+    def _close_files(self) -> None:
+        if self._fields is not None:
+            self._fields.close()
+            self._fields = None
+        for table in self._tables.values():
+            table.close()
+
+
+class _LogFile(logging.FileHandler):
+    """A log that says so where it cannot be written, as tables do."""
+
+    def handleError(self, record: logging.LogRecord) -> None:
+        """Raise what went wrong."""
+        raise  # noqa: PLE0704
+
+
+def _send(log: logging.Logger, file: logging.Handler) -> None:
+    """Write what was logged so far, and what is to come, into a file."""
+    file.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
+    for memory in log.handlers:
+        if isinstance(memory, logging.handlers.MemoryHandler):
+            memory.setTarget(file)
+            memory.flush()
+    log.handlers = [file]

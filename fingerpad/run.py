@@ -1,16 +1,21 @@
 """Run a scene into a folder."""
 
+import signal
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from mpi4py import MPI
-
+import fingerpad.started  # noqa: F401
+from fingerpad import petsc_options
 from fingerpad.accuracy import Keeper, Search
 from fingerpad.advice import advice
+from fingerpad.ending import all_together, no_room
+from fingerpad.entry import MPI
 from fingerpad.estimate import plus_minus
 from fingerpad.interrupt import Interrupt, Interrupted
 from fingerpad.needs import plan
+from fingerpad.place import Place
 from fingerpad.reach import decide
 from fingerpad.report import Report
 from fingerpad.scene import Scene
@@ -33,11 +38,32 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
 
     Returns:
         The summary, the same on every rank; with a key ``failure`` if a load or an accuracy could not be reached, in
-        which case every step before is in the folder all the same, and a key ``interrupted`` if it was asked to stop.
+        which case every step before is in the folder all the same, and a key ``interrupted``, the signal's name, if
+        it was asked to stop.
+
+    Raises:
+        PlaceError: the folder is in use, holds another scene's results, or cannot be written to.
+        OptionError: PETSc refuses an option.
+        DiskFull: there is no more room for results; on the ranks that found out, which end the others.
     """
+    all_together(comm)
+    petsc_options.check()
+    with Place(folder, scene, comm) as place:
+        return _refine_start(scene, place, comm)
+
+
+def exit_code(summary: Mapping[str, Any]) -> int:
+    """Return what a program ends with after a run: 0, 1 after a failure, or what the shell calls a signal."""
+    if "interrupted" in summary:
+        return 128 + signal.Signals[summary["interrupted"]]
+    return 1 if "failure" in summary else 0
+
+
+def _refine_start(scene: Scene, place: Place, comm: MPI.Comm) -> dict[str, Any]:
+    """Run a scene, from a finer mesh again where the path of a coarse one cannot be followed."""
     starts: list[dict[str, Any]] = []
     while True:
-        summary = _run(scene, folder, comm, starts)
+        summary = _run(scene, place, comm, starts)
         finer = scene.mesh.contact / 2
         asked = scene.accuracy is not None
         lost = "failure" in summary and "accuracy" not in summary and "interrupted" not in summary
@@ -48,9 +74,9 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
         scene = scene.model_copy(update={"mesh": mesh})
 
 
-def _run(scene: Scene, folder: Path, comm: MPI.Comm, failed_starts: list[dict[str, Any]]) -> dict[str, Any]:
+def _run(scene: Scene, place: Place, comm: MPI.Comm, failed_starts: list[dict[str, Any]]) -> dict[str, Any]:
     """Run a scene once, from the mesh that it gives."""
-    report = Report(scene, folder, comm)
+    report = Report(scene, place, comm)
     ended: dict[str, Any] = {}
     jit.sweep(comm)
     try:
@@ -58,6 +84,7 @@ def _run(scene: Scene, folder: Path, comm: MPI.Comm, failed_starts: list[dict[st
             keeper: Keeper | None = None
 
             def on_step(step: Step, done: float) -> None:
+                petsc_options.refuse_unread()
                 report.step(step, done)
                 if keeper is not None:
                     keeper.see(step)
@@ -83,7 +110,7 @@ def _run(scene: Scene, folder: Path, comm: MPI.Comm, failed_starts: list[dict[st
                 except StepFailed as error:
                     ended = {"failure": "; ".join(filter(None, (str(error), advice(error))))}
                     if isinstance(error, Interrupted):
-                        ended["interrupted"] = True
+                        ended["interrupted"] = error.signal.name
             if search is not None:
                 ended = search.summary() | ({"failure": search.failure} if search.failure else {}) | ended
             ended["coarse_solve"] = decision.cost or None
@@ -92,13 +119,19 @@ def _run(scene: Scene, folder: Path, comm: MPI.Comm, failed_starts: list[dict[st
             if "failure" in ended:
                 report.say(f"fingerpad: {ended['failure']}")
                 report.log.error(ended["failure"])
-        report.load_reached()
-        report.draw()
-        summary = report.summary(ended)
-        report.say(_sentence(summary, folder))
-        return summary
-    finally:
-        report.close()
+            report.load_reached()
+            report.draw()
+            summary = report.summary(ended)
+            report.say(_sentence(summary, place.folder))
+            report.close()
+            return summary
+    except BaseException as error:
+        # On more ranks than this, or not: what waits for the others would never return.
+        report.close(whole=comm.size == 1 and no_room(error) is None)
+        full = no_room(error)
+        if full is None:
+            raise
+        raise full from error
 
 
 def _sentence(s: dict[str, Any], folder: Path) -> str:

@@ -88,11 +88,9 @@ def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int = 2, limit: float
 
 
 def _one(scene: Path, folder: Path) -> None:
-    import petsc4py
+    from fingerpad.entry import MPI, start
 
-    petsc4py.init([sys.argv[0]])
-    from mpi4py import MPI
-
+    start()
     from fingerpad.run import run as run_scene
     from fingerpad.scene import from_data
 

@@ -6,7 +6,10 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from mpi4py import MPI
+
+from fingerpad.entry import MPI, start
+
+start()
 
 from geometry import fingertip
 from geometry import mesh as meshing

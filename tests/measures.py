@@ -1,4 +1,7 @@
-"""What tests measure of a meshed body, on any number of ranks."""
+"""What tests measure of a meshed body, on any number of ranks, and of a folder of results."""
+
+import csv
+from pathlib import Path
 
 import numpy as np
 import ufl
@@ -22,3 +25,14 @@ def vertices(body, facets):
     links = body.mesh.topology.connectivity(1, 0)
     points = np.unique(np.concatenate([links.links(f) for f in facets]))
     return body.mesh.geometry.x[entities_to_geometry(body.mesh, 0, points.astype(np.int32)).ravel(), :2]
+
+
+def accepted(folder: Path) -> list[dict[str, str]]:
+    """Return the accepted steps that are on disk, each complete."""
+    file = folder / "steps.csv"
+    if not file.exists():
+        return []
+    with file.open(encoding="utf-8", newline="") as lines:
+        rows = list(csv.DictReader(lines))
+    assert all(None not in row and None not in row.values() for row in rows)
+    return rows

@@ -1,12 +1,6 @@
 """Faults put into a run: each ends in a named error with what to try, with every accepted step on disk."""
 
-import csv
 import json
-import os
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +11,7 @@ from fingerpad.run import run
 from fingerpad.scene import from_data
 from geometry.benchmarks import block
 from geometry.mesh import load
+from tests.measures import accepted
 from tests.test_contact import H_0, HEIGHT, MU_F, WIDTH, make
 from variational.continuation import Attempt, Continuation
 from variational.coupling import Coupling
@@ -26,7 +21,6 @@ from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap
 from variational.solver import Control, Solver
 
-ROOT = Path(__file__).resolve().parents[1]
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
 HISTORY = [{"name": "press", "bone_height": -60e-6}, {"name": "charge", "voltage": 100.0}]
 GOOD = 2  # steps accepted before a fault
@@ -40,17 +34,6 @@ def scene():
         return from_data({"mesh": MESH, "history": HISTORY, "numerics": numerics})
 
     return make_scene
-
-
-def accepted(folder: Path) -> list[dict[str, str]]:
-    """Return the accepted steps that are on disk, each complete."""
-    file = folder / "steps.csv"
-    if not file.exists():
-        return []
-    with file.open(encoding="utf-8", newline="") as lines:
-        rows = list(csv.DictReader(lines))
-    assert all(None not in row and None not in row.values() for row in rows)
-    return rows
 
 
 def ends(scene, folder: Path, *words: str, steps: int = GOOD) -> None:
@@ -155,47 +138,6 @@ def test_bone_and_screen_disagree(scene, tmp_path, monkeypatch):
 
     monkeypatch.setattr(Solver, "_residual", wrong)
     ends(scene(), tmp_path, "forces are not balanced", "try", steps=1)
-
-
-# -- killed ------------------------------------------------------------------------------------------------
-def start(folder: Path) -> subprocess.Popen:
-    """Start the demo in a process of its own and wait for its first steps."""
-    scene = ROOT / "demos" / "scenes" / "coarse.toml"
-    command = [sys.executable, str(ROOT / "demos" / "demo_fingerpad.py"), "--scene", str(scene), "--out", str(folder)]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    until = time.monotonic() + 300
-    while len(accepted(folder)) < GOOD:
-        assert process.poll() is None, process.communicate()
-        assert time.monotonic() < until
-        time.sleep(0.05)
-    return process
-
-
-def test_killed(tmp_path):
-    """What was accepted before a kill is on disk, whole, and no summary pretends that the run ended."""
-    with start(tmp_path) as process:
-        process.kill()
-        process.communicate()
-    rows = accepted(tmp_path)
-    assert len(rows) >= GOOD
-    assert [int(row["step"]) for row in rows] == list(range(1, len(rows) + 1))
-    assert not (tmp_path / "summary.json").exists()
-
-
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-def test_asked_to_stop(tmp_path, number):
-    """The run ends after the step it is at, names the signal, and leaves a summary."""
-    with start(tmp_path) as process:
-        process.send_signal(number)
-        out, err = process.communicate(timeout=300)
-    assert process.returncode == 1
-    assert f"stopped by {number.name} after step" in out
-    assert "Traceback" not in err
-    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
-    assert number.name in summary["failure"]
-    assert summary["interrupted"] is True  # a sweep runs it again
-    assert len(accepted(tmp_path)) == summary["steps"] >= GOOD
 
 
 def test_last_ridge_of_the_finger_touches(tmp_path):

@@ -15,7 +15,7 @@ _CPU = Path("/proc/cpuinfo")
 _DEAD = 300.0  # s after which an unfinished compile that no compiler is at is taken for killed; mostly it takes seconds
 
 
-def _options() -> dict[str, Any]:
+def _own() -> dict[str, Any]:
     """Return options that make use of all this processor can do, in a cache of its own."""
     options: dict[str, Any] = {"timeout": 300}  # s; the default of 10 s is too short for large Jacobians
     if platform.machine() != "x86_64" or not _CPU.exists():
@@ -25,7 +25,12 @@ def _options() -> dict[str, Any]:
     return options | {"cffi_extra_compile_args": ["-march=native"], "cache_dir": cache}
 
 
-OPTIONS = _options()
+OPTIONS = _own()
+
+
+def options() -> dict[str, Any]:
+    """Return all options that forms are compiled with, those of dolfinx's own files included."""
+    return dict(dolfinx.jit.get_options(OPTIONS))
 
 
 def sweep(comm: MPI.Comm) -> None:

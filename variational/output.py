@@ -4,7 +4,11 @@ ParaView shows the deformed body with *Warp By Vector* on ``displacement.bp``. S
 layer to layer; they are sampled in the corners of each cell by itself and stay discontinuous.
 """
 
-from collections.abc import Mapping
+import contextlib
+import ctypes
+import os
+import re
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -58,13 +62,40 @@ class Fields:
             dofs = function.function_space.dofmap.list[: len(values)]
             function.x.array.reshape(-1, values.shape[2])[dofs] = values
             function.x.scatter_forward()
-        for writer in self._writers:
-            writer.write(time)
+        with self._room():
+            for writer in self._writers:
+                writer.write(time)
 
     def close(self) -> None:
-        """Close the files."""
+        """Close the files; collective.
+
+        Raises:
+            OSError: there is no room for what is left to write.
+        """
+        with self._room():
+            for writer in self._writers:
+                writer.close()
+
+    def abandon(self) -> None:
+        """Leave the files as they are; not collective.
+
+        What has been written can be read. A writer that is deleted closes its file, and ends the process where that
+        fails: these are never deleted.
+        """
         for writer in self._writers:
-            writer.close()
+            ctypes.pythonapi.Py_IncRef(ctypes.py_object(writer))
+
+    @contextlib.contextmanager
+    def _room(self) -> Iterator[None]:
+        """Turn what ADIOS2 says of a full disk into the error that it is."""
+        try:
+            yield
+        except RuntimeError as error:
+            found = re.search(r"errno = (\d+)", str(error))
+            if found is None:
+                raise
+            self.abandon()
+            raise OSError(int(found[1]), os.strerror(int(found[1]))) from None
 
 
 def _sampled(problem: Problem, name: str, expressions: Mapping[tuple[int, ...], Any]) -> tuple[fem.Function, Cellwise]:

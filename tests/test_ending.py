@@ -1,0 +1,197 @@
+"""How a run ends that is killed, asked to stop, alone in trouble, or out of room: nothing written before is lost."""
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from mpi4py import MPI
+
+from fingerpad.files import Table, replace_json
+from fingerpad.interrupt import Interrupt, Interrupted
+from tests.measures import accepted
+
+ROOT = Path(__file__).resolve().parents[1]
+GOOD = 2  # steps accepted before a run is disturbed
+
+
+# -- killed ------------------------------------------------------------------------------------------------
+def start(folder: Path, ranks: int = 1) -> subprocess.Popen:
+    """Start the demo in a process of its own, or in more, and wait for its first steps.
+
+    A pytest in the background has processes ignore SIGINT; here they do not.
+    """
+    scene = ROOT / "demos" / "scenes" / "coarse.toml"
+    command = ["env", "--default-signal", *(["mpirun", "-n", str(ranks)] if ranks > 1 else []), sys.executable]
+    command += [str(ROOT / "demos" / "demo_fingerpad.py"), "--scene", str(scene), "--out", str(folder)]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    until = time.monotonic() + 300
+    while len(accepted(folder)) < GOOD:
+        assert process.poll() is None, process.communicate()
+        assert time.monotonic() < until
+        time.sleep(0.05)
+    return process
+
+
+def test_killed(tmp_path):
+    """What was accepted before a kill is on disk, whole, and no summary pretends that the run ended."""
+    with start(tmp_path) as process:
+        process.kill()
+        process.communicate()
+    rows = accepted(tmp_path)
+    assert len(rows) >= GOOD
+    assert [int(row["step"]) for row in rows] == list(range(1, len(rows) + 1))
+    assert not (tmp_path / "summary.json").exists()
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_asked_to_stop(tmp_path, number):
+    """The run ends after the step it is at, names the signal, and leaves a summary."""
+    with start(tmp_path) as process:
+        process.send_signal(number)
+        out, err = process.communicate(timeout=300)
+    assert process.returncode == 128 + number
+    assert f"stopped by {number.name} after step" in out
+    assert "Traceback" not in err
+    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+    assert number.name in summary["failure"]
+    assert summary["interrupted"] == number.name  # a sweep runs it again
+    assert len(accepted(tmp_path)) == summary["steps"] >= GOOD
+
+
+def test_several_signals_at_once_are_one(tmp_path):
+    """Terminals, launchers and batch systems send more than one; another one a second later would act at once."""
+    with start(tmp_path) as process:
+        for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGTERM):
+            process.send_signal(number)
+        out, err = process.communicate(timeout=300)
+    assert process.returncode in (128 + signal.SIGTERM, 128 + signal.SIGHUP)
+    assert json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["interrupted"] in ("SIGTERM", "SIGHUP")
+    assert err.count("the run ends after its present step; another one ends it at once") == 1
+
+
+def test_signals_that_mpirun_passes_on(tmp_path):
+    """It kills its ranks a second after SIGINT; environment/run sends SIGUSR1 in its place."""
+    with start(tmp_path, ranks=2) as process:
+        process.send_signal(signal.SIGUSR1)
+        out, err = process.communicate(timeout=300)
+    assert process.returncode == 128 + signal.SIGINT
+    assert "stopped by SIGINT after step" in out
+    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+    assert summary["interrupted"] == "SIGINT" and summary["ranks"] == 2
+
+
+def test_a_second_signal_acts_at_once(monkeypatch):
+    clock, killed = [0.0], []
+    monkeypatch.setattr("fingerpad.interrupt.time.monotonic", lambda: clock[0])
+    monkeypatch.setattr("fingerpad.interrupt.os.kill", lambda *what: killed.append(what))
+    with Interrupt(MPI.COMM_SELF) as interrupt:
+        for clock[0] in (0.0, 0.9):
+            signal.raise_signal(signal.SIGTERM)
+        assert not killed
+        clock[0] = 1.1
+        signal.raise_signal(signal.SIGTERM)
+        assert killed == [(os.getpid(), signal.SIGTERM)]
+        assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+        with pytest.raises(Interrupted, match="stopped by SIGTERM after step 7"):
+            interrupt.stop_if_asked(7)
+
+
+def test_ignored_signals_stay_ignored():
+    """A run under nohup outlives its terminal."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with Interrupt(MPI.COMM_SELF) as interrupt:
+            signal.raise_signal(signal.SIGHUP)
+            interrupt.stop_if_asked(1)
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+# -- one rank ----------------------------------------------------------------------------------------------
+RAISES = """
+import sys
+from pathlib import Path
+from fingerpad.entry import MPI, start
+start()
+from fingerpad.files import Table, replace_json
+from fingerpad.interrupt import Interrupt, Interrupted
+from fingerpad.run import run
+from fingerpad.scene import load
+from variational.continuation import Continuation
+accept, steps = Continuation._accept, []
+def raising(self):
+    accept(self)
+    steps.append(1)
+    if len(steps) == 2 and MPI.COMM_WORLD.rank == int(sys.argv[3]):
+        raise ValueError("raised on one rank")
+Continuation._accept = raising
+run(load(Path(sys.argv[1])), Path(sys.argv[2]), MPI.COMM_WORLD)
+"""
+
+
+@pytest.mark.parametrize("rank", [0, 1])
+def test_what_one_rank_raises_ends_all(tmp_path, rank):
+    """The other one waits in a collective call."""
+    scene = ROOT / "demos" / "scenes" / "coarse.toml"
+    command = ["mpirun", "-n", "2", sys.executable, "-c", RAISES, str(scene), str(tmp_path), str(rank)]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=200)
+    assert done.returncode == 1
+    assert done.stderr.count("ValueError: raised on one rank") == 1
+    assert not (tmp_path / "summary.json").exists()
+
+
+# -- a full disk -------------------------------------------------------------------------------------------
+def test_full_disk(tmp_path):
+    """ADIOS2 cannot write the first load's fields; a limit of file sizes stands for the disk."""
+    code = "import resource, runpy, sys\nfrom fingerpad.entry import start; start()\n"
+    code += "resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))\n"
+    code += "sys.argv = sys.argv[1:]\nrunpy.run_path(sys.argv[0], run_name='__main__')"
+    demo, scene = ROOT / "demos" / "demo_fingerpad.py", ROOT / "demos" / "scenes" / "coarse.toml"
+    command = [sys.executable, "-c", code, str(demo), "--scene", str(scene), "--out", str(tmp_path)]
+    done = subprocess.run(command, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True)
+    assert done.returncode == 1
+    said = done.stderr.strip()
+    assert said.startswith("fingerpad: File too large: no more results can be written")
+    assert "\n" not in said and len(said) < 300
+    assert len(accepted(tmp_path)) >= 1
+    assert not (tmp_path / "summary.json").exists()
+
+
+def test_no_room_for_a_row(tmp_path):
+    """Rows that were written stay, whole, and none is in part."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    rows = [{"step": k, "load": "slide" * 10} for k in range(10)]
+    table = Table(tmp_path / "steps.csv", rows[0])
+    resource.setrlimit(resource.RLIMIT_FSIZE, (300, before[1]))
+    try:
+        with pytest.raises(OSError, match="File too large"):
+            for row in rows:
+                table.write(row)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        table.close()
+    found = accepted(tmp_path)
+    assert 3 < len(found) < 10
+    assert found == [{name: str(value) for name, value in row.items()} for row in rows[: len(found)]]
+
+
+def test_no_room_for_a_summary(tmp_path):
+    """The one that was there stays."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    replace_json(tmp_path / "summary.json", {"old": 1})
+    resource.setrlimit(resource.RLIMIT_FSIZE, (300, before[1]))
+    try:
+        with pytest.raises(OSError, match="File too large"):
+            replace_json(tmp_path / "summary.json", {"new": "x" * 1000})
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert json.loads((tmp_path / "summary.json").read_text()) == {"old": 1}
+    assert [file.name for file in tmp_path.iterdir()] == ["summary.json"]

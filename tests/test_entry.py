@@ -1,0 +1,77 @@
+"""Libraries take no configuration from the folder that a run is started in."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+# A file that each library reads when it is started in its folder, and what shows that it was read.
+FOUND = {
+    ".petscrc": "-found 1",
+    "petscrc": "-found 1",
+    "petsc.cfg": "PETSC_ARCH = {folder}",
+    "dolfinx_jit_options.json": '{{"cffi_libraries": ["found"]}}',
+    "ffcx_options.json": '{{"epsilon": 77}}',
+    "matplotlibrc": "lines.linewidth: 77",
+    "ucx.conf": "UCX_LOG_LEVEL=debug",
+}
+STATE = """
+import dolfinx.jit, ffcx.options, matplotlib
+from petsc4py import PETSc
+print(PETSc.Options().hasName("found"), dolfinx.jit.get_options()["cffi_libraries"])
+print(ffcx.options.get_options()["epsilon"], matplotlib.rcParams["lines.linewidth"])
+"""
+
+
+def python(folder: Path, code: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run code in a folder."""
+    variables = {**os.environ, "PYTHONPATH": str(ROOT), **environment}
+    command = [sys.executable, "-P", "-W", "ignore", "-c", code]
+    return subprocess.run(command, cwd=folder, env=variables, capture_output=True, text=True)
+
+
+@pytest.fixture(scope="module")
+def clean(tmp_path_factory) -> str:
+    done = python(tmp_path_factory.mktemp("clean"), "from fingerpad.entry import start; start()" + STATE)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("first", ["from fingerpad.entry import start; start()", "import fingerpad.run"])
+def test_nothing_is_taken_from_the_current_folder(tmp_path, clean, first):
+    """Neither by a program nor by a script of one's own."""
+    for name, text in FOUND.items():
+        (tmp_path / name).write_text(text.format(folder=tmp_path))
+    done = python(tmp_path, first + STATE)
+    assert (done.returncode, done.stdout) == (0, clean), done.stderr
+    assert "UCX" not in done.stderr
+
+
+def test_without_it_they_would_be(tmp_path, clean):
+    """What the test above is worth: libraries of this version do read these files."""
+    for name in (".petscrc", "ffcx_options.json", "matplotlibrc", "dolfinx_jit_options.json"):
+        (tmp_path / name).write_text(FOUND[name].format())
+    done = python(tmp_path, STATE)
+    assert done.stdout == "True ['found']\n77 77.0\n"
+
+
+def test_the_home_folder_is_obeyed(tmp_path):
+    """PETSc's file there comes first, then the environment, then the command line."""
+    home, place = tmp_path / "home", tmp_path / "place"
+    home.mkdir()
+    place.mkdir()
+    (home / ".petscrc").write_text("-a home\n-b home\n-c home\n")
+    code = "from fingerpad.entry import start; start(['-c', 'line'])\nfrom petsc4py import PETSc\n"
+    code += "o = PETSc.Options(); print(*(o.getString(name) for name in 'abc'))"
+    done = python(place, code, HOME=str(home), PETSC_OPTIONS="-b environment -c environment")
+    assert done.stdout == "home environment line\n"
+
+
+def test_modules_of_the_current_folder_are_not_run(tmp_path):
+    """Processes of a sweep are started with python3 -m, which looks there first."""
+    (tmp_path / "numpy.py").write_text("raise SystemExit('found')")
+    code = "from fingerpad import processes; print(processes.run('fingerpad.sweep', ['no.json', '.', '9'], 9).message)"
+    assert "No such file or directory: 'no.json'" in python(tmp_path, code).stdout

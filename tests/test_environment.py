@@ -1,0 +1,309 @@
+"""environment/run and root.sh, with stand-ins for bubblewrap and mmdebstrap: neither works inside the root itself."""
+
+import os
+import pty
+import select
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).resolve().parents[1] / "environment"
+# Tells its arguments, then runs the command in a process of its own and names it, as bubblewrap does.
+BWRAP = """#!/bin/bash
+printf '%s\\n' "$@" >"$TOLD"
+while [ "$1" != env ] && [ "$1" != test ]; do
+    [ "$1" = --info-fd ] && info=$2
+    [ "$1" = --new-session ] && session=setsid
+    shift
+done
+[ -n "$REFUSAL" ] && { echo "bwrap: $REFUSAL" >&2; exit 1; }
+[ "$1" = test ] && exec "$@"
+$session "$@" <&0 &
+printf '{\\n    "child-pid": %s\\n}\\n' $! >&"$info"
+wait $!
+"""
+# Writes the signals it gets, ignores those it was started with, and ends after some time, or after the first signal.
+COMMAND = """#!{python}
+import signal, sys, time
+got = []
+for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal.SIGUSR2):
+    if signal.getsignal(number) is not signal.SIG_IGN:
+        signal.signal(number, lambda number, frame: got.append(signal.Signals(number).name))
+print("ready", flush=True)
+for _ in range({wait}):
+    time.sleep(0.1)
+    if got and {wait} > 10:
+        break
+time.sleep(0.5)  # for a second one
+print("got", *got, flush=True)
+sys.exit(42)
+"""
+
+
+@pytest.fixture
+def checkout(tmp_path) -> Path:
+    """A checkout whose root is a folder with nothing in it, and stand-ins in ``bin``."""
+    folder = tmp_path / "checkout" / "environment"
+    folder.mkdir(parents=True)
+    for name in ("run", "packages.txt"):
+        shutil.copy(HERE / name, folder)
+    script(folder / "root.sh", f"#!/bin/sh\nmkdir -p {tmp_path}/cache/root\necho {tmp_path}/cache/root\n")
+    script(tmp_path / "bin" / "bwrap", BWRAP)
+    for name in ("command", "mpirun"):
+        script(tmp_path / "bin" / name, COMMAND.format(python=sys.executable, wait=100))
+    script(tmp_path / "bin" / "brief", COMMAND.format(python=sys.executable, wait=10))
+    return folder.parent
+
+
+def script(file: Path, text: str) -> None:
+    file.parent.mkdir(exist_ok=True)
+    file.write_text(text)
+    file.chmod(0o755)
+
+
+def environment(checkout: Path, **variables: str) -> dict[str, str]:
+    """Return variables under which a root is entered although there is a dolfinx."""
+    path = f"{checkout.parent / 'bin'}:{os.environ['PATH']}"
+    return {**os.environ, "SUITE": "trixie", "PATH": path, "TOLD": str(checkout.parent / "told"), **variables}
+
+
+def enter(checkout: Path, *command: str, cwd: Path | None = None, **variables: str) -> subprocess.CompletedProcess[str]:
+    """Run a command as a user does."""
+    line, where = [str(checkout / "environment" / "run"), *command], cwd or checkout
+    variables = environment(checkout, PWD=str(where), **variables)
+    return subprocess.run(line, cwd=where, env=variables, capture_output=True, text=True)
+
+
+def told(checkout: Path) -> list[str]:
+    """Return bubblewrap's arguments."""
+    return (checkout.parent / "told").read_text().splitlines()
+
+
+def bound(arguments: list[str], option: str = "--bind") -> set[str]:
+    """Return the folders that are what they are outside."""
+    return {a for name, a, b in zip(arguments, arguments[1:], arguments[2:], strict=False) if name == option and a == b}
+
+
+# -- where things are --------------------------------------------------------------------------------------
+def test_what_can_be_written_to_is_bound_and_the_rest_is_read_only(checkout):
+    assert enter(checkout, "true").returncode == 0
+    arguments = told(checkout)
+    assert {folder for folder in ("/tmp", "/run", "/var", "/dev/shm") if Path(folder).is_dir()} <= bound(arguments)
+    read_only = {b for a, b in zip(arguments, arguments[1:], strict=False) if a == "--remount-ro"}
+    assert read_only == {"/", "/dev"}
+    assert arguments.index("--remount-ro") > max(k for k, name in enumerate(arguments) if name == "--bind")
+
+
+def test_links_at_the_top_are_links_inside(checkout):
+    links = {str(path): os.readlink(path) for path in Path("/").iterdir() if path.is_symlink()}
+    enter(checkout, "true")
+    arguments = told(checkout)
+    own = {"/bin": "usr/bin", "/sbin": "usr/sbin", "/lib": "usr/lib", "/lib64": "usr/lib64"}
+    triples = zip(arguments, arguments[1:], arguments[2:], strict=False)
+    found = {place: target for name, target, place in triples if name == "--symlink"}
+    assert (
+        found == {place: target for place, target in links.items() if "lib" not in place and "bin" not in place} | own
+    )
+
+
+@pytest.mark.parametrize(
+    ("refusal", "words"),
+    [
+        ("Can't chdir to /usr/x: No such file or directory", "the current folder is"),
+        ("Creating new namespace failed: Operation not permitted", "the kernel refuses user namespaces"),
+        ("setting up uid map: Permission denied", "kernel.apparmor_restrict_unprivileged_userns"),
+        ("Can't mount proc on /newroot/proc: Device busy", "cannot be entered (bwrap: Can't mount proc"),
+    ],
+)
+def test_what_bubblewrap_refuses(checkout, refusal, words):
+    done = enter(checkout, "true", REFUSAL=refusal)
+    assert done.returncode == 1
+    assert done.stderr.startswith("fingerpad: ") and words in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_checkout_that_is_not_inside(checkout):
+    """Its files are looked for inside, where another folder may be in its place."""
+    script(checkout.parent / "bin" / "bwrap", "#!/bin/sh\nexit 1\n")
+    done = enter(checkout, "true")
+    assert (done.returncode, done.stdout) == (1, "")
+    assert f"the checkout is in {checkout}, and the private root has folders of its own there" in done.stderr
+
+
+def test_folder_that_is_gone(checkout, tmp_path):
+    place = tmp_path / "gone"
+    place.mkdir()
+    command = f'cd "{place}" && rmdir "{place}" && exec "{checkout}/environment/run" true'
+    done = subprocess.run(["bash", "-c", command], env=environment(checkout), capture_output=True, text=True)
+    assert done.returncode == 1 and "the current folder is gone" in done.stderr
+
+
+def test_modules_of_the_project_are_not_looked_for_in_the_current_folder(checkout):
+    show = "import os; print(os.environ.get('PYTHONSAFEPATH'))"
+    assert enter(checkout, sys.executable, "-c", show, "-m fingerpad.ladder").stdout == "1\n"
+    assert enter(checkout, sys.executable, "-c", show, "-m mine").stdout == "None\n"
+
+
+# -- signals -----------------------------------------------------------------------------------------------
+def test_the_exit_code_is_the_commands(checkout):
+    assert enter(checkout, "brief").returncode == 42
+
+
+@pytest.mark.parametrize(
+    ("command", "name", "gets"),
+    [
+        ("command", "SIGINT", "SIGINT"),
+        ("command", "SIGTERM", "SIGTERM"),
+        ("command", "SIGHUP", "SIGHUP"),
+        ("command", "SIGUSR1", "SIGUSR1"),
+        ("mpirun", "SIGINT", "SIGUSR1"),
+        ("mpirun", "SIGTERM", "SIGUSR2"),
+        ("mpirun", "SIGHUP", "SIGUSR2"),
+    ],
+)
+def test_signals_reach_the_command(checkout, command, name, gets):
+    """The script waits for what the command makes of it; mpirun gets what it passes on."""
+    line = ["env", "--default-signal", str(checkout / "environment" / "run"), command]
+    with subprocess.Popen(line, env=environment(checkout), stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "ready\n"
+        process.send_signal(signal.Signals[name])
+        assert process.stdout.read() == f"got {gets}\n"
+    assert process.returncode == 42
+
+
+@pytest.mark.parametrize(("command", "gets"), [("command", "SIGINT"), ("mpirun", "SIGUSR1")])
+def test_control_c_on_a_terminal(checkout, command, gets):
+    """The command gets it once, although all processes of the terminal do, and gives its own exit code."""
+    pid, terminal = pty.fork()
+    if pid == 0:
+        line = ["env", "--default-signal", str(checkout / "environment" / "run"), command]
+        os.execvpe(line[0], line, environment(checkout))
+    said, until, typed = b"", time.monotonic() + 60, False
+    while time.monotonic() < until and b"\n" not in said.partition(b"got ")[2]:
+        if select.select([terminal], [], [], 0.1)[0]:
+            said += os.read(terminal, 1000)
+        if b"ready" in said and not typed:
+            typed = True
+            os.write(terminal, b"\x03")
+    _, status = os.waitpid(pid, 0)
+    os.close(terminal)
+    assert said.split(b"got ")[1].split() == [gets.encode()]
+    assert os.waitstatus_to_exitcode(status) == 42
+
+
+def test_what_the_caller_ignores_stays_ignored(checkout):
+    """nohup, and whatever a script starts in the background."""
+    line = ["env", "--default-signal", "--ignore-signal=HUP,INT", str(checkout / "environment" / "run"), "brief"]
+    with subprocess.Popen(line, env=environment(checkout), stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "ready\n"
+        process.send_signal(signal.SIGHUP)
+        process.send_signal(signal.SIGINT)
+        assert process.stdout.read() == "got\n"
+    assert process.returncode == 42
+
+
+def test_the_command_dies_with_the_script_alone(checkout):
+    """Bubblewrap dies with what started it, which is the script, not the shell."""
+    enter(checkout, "true")
+    assert "--die-with-parent" in told(checkout)
+    assert "exec bwrap" not in (HERE / "run").read_text()
+
+
+# -- the root ----------------------------------------------------------------------------------------------
+@pytest.fixture
+def maker(tmp_path) -> dict[str, str]:
+    """Variables under which root.sh makes a root of one file with stand-ins, as the administrator."""
+    script(tmp_path / "bin" / "dpkg-query", "#!/bin/sh\necho install ok installed\n")
+    script(tmp_path / "bin" / "mmdebstrap", f"#!/bin/sh\ncat {tmp_path}/says >&2\ncat {tmp_path}/root.tar\n")
+    lines = ["I: running apt-get update...", "Get:1 list", "0 upgraded, 8 newly installed, 0 to remove"]
+    lines += [f"Get:{k} package" for k in range(8)]
+    for k in range(8):
+        lines += [f"Unpacking p{k} ...", f"Setting up p{k} (1) ..."]
+    (tmp_path / "says").write_text("\n".join([*lines, "I: creating tarball...", ""]))
+    (tmp_path / "tree" / "etc").mkdir(parents=True)
+    subprocess.run(["tar", "-cf", tmp_path / "root.tar", "-C", tmp_path / "tree", "."], check=True)
+    script(tmp_path / "bin" / "id", f'#!/bin/sh\n[ "$1" = -u ] && echo {os.getuid()} || echo somebody\n')
+    (tmp_path / "cache").mkdir()
+    return {**os.environ, "PATH": f"{tmp_path / 'bin'}:{os.environ['PATH']}", "XDG_CACHE_HOME": str(tmp_path / "cache")}
+
+
+def root(variables: dict[str, str]) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([HERE / "root.sh"], env=variables, capture_output=True, text=True)
+
+
+needs_subuid = pytest.mark.usefixtures("allowed_to_make_a_root")
+
+
+@pytest.fixture
+def allowed_to_make_a_root(tmp_path, maker):
+    """For users without a line in /etc/subuid: the check finds one."""
+    script(
+        tmp_path / "bin" / "grep", '#!/bin/sh\ncase "$*" in */etc/subuid) exit 0 ;; *) exec /usr/bin/grep "$@" ;; esac'
+    )
+
+
+@needs_subuid
+def test_the_build_says_how_far_it_is(maker):
+    done = root(maker)
+    assert done.returncode == 0, done.stderr
+    assert (Path(done.stdout.strip()) / "etc" / "resolv.conf").exists()
+    for words in (
+        "fetching lists of packages",
+        "downloading packages: 8 of 8",
+        "installing packages: 4 of 8",
+        "moving",
+    ):
+        assert words in done.stderr
+    assert root(maker).stdout == done.stdout  # and says nothing when the root is there
+    assert root(maker).stderr == ""
+
+
+@needs_subuid
+def test_a_build_that_fails_leaves_no_root(tmp_path, maker):
+    script(tmp_path / "bin" / "mmdebstrap", "#!/bin/sh\necho 'E: no network' >&2\nexit 1\n")
+    done = root(maker)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert "the build failed: E: no network; is there a network?" in done.stderr
+    assert not list((tmp_path / "cache" / "fingerpad").glob("trixie-*"))
+
+
+@needs_subuid
+@pytest.mark.parametrize("place", ["root", "cache"])
+def test_a_root_of_somebody_else_is_not_used(tmp_path, maker, place):
+    made = root(maker).stdout.strip()
+    whose = made if place == "root" else str(tmp_path / "cache" / "fingerpad")
+    names = (
+        f'case "$*" in *%A*" {whose}") echo 4321 drwxr-xr-x ;; *%U*) echo mallory ;; *) exec /usr/bin/stat "$@" ;; esac'
+    )
+    script(tmp_path / "bin" / "stat", f"#!/bin/sh\n{names}\n")
+    done = root(maker)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert f"{whose} belongs to mallory, whose programs would be run" in done.stderr
+
+
+@needs_subuid
+def test_a_root_that_everybody_can_write_to_is_not_used(maker):
+    made = Path(root(maker).stdout.strip())
+    made.chmod(0o777)
+    done = root(maker)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert "can be written to by everybody" in done.stderr
+
+
+def test_no_home(tmp_path, maker):
+    script(tmp_path / "bin" / "getent", "#!/bin/sh\nexit 2\n")
+    done = root({name: value for name, value in maker.items() if name not in ("HOME", "XDG_CACHE_HOME")})
+    assert done.returncode == 1
+    assert done.stderr == (
+        "fingerpad: you have no home folder; set HOME, or XDG_CACHE_HOME to a folder for 3 GB of Debian.\n"
+    )
+
+
+def test_cache_that_is_no_whole_path(maker):
+    done = root(maker | {"XDG_CACHE_HOME": "cache"})
+    assert done.returncode == 1 and "it must be a whole path" in done.stderr

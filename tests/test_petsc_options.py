@@ -1,0 +1,78 @@
+"""Options of PETSc that it refuses or does not know end a run before it starts, with one sentence."""
+
+import pytest
+from petsc4py import PETSc
+
+from fingerpad import petsc_options
+from fingerpad.petsc_options import OptionError
+
+
+@pytest.fixture
+def given():
+    """Return a function that gives options as a command line does; they are gone afterwards."""
+    options, before = PETSc.Options(), PETSc.Options().getAll()
+
+    def give(text: str) -> None:
+        options.insertString(text)
+
+    yield give
+    for name in options.getAll():
+        options.delValue(name)
+    for name, value in before.items():
+        options.setValue(name, value)
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [
+        ("-fingerpad_snes_max_it abc", "-fingerpad_snes_max_it abc"),
+        ("-fingerpad_snes_type nonsense", "-fingerpad_snes_type nonsense"),
+        ("-fingerpad_pc_factor_mat_solver_type nonsense", "-fingerpad_pc_factor_mat_solver_type nonsense"),
+        ("-fingerpad_mat_mumps_icntl_14 x", "-fingerpad_mat_mumps_icntl_14 x"),
+        ("-fingerpad_snes_lag_jacobian -5", "-fingerpad_snes_lag_jacobian -5"),
+    ],
+)
+def test_values_that_petsc_refuses(given, text, named):
+    given(text)
+    with pytest.raises(OptionError) as refusal:
+        petsc_options.check()
+    assert str(refusal.value).startswith(f"PETSc refuses {named}: ")
+    assert len(str(refusal.value)) < 300 and "\n" not in str(refusal.value)
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize(
+    ("text", "nearest"),
+    [
+        ("-fingerpad_snes_max_itt 5", "-fingerpad_snes_max_it"),
+        ("-fingerpad_ksp_vieww", "-fingerpad_ksp_view"),
+        ("-fingerpad_mat_mumps_icntl14 50", "-fingerpad_mat_mumps_icntl_14"),
+    ],
+)
+def test_misspelt(given, text, nearest):
+    given(text)
+    with pytest.raises(OptionError) as refusal:
+        petsc_options.check()
+    assert text in str(refusal.value) and str(refusal.value).endswith(f"nearest known one is {nearest}")
+
+
+def test_what_petsc_reads_is_allowed(given, capfd):
+    """Monitors print nothing of the trial."""
+    given("-fingerpad_snes_monitor -fingerpad_snes_converged_reason -fingerpad_mat_mumps_icntl_14 50")
+    petsc_options.check()
+    assert capfd.readouterr() == ("", "")
+
+
+def test_what_one_equation_does_not_have_is_left_to_the_first_solve(given):
+    """A multigrid of one equation may have no coarser level; the options' names are judged when all is solved."""
+    given("-fingerpad_pc_type gamg -fingerpad_mg_levels_9_ksp_typo cg")
+    petsc_options.check()
+    with pytest.raises(OptionError, match="mg_levels_9_ksp_typo"):
+        petsc_options.refuse_unread()
+
+
+def test_options_of_others_are_none_of_ours(given):
+    given("-other_snes_type nonsense")
+    petsc_options.check()
+    assert petsc_options.in_use()["-other_snes_type"] == "nonsense"

@@ -1,0 +1,131 @@
+"""The folder of results is one scene's and one run's at a time, and no earlier run is lost for nothing."""
+
+import fcntl
+import json
+from pathlib import Path
+
+import pytest
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from fingerpad.place import LEFT, Place, PlaceError
+from fingerpad.run import run
+from fingerpad.scene import from_data
+
+MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
+LOADS = [{"name": "press", "bone_height": -30e-6}, {"name": "slide", "bone_x": 5e-6}]
+PRESS = {"mesh": MESH, "history": LOADS, "output": {"errors": False}}
+
+
+@pytest.fixture
+def scene():
+    return from_data(PRESS)
+
+
+@pytest.fixture
+def folder(tmp_path) -> Path:
+    """A folder that all ranks share."""
+    return Path(MPI.COMM_WORLD.bcast(str(tmp_path))) / "results"
+
+
+@pytest.fixture
+def finished(scene, folder) -> dict[str, bytes]:
+    """A folder with what an earlier run of the scene may have left."""
+    with Place(folder, scene, MPI.COMM_WORLD) as place:
+        place.take()
+    for name in ("summary.json", "steps.csv", "finger_press.png", "notes of mine.txt"):
+        (folder / name).write_text("old")
+    (folder / "sed.bp").mkdir()
+    return {file.name: file.read_bytes() for file in folder.iterdir() if file.is_file()}
+
+
+def kept(folder: Path) -> dict[str, bytes]:
+    return {file.name: file.read_bytes() for file in folder.iterdir() if file.is_file()}
+
+
+def test_the_same_scene_may_run_again(scene, folder, finished):
+    """What it left goes as a whole when there is something new, and what is no result stays."""
+    with Place(folder, scene, MPI.COMM_WORLD) as place:
+        assert kept(folder) == finished
+        place.take()
+    assert set(kept(folder)) == {".lock", "scene.json", "notes of mine.txt"}
+    assert not (folder / "sed.bp").exists()
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"friction": 0.3}, "friction was 0.25, and is 0.3 now"),
+        ({"mesh": {**MESH, "contact": 20e-6}}, "mesh.contact was 3e-05, and is 2e-05 now"),
+        ({"history": [{"name": "press", "bone_height": -31e-6}]}, "history differs"),
+    ],
+)
+def test_another_scene_is_refused(folder, finished, change, words):
+    with pytest.raises(PlaceError, match="holds the results of another scene") as refusal:
+        run(from_data(PRESS | change), folder, MPI.COMM_WORLD)
+    assert words in str(refusal.value) and "choose another --out" in str(refusal.value)
+    assert kept(folder) == finished
+
+
+def test_results_of_earlier_versions_are_known_by_their_summary(scene, folder):
+    folder.mkdir()
+    (folder / "summary.json").write_text(json.dumps({"parameters": scene.parameters()}))
+    with Place(folder, scene, MPI.COMM_WORLD):
+        pass
+    (folder / "summary.json").unlink()
+    (folder / "steps.csv").touch()
+    with pytest.raises(PlaceError, match="results of an unknown scene"), Place(folder, scene, MPI.COMM_WORLD):
+        pass
+
+
+def test_one_run_at_a_time(scene, folder, finished):
+    with (folder / ".lock").open() as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        with pytest.raises(PlaceError, match="another run is writing to"):
+            run(scene, folder, MPI.COMM_WORLD)
+        assert kept(folder) == finished
+    with Place(folder, scene, MPI.COMM_WORLD), pytest.raises(PlaceError, match="another run"):
+        Place(folder, scene, MPI.COMM_WORLD).__enter__()
+    with Place(folder, scene, MPI.COMM_WORLD):  # it is free again
+        pass
+
+
+@pytest.mark.mpi
+def test_refused_on_all_ranks(scene, folder):
+    """The folder is a file: the first rank finds out, and all say so."""
+    if MPI.COMM_WORLD.rank == 0:
+        folder.touch()
+    MPI.COMM_WORLD.barrier()
+    with pytest.raises(PlaceError, match="results cannot be written to .*results: File exists; choose another --out"):
+        run(scene, folder, MPI.COMM_WORLD)
+
+
+def test_a_run_that_fails_at_once_leaves_the_last_one(scene, folder, finished):
+    PETSc.Options().insertString("-fingerpad_snes_max_it many")
+    try:
+        with pytest.raises(ValueError, match="PETSc refuses -fingerpad_snes_max_it many"):
+            run(scene, folder, MPI.COMM_WORLD)
+    finally:
+        PETSc.Options().delValue("fingerpad_snes_max_it")
+    assert kept(folder) == finished
+
+
+def test_a_crash_before_the_first_step_leaves_the_last_one(scene, folder, finished, monkeypatch):
+    def crash(*_):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("fingerpad.run.Simulation", crash)
+    with pytest.raises(ZeroDivisionError):
+        run(scene, folder, MPI.COMM_WORLD)
+    assert kept(folder) == finished
+
+
+def test_a_run_takes_the_folder(scene, folder, finished):
+    """Every file of its own is one that the next run deletes, and none of the earlier run's is left."""
+    summary = run(scene, folder, MPI.COMM_WORLD)
+    left = {file.name for file in folder.iterdir()} - {".lock", "scene.json", "notes of mine.txt"}
+    assert left == {file.name for pattern in LEFT for file in folder.glob(pattern)}
+    assert {"steps.csv", "summary.json", "run.log", "finger_press.png"} <= left
+    assert json.loads((folder / "scene.json").read_text()) == json.loads(json.dumps(scene.parameters()))
+    assert [name for name, data in kept(folder).items() if data == b"old"] == ["notes of mine.txt"]
+    assert summary["provenance"]["petsc_options"]["-fingerpad_pc_type"] == "lu"
