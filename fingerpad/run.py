@@ -13,7 +13,8 @@ from fingerpad.needs import plan
 from fingerpad.reach import decide
 from fingerpad.report import Report
 from fingerpad.scene import Scene
-from fingerpad.simulation import Simulation, Step
+from fingerpad.simulation import Simulation
+from fingerpad.steps import Step
 from fingerpad.zone import Woken
 from variational import jit
 from variational.continuation import StepFailed
@@ -74,7 +75,8 @@ def _run(scene: Scene, folder: Path, comm: MPI.Comm, failed_starts: list[dict[st
                     simulation.run()
                     if keeper is not None:
                         pause = partial(interrupt.stop_if_asked, simulation.continuation.steps)
-                        search = Search(present, needed, keeper.solve(), comm, report.say, pause)
+                        look = report.look if present.accuracy is not None else None
+                        search = Search(present, needed, keeper.solve(), comm, report.say, pause, look)
                         search.run()
                 except Woken as wake:
                     present, needed, again = wake.scene, wake.needed, True
@@ -85,6 +87,8 @@ def _run(scene: Scene, folder: Path, comm: MPI.Comm, failed_starts: list[dict[st
                         ended["interrupted"] = True
             if search is not None:
                 ended = search.summary() | ({"failure": search.failure} if search.failure else {}) | ended
+                ended["unknowns"] = search.base.unknowns
+                report.finer(search.base.views)
             ended["coarse_solve"] = decision.cost or None
             if failed_starts:
                 ended["failed_starts"] = failed_starts
