@@ -43,8 +43,9 @@ class Drawing:
                 self._finger(words, title.capitalize(), view.row, view.snapshot, view.merkel, note)
         if len(before_sliding(self.rows)) not in (0, len(self.rows)):
             self._surface()
-            conditions = _joined(titles.conditions_of(self.rows, self.mu_0), self._path_note())
-            pictures.history(self.folder / "history.png", self.rows, conditions, self.mu_0)
+            shown = self.rows[len(before_sliding(self.rows)) - 1 :]
+            conditions = _joined(titles.conditions_of(shown, self.mu_0), self._path_note())
+            pictures.history(self.folder / "history.png", shown, conditions, self.mu_0)
 
     def _path_note(self) -> str:
         return "" if self.starting_size is None else _note(_PATH, self.starting_size)
@@ -60,18 +61,19 @@ class Drawing:
 
     def _surface(self) -> None:
         found, partial = named(self.rows), partial_slip(self.rows)
-        assert partial is not None
-        end = found.get("slip", self.rows[-1])
-        shown = {"normal": found["normal"], "partial": partial, "slip": end}
-        words = ("Normal contact", "Partial slip", "Full slip" if "slip" in found else "Last state")
-        states, rows = {}, []
-        for (name, row), title in zip(shown.items(), words, strict=True):
+        shown = {"normal": ("Normal contact", found["normal"])}
+        if partial is not None:
+            shown["partial"] = ("Partial slip", partial)
+        shown["slip"] = ("Full slip", found["slip"]) if "slip" in found else ("Last state", self.rows[-1])
+        states, rows = {}, list[Row]()
+        for name, (title, row) in shown.items():
             view = self.finer.get(name)
-            profile, row, note = self.profiles[row["step"]], row, self._path_note()
             if view is not None and view.profile is not None:
-                profile, row, note = view.profile, view.row, _note(_FINAL, view.mesh.contact)
-            rows.append(row)
-            states[name] = _along(profile, title, row, note)
+                rows.append(view.row)
+                states[name] = _along(view.profile, title, view.row, _note(_FINAL, view.mesh.contact))
+            else:
+                rows.append(row)
+                states[name] = _along(self.profiles[row["step"]], title, row, self._path_note())
         arrays: dict[str, Any] = {
             f"{name}_{field}": value
             for name, state in states.items()

@@ -95,7 +95,7 @@ def finger(path: Path | str, snapshot: "Snapshot", sites: Array | None, title: s
         if sites is not None:
             x, y = _MM * np.asarray(sites).T
             near.plot(x, y, "o", ms=5, mfc="white", mec="black", mew=1, ls="none", label="Merkel sites", zorder=5)
-        near.set_title("Near the contact; white: between layers", loc="left")
+        near.set_title("Near the contact; white: between layers", loc="left", pad=24)  # above the legend
         near.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, frameon=False, borderaxespad=0.2)
         for ax in (whole, near):
             ax.set_aspect("equal")
@@ -316,7 +316,7 @@ def history(path: Path | str, rows: Sequence[Mapping[str, Any]], title: str, mu_
         ridges = length.twinx()
         ridges.step(x, column("ridges_in_contact"), where="post", color=VERMILION, label="ridges in contact")
         ridges.set_ylabel("ridges in contact (number)", color=VERMILION)
-        ridges.yaxis.set_major_locator(MaxNLocator(integer=True))
+        ridges.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
         for ax, other in ((force, apparent), (length, ridges)):
             for jump in jumps:
                 line = ax.axvline(jump, color="black", lw=1, ls=":", zorder=0)

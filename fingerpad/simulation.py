@@ -282,11 +282,10 @@ class Simulation:
 
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
         loads = self.ridge_loads()
-        self._check_balance(loads)
+        imbalance = self._check_balance(loads)
         if _jumped(attempt):
             self._check_stability()
         step = self.present(loads, attempt, target.name == "touch")
-        imbalance = self.solver.imbalance()
         self._take(step.row, probe=part >= 1 and not target.until_full_slip)
         self._account(step.row, imbalance, attempt)
         whole = len(self.scene.loads())
@@ -317,8 +316,12 @@ class Simulation:
             "jump": _jumped(attempt),
         }
 
-    def _check_balance(self, loads: RidgeLoads) -> None:
-        """Stop if forces are left at a node, or the bone does not bear what the screen does: no equilibrium."""
+    def _check_balance(self, loads: RidgeLoads) -> float:
+        """Stop if forces are left at a node, or the bone does not bear what the screen does: no equilibrium.
+
+        Returns:
+            The largest force left at a node, over the solver's force scale.
+        """
         scale, left = self.solver.force_scale, self.solver.imbalance()
         step, remedy = (
             f"step {self.continuation.steps} ({self._load})",
@@ -337,6 +340,7 @@ class Simulation:
                 f"{step}: the bone bears {bone[worst]:.9g} N/m {('sideways', 'downwards')[worst]} and the screen "
                 f"{screen[worst]:.9g} N/m; {remedy}"
             )
+        return left
 
 
 def _jumped(attempt: Attempt) -> bool:

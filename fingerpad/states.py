@@ -71,11 +71,15 @@ def named(rows: Sequence[Row]) -> dict[str, Row]:
 
 
 def partial_slip(rows: Sequence[Row]) -> Row | None:
-    """Return the state nearest to half of the points slipping, on the way to the last full slip or to the end."""
+    """Return the state nearest to half of the points slipping on the way to the last full slip or to the end, if any.
+
+    States in which every point slips are none.
+    """
     found = named(rows)
     last = (found["slip"] if "slip" in found else rows[-1])["step"]
-    way = [row for row in rows[len(before_sliding(rows)) :] if row["step"] <= last]
-    return min(way, key=lambda row: abs(row["slipping"] - 0.5)) if way else None
+    way = rows[len(before_sliding(rows)) :]
+    some = [row for row in way if row["step"] <= last and not row["slip_began"]]
+    return min(some, key=lambda row: abs(row["slipping"] - 0.5)) if some else None
 
 
 def by_load(rows: Sequence[Row]) -> Iterator[tuple[str, list[Row]]]:

@@ -373,7 +373,8 @@ class Solver:
         self.problem.eta.value = 0.0
         reason = int(self._snes.getConvergedReason())
         self._ahead = False
-        if reason <= 0:  # nodes and reaction are those of a rejected iterate
+        # Nodes and reaction are those of a rejected iterate, or of one that another solver than Newton's went on from.
+        if reason <= 0 or self._snes.getType() != PETSc.SNES.Type.NEWTONLS:
             self._residual(None, self.x, self._f)
         return reason
 
