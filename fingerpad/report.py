@@ -200,6 +200,9 @@ class Report:
     def finer(self, views: Mapping[str, View]) -> None:
         """Take states of the mesh that the run ended with, by name, and write their tables."""
         self._finer = dict(views)
+        if views:
+            words = "; ".join(f"{states.WORDS[name]}: contact size {v.mesh.contact:g} m" for name, v in views.items())
+            self.log.info("steps.csv, history.png and *.bp are of the path on the starting mesh; %s", words)
         if self.comm.rank == 0:
             for state, view in views.items():
                 for name, found in (("ridges", view.ridges), ("receptors", view.receptors)):

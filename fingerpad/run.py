@@ -107,7 +107,8 @@ def _run(scene: Scene, folder: Path, comm: MPI.Comm, failed_starts: list[dict[st
 def _sentence(s: dict[str, Any], folder: Path) -> str:
     end = "full slip" if s["full_slip"] else "no full slip"
     if s["slip_mu_app"] is not None:
-        end += f" at mu_app {_show(s, 'mu_app', 4)}, f_T {_show(s, 'f_t', 3)} N/m"
+        end += f" under {s['slip_f_ext']:.4g} N/m and {s['slip_voltage']:.4g} V: mu_app {_show(s, 'mu_app', 4)}"
+        end += f", f_T {_show(s, 'f_t', 3)} N/m"
         end += f", contact length {_show(s, 'contact_length', 3, 1e3)} mm"
     work = f"{s['newton_iterations']} Newton iterations, {s['factorisations']} factorisations, {s['memory_mb']:.0f} MB"
     return f"{end}; {work}, {s['wall_seconds']:.0f} s; results in {folder}"

@@ -11,8 +11,12 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from fingerpad import drawing, report
+from fingerpad.accuracy import Keeper
+from fingerpad.needs import plan
 from fingerpad.run import run
 from fingerpad.scene import from_data
+from fingerpad.simulation import Simulation
+from fingerpad.states import RESULTS, named
 from fingerpad.steps import force_error
 from tests import test_demo
 from variational.friction import CONE_ROUNDOFF
@@ -107,6 +111,26 @@ def test_demo_passes(tmp_path, history, load, f_ext):
     assert (summary["normal_load"], summary["normal_bone_x"]) == ("press", 0.0)
     assert abs(summary["normal_mu_app"]) < 0.01
     assert float(rows_of(tmp_path / "out")[-1]["f_ext"]) == summary["f_ext"]
+
+
+CHARGE, SLIDE_ON = {"name": "charge", "voltage": 60.0}, {"name": "slide on", "bone_x": 0.6e-3}
+
+
+TURN = {"name": "turn", "bone_x": 0.258e-3}  # after 0.26 mm: too little for a slip the other way
+
+
+@pytest.mark.parametrize(("more", "load"), [([CHARGE, SLIDE_ON], "slide on"), ([TURN], "slide")])
+def test_errors_are_estimated_of_the_headline(more, load):
+    """The states kept for it are the last full slip that was held and normal contact, not those of another load."""
+    scene = from_data(LEAN | {"history": [PRESS, SLIDE, *more]})
+    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: keeper.see(step), lambda: None)
+    keeper = Keeper(simulation)
+    simulation.run()
+    found, kept = named(simulation.rows), keeper.solve().states
+    assert found["slip"]["load"] == load and found["normal"]["load"] == "press"
+    for state in ("normal", "slip"):
+        assert {name: kept[state].row[name] for name in RESULTS} == {name: found[state][name] for name in RESULTS}
+        assert kept[state].carried.voltage == found[state]["voltage"]
 
 
 COARSE_RUNS = {
