@@ -133,6 +133,21 @@ def test_errors_are_estimated_of_the_headline(more, load):
         assert kept[state].carried.voltage == found[state]["voltage"]
 
 
+def test_probe_of_full_slip_leaves_no_trace(monkeypatch):
+    """A slide that ends before it was held for 0.2 mm is probed; what follows is as without, bit for bit."""
+    slides = [{"name": f"to {x:g} mm", "bone_x": x * 1e-3} for x in (0.12, 0.16)]
+    scene = from_data(LEAN | {"history": [PRESS, CHARGE, *slides]})
+    probed, plain = [], []
+    for rows in (probed, plain):
+        simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
+        simulation.run()
+        rows += simulation.rows
+        monkeypatch.setattr(Simulation, "_holds", lambda self: False)
+    assert probed[-1]["slip_held"] and not plain[-1]["slip_held"]
+    left = {"slip_held": None}
+    assert [row | left for row in probed] == [row | left for row in plain]
+
+
 COARSE_RUNS = {
     "loose": {"numerics": {"tolerance": 1e-7}},
     "heavy": {"f_ext": 3.0, "voltage": 150.0, "mesh": LEAN["mesh"] | {"touching_half_arc": 1.4e-3}},
