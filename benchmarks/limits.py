@@ -26,7 +26,8 @@ from fingerpad.files import replace
 from fingerpad.needs import plan
 from fingerpad.processes import Pool, limit_processor_time, run
 from fingerpad.scene import Scene, from_data, start
-from fingerpad.simulation import Simulation, Step
+from fingerpad.simulation import Simulation
+from fingerpad.steps import Step
 from fingerpad.sweep import key, progress
 from geometry.parameters import MeshSize
 from variational.continuation import StepFailed

@@ -1,6 +1,7 @@
 """A finished run as arrays."""
 
 import csv
+from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -8,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fingerpad import states
 from fingerpad.scene import Scene
 from fingerpad.sweep import key, result
 
@@ -73,13 +75,20 @@ class Run:
 
     @property
     def normal(self) -> int:
-        """Row of normal contact: the last step before the bone moves sideways."""
-        return int(np.flatnonzero(np.abs(self.steps["bone_x"]) < 1e-12)[-1])
+        """Row of normal contact, see :mod:`fingerpad.states`."""
+        return self._row(
+            "normal", lambda: len(states.before_sliding([{"bone_x": x} for x in self.steps["bone_x"]])) - 1
+        )
 
     @property
     def slip(self) -> int:
-        """Row of full slip: the first step in which every point slips one way."""
-        return int(np.flatnonzero(self.steps["all_slip"])[0])
+        """Row of full slip, see :mod:`fingerpad.states`."""
+        return self._row("slip", lambda: int(np.flatnonzero(self.steps["all_slip"])[0]))
+
+    def _row(self, state: str, otherwise: Callable[[], int]) -> int:
+        """Return the row of a state, by another rule for runs of versions whose summary does not name its step."""
+        step = self.summary.get(f"{state}_step")
+        return otherwise() if step is None else int(np.flatnonzero(self.steps["step"] == step)[0])
 
     def on_ridges(self, row: int, name: str) -> tuple[Array, Array]:
         """Return numbers and a value of the ridges in contact in a row of :attr:`steps`."""

@@ -25,7 +25,7 @@ Not estimated: what a state of normal contact owes to its friction history havin
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -38,7 +38,9 @@ from fingerpad.interrupt import Interrupted
 from fingerpad.needs import Plan
 from fingerpad.scene import Load, Scene
 from fingerpad.screen import over_stiffer, rigid, stiffened
-from fingerpad.simulation import Simulation, Step
+from fingerpad.simulation import Simulation
+from fingerpad.states import WORDS, before_sliding
+from fingerpad.steps import Step
 from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError
 from variational.continuation import StepFailed
@@ -46,10 +48,9 @@ from variational.receptors import Receptors
 from variational.transfer import Carried, carry
 
 Array = NDArray[np.float64]
-STILL = 1e-12  # m, below which the bone has not moved sideways
 _SIZES = {"contact": ("contact",), "bulk": ("growth", "interface", "coarsest"), "receptor": ("receptor",)}
 _ROUNDS = 6  # of refinement
-_WORDS = {"press": "uncharged contact", "normal": "normal contact", "slip": "full slip"}
+_WORDS = {"press": "uncharged contact", **WORDS}
 
 
 @dataclass(frozen=True)
@@ -78,6 +79,8 @@ class Solve:
     factorisations: int
     processor_seconds: float
     """Of this rank."""
+    views: dict[str, Any] = field(default_factory=dict)
+    """What is to be shown of states that were solved again, by name."""
 
     def values(self) -> dict[str, float]:
         """Return the quantities of interest, by state and name."""
@@ -94,7 +97,7 @@ class Solve:
 
 
 class Keeper:
-    """Keeps the two states of a path as it goes."""
+    """Keeps the two states of a path as it goes: normal contact, and the last full slip that was held."""
 
     def __init__(self, simulation: Simulation) -> None:
         """Find the Merkel sites of the ridges that can touch."""
@@ -103,36 +106,53 @@ class Keeper:
         ridges, profiles = simulation.problem.surface.names, simulation.profiles
         sites = profiles.merkel_sites()[[profiles.ridges.index(j) for j in ridges]]
         self._sites = Receptors(simulation.problem, sites)
+        self._begun: State | None = None  # the last full slip, held or not
         self.states: dict[str, State] = {}
+        self.views: dict[str, Any] = {}
 
     def see(self, step: Step) -> None:
         """Take note of an accepted step; collective."""
-        if abs(step.row["bone_x"]) < STILL:
+        rows, row = self._simulation.rows, step.row
+        if len(before_sliding(rows)) == len(rows):
             self.keep("normal")
-        elif step.row["all_slip"] and "slip" not in self.states:
-            self.keep("slip")
+        if row["slip_began"] == row["step"]:
+            self._begun = self._state(1 if row["f_t"] >= 0 else -1)
+        if row["slip_held"] and self._begun is not None:
+            self.states["slip"] = self._begun
 
     def keep(self, name: str) -> None:
         """Keep the present state; collective."""
+        self.states[name] = self._state((1 if self._simulation.solver.reaction[0] <= 0 else -1) * (name == "slip"))
+
+    def _state(self, direction: int) -> State:
         s = self._simulation
         loads = s.ridge_loads()
-        row = s.resultants(loads)
         lengths = np.zeros(s.scene.geometry.ridge_count)
         lengths[np.array(s.ridges) + len(lengths) // 2] = loads.length
         sed = {j: float(density) for j, density in zip(s.problem.surface.names, self._sites.sed(), strict=True)}
-        direction = 0 if name != "slip" else 1 if row["f_t"] >= 0 else -1
-        self.states[name] = State(carry(s.coupling, s.continuation.surface_state), direction, row, lengths, sed)
+        return State(carry(s.coupling, s.continuation.surface_state), direction, s.resultants(loads), lengths, sed)
 
     def solve(self) -> Solve:
         """Return what was kept."""
         s, seconds = self._simulation, time.process_time() - self._start
-        if not s.full_slip:
-            self.states.pop("slip", None)
-        return Solve(self.states, s.scene.mesh, s.unknowns, s.solver.counts.factorisations, seconds)
+        return Solve(self.states, s.scene.mesh, s.unknowns, s.solver.counts.factorisations, seconds, self.views)
 
 
-def solve_again(scene: Scene, needed: Plan, states: Mapping[str, State], comm: MPI.Comm) -> Solve:
+def solve_again(
+    scene: Scene,
+    needed: Plan,
+    states: Mapping[str, State],
+    comm: MPI.Comm,
+    look: Callable[[Simulation], Any] | None = None,
+) -> Solve:
     """Solve for states of a scene's finger on the scene's mesh; collective.
+
+    Args:
+        scene: with the mesh.
+        needed: the parts of the model that the states have.
+        states: as they were found on another mesh.
+        comm: communicator of the mesh.
+        look: returns what is to be shown of the state that a simulation is in, for :attr:`Solve.views`.
 
     Raises:
         StepFailed: see :meth:`fingerpad.simulation.Simulation.adopt`.
@@ -142,7 +162,8 @@ def solve_again(scene: Scene, needed: Plan, states: Mapping[str, State], comm: M
     for name, state in states.items():
         simulation.adopt(state.carried, _WORDS[name], state.direction)
         keeper.keep(name)
-    simulation.full_slip |= "slip" in states
+        if look is not None:
+            keeper.views[name] = look(simulation)
     return keeper.solve()
 
 
@@ -167,6 +188,7 @@ class Search:
         comm: MPI.Comm,
         say: Callable[[str], None],
         pause: Callable[[], None],
+        look: Callable[[Simulation], Any] | None = None,
     ) -> None:
         """Start from a path.
 
@@ -177,11 +199,13 @@ class Search:
             comm: communicator of the meshes.
             say: prints a line.
             pause: called between solves; may raise to stop.
+            look: see :func:`solve_again`.
 
         Raises:
             StepFailed: the path has no state in which what is asked for is known.
         """
         self.scene, self._needed, self.comm, self.say, self.pause = scene, needed, comm, say, pause
+        self._look = look
         self.asked = {} if scene.accuracy is None else scene.accuracy.tolerances()
         self.base = self._path = self._stepped = path
         self.solves, self.failure = [path], ""
@@ -305,7 +329,7 @@ class Search:
 
     def _again(self, scene: Scene, states: Mapping[str, State]) -> Solve:
         self.pause()
-        found = solve_again(scene, self._needed, states, self.comm)
+        found = solve_again(scene, self._needed, states, self.comm, self._look)
         self._note(found)
         return found
 

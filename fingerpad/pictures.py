@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from fingerpad import titles
 from geometry import tags
 
 if TYPE_CHECKING:
@@ -54,11 +55,6 @@ _TOUCHING = 0.5e-6  # m: vertices lower than this count as in contact when a vie
 _DECADES = 1e3  # span of the colours of the energy density
 
 
-def conditions(f_ext: float, voltage: float, mu_0: float) -> str:
-    """Return f_ext (N/m), U (V) and mu_0 as the words of a title."""
-    return f"$f_{{ext}}$ = {f_ext:.4g} N/m, $U$ = {voltage:.4g} V, $\\mu_0$ = {mu_0:.3g}"
-
-
 def _save(figure: Figure, path: Path | str) -> None:
     figure.savefig(path, dpi=170)
 
@@ -83,7 +79,7 @@ def finger(path: Path | str, snapshot: "Snapshot", sites: Array | None, title: s
         path: of the PNG file.
         snapshot: state of the body, see :func:`variational.output.gather_mesh`.
         sites: current positions of Merkel sites (m), shape (n, 2), or None.
-        title: what state it is, see :func:`conditions`.
+        title: what state it is, see :mod:`fingerpad.titles`.
     """
     xy = _MM * (snapshot.x + snapshot.u)
     lines = interfaces(snapshot.triangles, snapshot.tag)
@@ -99,7 +95,7 @@ def finger(path: Path | str, snapshot: "Snapshot", sites: Array | None, title: s
         if sites is not None:
             x, y = _MM * np.asarray(sites).T
             near.plot(x, y, "o", ms=5, mfc="white", mec="black", mew=1, ls="none", label="Merkel sites", zorder=5)
-        near.set_title("Near the contact; white: between layers", loc="left")
+        near.set_title("Near the contact; white: between layers", loc="left", pad=24)  # above the legend
         near.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, frameon=False, borderaxespad=0.2)
         for ax in (whole, near):
             ax.set_aspect("equal")
@@ -212,8 +208,14 @@ class SurfaceProfile:
     """Equivalent air gap of the ridge (m)."""
     f_ext: float
     """External normal force per length (N/m)."""
+    voltage: float
+    """Instantaneous voltage (V)."""
+    bone_x: float
+    """Where the bone is sideways (m)."""
     contact_length: float
     """Contact length L_R (m)."""
+    note: str = ""
+    """What else the panel's title says."""
 
 
 def surface(path: Path | str, states: Sequence[SurfaceProfile], title: str, largest_gap: float = 6e-6) -> Figure:
@@ -222,7 +224,7 @@ def surface(path: Path | str, states: Sequence[SurfaceProfile], title: str, larg
     Args:
         path: of the PNG file.
         states: one pair of panels each, such as normal contact, partial slip and full slip.
-        title: what they have in common, see :func:`conditions`.
+        title: what they have in common, see :mod:`fingerpad.titles`.
         largest_gap: end of the gaps' axis (m).
     """
     with matplotlib.rc_context(_STYLE):
@@ -248,10 +250,11 @@ def surface(path: Path | str, states: Sequence[SurfaceProfile], title: str, larg
 
 
 def _surface_title(letter: str, state: SurfaceProfile) -> str:
-    words = f"{letter}  {state.title}: $f_{{ext}}$ = {state.f_ext:.4g} N/m, $L_R$ = {_MM * state.contact_length:.3g} mm"
+    words = f"{letter}  {state.title}: {titles.loads([(state.f_ext, state.voltage, state.bone_x)])}"
+    words += f", $L_R$ = {_MM * state.contact_length:.3g} mm"
     if state.contact_length > 0:
         words += f", $f_{{ext}}/L_R$ = {_KPA * state.f_ext / state.contact_length:.3g} kPa"
-    return words
+    return f"{words}\n     {state.note}" if state.note else words
 
 
 def _common_range(states: Sequence[SurfaceProfile]) -> tuple[float, float]:
@@ -290,7 +293,7 @@ def history(path: Path | str, rows: Sequence[Mapping[str, Any]], title: str, mu_
         rows: accepted steps in order, with ``bone_x`` (m), ``f_t`` and ``f_ext`` (N/m), ``contact_length`` (m),
             ``ridges_in_contact`` and, true where ridges jumped, ``jump``. What precedes sliding is left out but
             for its last row.
-        title: what run it is, see :func:`conditions`.
+        title: what run it is, see :mod:`fingerpad.titles`.
         mu_0: friction coefficient, drawn as the limit without attraction.
     """
     rows = _sliding(rows)
@@ -313,7 +316,7 @@ def history(path: Path | str, rows: Sequence[Mapping[str, Any]], title: str, mu_
         ridges = length.twinx()
         ridges.step(x, column("ridges_in_contact"), where="post", color=VERMILION, label="ridges in contact")
         ridges.set_ylabel("ridges in contact (number)", color=VERMILION)
-        ridges.yaxis.set_major_locator(MaxNLocator(integer=True))
+        ridges.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
         for ax, other in ((force, apparent), (length, ridges)):
             for jump in jumps:
                 line = ax.axvline(jump, color="black", lw=1, ls=":", zorder=0)

@@ -22,7 +22,16 @@ from fingerpad.scene import Scene, SceneError
 
 # All that a run leaves, for the next run of the same scene to delete; what else is in the folder is not touched.
 LEFT = (
-    *("steps.csv", "ridges.csv", "receptors.csv", "coupling.csv", "summary.json", "summary.json.part", "run.log"),
+    *(
+        "steps.csv",
+        "ridges.csv",
+        "receptors.csv",
+        "*_final.csv",
+        "coupling.csv",
+        "summary.json",
+        "summary.json.part",
+        "run.log",
+    ),
     *("displacement.bp", "stress.bp", "sed.bp", "finger_*.npz", "finger_*.png", "surface.npz", "surface*.png"),
     "history.png",
 )

@@ -4,7 +4,7 @@ import json
 import logging
 import logging.handlers
 import time
-from collections.abc import Iterator
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,21 +12,18 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from fingerpad import mirror, pictures
+from fingerpad import drawing, states
 from fingerpad.files import Table, replace_json
 from fingerpad.place import Place
 from fingerpad.provenance import provenance
 from fingerpad.scene import Scene
-from fingerpad.simulation import Simulation, Step
+from fingerpad.simulation import Simulation
+from fingerpad.steps import Checked, Step, force_error
+from fingerpad.views import Profile, View, Viewer
 from fingerpad.zone import Woken
-from variational.output import Fields, Snapshot, gather_mesh
-from variational.receptors import Receptors
+from variational.output import Fields, Snapshot
 from variational.timing import memory_mb
 
-_NAMED = ("f_t", "mu_app", "f_electrostatic", "f_contact", "bone_height", "ridges_in_contact", "contact_length")
-_STATES = ("normal", "partial", "slip")  # as surface.npz calls them
-_STILL = 1e-12  # m, below which the bone has not moved sideways
-_PROFILE = ("x", "y", "p_n", "t_t", "p_el", "area_x", "area_y")
 _HEADER = "step load     f_ext    U  bone x   bone y      f_T  mu_app    f_el ridges  contact newton fact."
 _UNITS = "               N/m     V      mm       mm      N/m             N/m             mm"
 
@@ -55,8 +52,9 @@ class Report:
         self._processor = time.process_time()
         self._setup = 0.0
         self._simulation: Simulation | None = None
-        self._profiles: list[dict[str, Any]] = []
-        self._kept: dict[str, tuple[Snapshot | None, Any]] = {}
+        self._profiles: dict[int, Profile] = {}
+        self._ends: dict[str, tuple[dict[str, Any], Snapshot, NDArray[np.float64] | None]] = {}
+        self._finer: dict[str, View] = {}
         self._tables: dict[str, Table] = {}
         self._written = self._checks = 0
         self._woken: list[dict[str, Any]] = []
@@ -86,11 +84,7 @@ class Report:
         """Meet the simulation, once it is set up."""
         self._simulation = simulation
         self._setup += time.perf_counter() - self._begun
-        profiles = simulation.profiles
-        sites = np.concatenate([profiles.merkel_sites(), profiles.meissner_sites()])
-        if not simulation.plan.both_halves:  # where their mirror images are
-            sites[:, 0] = np.abs(sites[:, 0])
-        self._sites = Receptors(simulation.problem, sites) if simulation.plan.receptors else None
+        self._viewer = Viewer(simulation)
         for omission in simulation.plan.omitted:
             self.say(f"{omission}")
             self.log.info("%s", omission)
@@ -131,7 +125,7 @@ class Report:
             }
         )
         self._close_files()
-        for kept in (self.rows, self._profiles, self._kept, self._tables):
+        for kept in (self.rows, self._profiles, self._ends, self._finer, self._tables):
             kept.clear()
         self._written = self._checks = 0
         self._begun = time.perf_counter()
@@ -142,26 +136,19 @@ class Report:
         start = time.perf_counter()
         assert self._simulation is not None
         self._take()
-        row = step.row | {"processor_seconds": self._processor_seconds()}
+        size = {"mesh_contact": self._simulation.scene.mesh.contact}
+        row = step.row | size | {"processor_seconds": self._processor_seconds()}
         self.rows.append(row)
-        surface = self._simulation.problem.surface
-        stacked = np.stack([getattr(step.surface, name) for name in _PROFILE])
-        gathered, ridge = surface.gather(stacked), surface.gather(surface.ridge[None, :, None].astype(float))
-        sed = self._sites.sed() if self._sites else None
+        profile, receptors = self._viewer.profile(step), self._viewer.receptors(step)
         if self.comm.rank == 0:
-            assert gathered is not None and ridge is not None
-            values, where = gathered, ridge[0, :, 0].astype(int)
-            if not self._simulation.plan.both_halves:
-                values, where = mirror.profile(_PROFILE, gathered, where)
-            self._profiles.append({"ridge": where, "values": values, "d_eq": step.d_eq, "row": row})
+            assert profile is not None
+            self._profiles[row["step"]] = profile
             self._table("steps", row)
-            for k, j in enumerate(self._names):
-                if step.ridges.length[k] > 0:
-                    self._table("ridges", self._ridge_row(step, k, j))
-            for ridge_row in self._receptor_rows(step.row["step"], sed) if sed is not None else ():
-                self._table("receptors", ridge_row)
+            for name, found in (("ridges", self._viewer.ridges(step)), ("receptors", receptors)):
+                for each in found:
+                    self._table(name, each | size)
             for sweep, change in enumerate(step.attempt.changes):
-                self._table("coupling", {"step": step.row["step"], "sweep": sweep + 1, "change": change})
+                self._table("coupling", {"step": row["step"], "sweep": sweep + 1, "change": change})
             self._print(step, done)
         self.seconds += time.perf_counter() - start
 
@@ -171,47 +158,21 @@ class Report:
 
     def _print(self, step: Step, done: float) -> None:
         r = step.row
-        released = f"  jump, {r['energy_released']:.2g} J/m released"
         self.say(
             f"{r['step']:4d} {r['load'][:7]:7s} {r['f_ext']:7.3f} {r['voltage']:5.1f} {r['bone_x'] * 1e3:7.4f} "
             f"{r['bone_height'] * 1e3:8.5f} {r['f_t']:8.4f} {r['mu_app']:7.4f} {r['f_electrostatic']:7.3f} "
             f"{r['ridges_in_contact']:6d} {r['contact_length'] * 1e3:8.4f} {r['newton_iterations']:6d} "
-            f"{r['factorisations']:5d}{released if r['jump'] else ''}"
+            f"{r['factorisations']:5d}{'  jump, ' + _released(r) if r['jump'] else ''}"
         )
         self.log.info("step %s sweeps %s", json.dumps(r), step.attempt.changes)
         for cut in step.attempt.cutbacks:
             self.log.warning("step %d cut: %s", r["step"], cut)
-        notes = [f"ridge {j} {s}" for j, s in zip(self._names, step.states, strict=True) if s]
+        assert self._simulation is not None
+        notes = [f"ridge {j} {s}" for j, s in zip(self._simulation.ridges, step.states, strict=True) if s]
         if notes:
             self.log.warning("step %d closure: %s", r["step"], ", ".join(notes))
         loads = f"{r['load']}: {r['f_ext']:.1f} N/m, {r['voltage']:.0f} V, x {r['bone_x'] * 1e3:.2f} mm"
         self._progress.update(self._task, completed=done, description=f"{loads}, µ {r['mu_app']:.3f}")
-
-    @property
-    def _names(self) -> list[int]:
-        assert self._simulation is not None
-        return self._simulation.ridges
-
-    def _ridge_row(self, step: Step, k: int, j: int) -> dict[str, Any]:
-        values = step.ridges
-        return {
-            "step": step.row["step"],
-            "ridge": j,
-            "contact_length": values.length[k],
-            "f_contact": values.f_contact[k],
-            "f_friction": values.f_friction[k],
-            "f_electrostatic": values.f_attraction[k],
-            "p_c": values.p_c[k],
-            "d_eq": step.d_eq[k],
-            "state": step.states[k],
-        }
-
-    def _receptor_rows(self, step: int, sed: NDArray[np.float64]) -> Iterator[dict[str, Any]]:
-        assert self._simulation is not None
-        names = self._simulation.profiles.ridges
-        merkel, meissner = sed[: len(names)], sed[len(names) :].reshape(-1, 2)
-        for j, at_tip, (left, right) in zip(names, merkel, meissner, strict=True):
-            yield {"step": step, "ridge": j, "merkel_sed": at_tip, "meissner_left": left, "meissner_right": right}
 
     def _table(self, name: str, row: dict[str, Any]) -> None:
         if name not in self._tables:
@@ -219,26 +180,36 @@ class Report:
         self._tables[name].write(row)
 
     def load_reached(self) -> None:
-        """Write the present state for ParaView and keep it for the pictures; collective."""
+        """Write the present state for ParaView and keep it for the pictures, if it was reported; collective."""
         start = time.perf_counter()
-        if self.rows and self._written != self.rows[-1]["step"]:
-            assert self._simulation is not None and self._fields is not None
-            self._written = self.rows[-1]["step"]
+        assert self._simulation is not None
+        last = self.rows[-1] if self.rows else {"step": 0}
+        if self._written != last["step"] == self._simulation.continuation.steps:
+            assert self._fields is not None
+            self._written = last["step"]
             self._fields.write(float(self._written))
             self._log_checks()
-            self._kept[self.rows[-1]["load"]] = self._picture()
+            snapshot, merkel = self._viewer.picture()
+            if snapshot is not None:
+                self._ends[last["load"]] = (last, snapshot, merkel)
         self.seconds += time.perf_counter() - start
 
-    def _picture(self) -> tuple[Snapshot | None, Any]:
-        """Return the present state of the whole finger, and where the Merkel sites are if they are wanted."""
-        assert self._simulation is not None
-        snapshot, ridges = gather_mesh(self._simulation.problem), np.array(self._simulation.profiles.ridges)
-        merkel = self._sites.positions()[: len(ridges)] if self._sites else None
-        if not self._simulation.plan.both_halves:
-            snapshot = mirror.snapshot(snapshot) if snapshot else None
-            if merkel is not None:
-                merkel[ridges < 0, 0] *= -1
-        return snapshot, merkel
+    def look(self, simulation: Simulation) -> View:
+        """Return what is to be shown of a state that was solved again on another mesh; collective."""
+        return Viewer(simulation).view()
+
+    def finer(self, views: Mapping[str, View]) -> None:
+        """Take states of the mesh that the run ended with, by name, and write their tables."""
+        self._finer = dict(views)
+        if views:
+            words = "; ".join(f"{states.WORDS[name]}: contact size {v.mesh.contact:g} m" for name, v in views.items())
+            self.log.info("steps.csv, history.png and *.bp are of the path on the starting mesh; %s", words)
+        if self.comm.rank == 0:
+            for state, view in views.items():
+                for name, found in (("ridges", view.ridges), ("receptors", view.receptors)):
+                    for row in found:
+                        values = {key: value for key, value in row.items() if key != "step"}
+                        self._table(f"{name}_final", {"of": state} | values | {"mesh_contact": view.mesh.contact})
 
     def _log_checks(self) -> None:
         assert self._simulation is not None
@@ -258,10 +229,12 @@ class Report:
         result: dict[str, Any] = {
             "f_ext": last.get("f_ext", 0.0),
             "voltage": last.get("voltage", 0.0),
-            "full_slip": self._simulation.full_slip,
+            "full_slip": any(row["slip_held"] for row in rows),
             "newton_iterations": solver.counts.newton,
             "factorisations": solver.counts.factorisations,
             "unknowns": self._simulation.unknowns,
+            "unknowns_path": self._simulation.unknowns,
+            "path_mesh": self._simulation.scene.mesh.model_dump(),
             "wall_seconds": time.perf_counter() - self._start,
             "processor_seconds": self._processor_seconds(),
             "steps": len(rows),
@@ -270,79 +243,53 @@ class Report:
             "penetration": max((row["penetration"] for row in rows), default=0.0),
             "imbalance": max((row["imbalance"] for row in rows), default=0.0),
             "energy_released": sum(row["energy_released"] for row in rows if row["jump"]),
+            "energy_released_error": sum(row["released_error"] for row in rows if row["jump"]),
             "dissipation": sum(row["dissipation"] for row in rows),
             "memory_mb": peak,
             "ranks": self.comm.size,
             **{f"seconds_{phase}": value for phase, value in seconds.items()},
         }
-        normal, slip = self._named_rows()
-        for prefix, row in (("normal", normal), ("slip", slip)):
-            result |= {f"{prefix}_{name}": None if row is None else row[name] for name in _NAMED}
-            check = None if row is None else self._simulation.checks.get(row["step"])
+        found = states.named(rows)
+        for prefix in states.STATES:
+            row = found.get(prefix)
+            names = (*states.CONDITIONS, *states.RESULTS)
+            result |= {f"{prefix}_{name}": None if row is None else row[name] for name in names}
+            check = None if row is None else self._check(row)
             result[f"{prefix}_stable"] = None if check is None else check.stable
             result[f"{prefix}_lambda_min"] = None if check is None else check.frozen.lambda_min
             result[f"{prefix}_gain"] = None if check is None else check.gain
-        result |= ended | {"omitted": self._simulation.plan.table(), "woken": self._woken}
+        result["loads"] = []
+        for name, mine in states.by_load(rows):
+            check = self._check(mine[-1])
+            result["loads"].append(states.summary(name, mine, None if check is None else check.stable))
+        result |= ended
+        numerics, scale = self.scene.numerics, solver.force_scale
+        result["floor"] = max((row["floor"] for row in rows), default=0.0)
+        left = max(numerics.tolerance, result["floor"])
+        result["force_error"] = force_error(result["unknowns"], left, scale)
+        result |= {"omitted": self._simulation.plan.table(), "woken": self._woken}
         result["provenance"] = provenance()
         result["parameters"] = self.scene.parameters()
         if self.comm.rank == 0:
             replace_json(self.folder / "summary.json", result)
         return result
 
-    def _named_rows(self) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:
-        """Return the rows of normal contact (the last before the bone first moves) and of full slip."""
-        still = [row for row in self.rows if abs(row["bone_x"]) < _STILL]
-        full = [row for row in self.rows if row["all_slip"]] if self._simulation and self._simulation.full_slip else []
-        return (still[-1] if still else None), (full[0] if full else None)
+    def _check(self, row: states.Row) -> Checked | None:
+        """Return the stability of a state, or of another one of the same full slip; None where none was examined."""
+        assert self._simulation is not None
+        same = [other["step"] for other in self.rows if other["slip_began"] == row["slip_began"] > 0]
+        return next((self._simulation.checks[k] for k in (row["step"], *same) if k in self._simulation.checks), None)
 
     def draw(self) -> None:
         """Draw the run, on rank 0."""
         start = time.perf_counter()
         if self.rows and self.comm.rank == 0:
-            self._draw()
+            assert self._simulation is not None
+            size = None if self.scene.accuracy is None else self._simulation.scene.mesh.contact
+            drawing.Drawing(
+                self.folder, self.scene.friction, self.rows, self._profiles, self._ends, self._finer, size
+            ).draw()
         self.seconds += time.perf_counter() - start
-
-    def _draw(self) -> None:
-        normal, slip = self._named_rows()
-        mu_0 = self.scene.friction
-        for load, (snapshot, sites) in self._kept.items():
-            if snapshot is None:
-                continue
-            row = [row for row in self.rows if row["load"] == load][-1]
-            title = f"After {load}: {pictures.conditions(row['f_ext'], row['voltage'], mu_0)}"
-            name = load.replace(" ", "_")
-            shown = {} if sites is None else {"merkel": sites}
-            np.savez_compressed(self.folder / f"finger_{name}.npz", **shown, **vars(snapshot))
-            pictures.finger(self.folder / f"finger_{name}.png", snapshot, sites, title)
-        sliding = [row for row in self.rows if abs(row["bone_x"]) >= _STILL]
-        if normal is None or not sliding:
-            return
-        end = slip or sliding[-1]
-        partial = min(sliding, key=lambda row: abs(row["slipping"] - 0.5))
-        named = {"Normal contact": normal, "Partial slip": partial, "Full slip" if slip else "Last state": end}
-        states = [self._profile(name, row) for name, row in named.items()]
-        conditions = pictures.conditions(end["f_ext"], end["voltage"], mu_0)
-        arrays: dict[str, Any] = {f"{name}_{field}": value for name, state in zip(_STATES, states, strict=True)
-                  for field, value in vars(state).items() if isinstance(value, np.ndarray)}  # fmt: skip
-        np.savez_compressed(self.folder / "surface.npz", **arrays)
-        pictures.surface(self.folder / "surface.png", states, conditions)
-        pictures.history(self.folder / "history.png", self.rows, conditions, mu_0)
-
-    def _profile(self, title: str, row: dict[str, Any]) -> pictures.SurfaceProfile:
-        kept = next(k for k in self._profiles if k["row"] is row)
-        x, y, p_n, t_t, p_el, area_x, area_y = kept["values"]
-        ridge, d_eq = kept["ridge"], kept["d_eq"]
-        stretch = np.hypot(area_x, area_y)
-        columns: list[list[Any]] = [[] for _ in range(6)]
-        for k in np.unique(ridge):
-            mine = ridge == k
-            order = np.argsort(x[mine], axis=None)
-            parts = (x, y, p_n / stretch, t_t / stretch, p_el, np.broadcast_to(d_eq[ridge][:, None], x.shape))
-            for column, part in zip(columns, parts, strict=True):
-                column += [part[mine].ravel()[order], [np.nan]]
-        arrays = [np.concatenate(column) for column in columns]
-        x, y, p, t, p_el, gap = arrays
-        return pictures.SurfaceProfile(title, x, y, p, t, p_el, gap, row["f_ext"], row["contact_length"])
 
     def close(self, whole: bool = True) -> None:
         """Close every file.
@@ -382,3 +329,11 @@ def _send(log: logging.Logger, file: logging.Handler) -> None:
             memory.setTarget(file)
             memory.flush()
     log.handlers = [file]
+
+
+def _released(row: dict[str, Any]) -> str:
+    """Return the energy that a jump released in words, or below what it is where its own error hides it."""
+    value, error = row["energy_released"], row["released_error"]
+    if abs(value) <= error:
+        return f"energy released below {max(value, 0.0) + error:.2g} J/m"
+    return f"{value:.2g} ± {error:.1g} J/m released"

@@ -18,9 +18,11 @@ from fingerpad.needs import plan
 from fingerpad.place import Place
 from fingerpad.reach import decide
 from fingerpad.report import Report
-from fingerpad.scene import Scene
-from fingerpad.simulation import Simulation, Step
+from fingerpad.scene import Scene, SceneError
+from fingerpad.simulation import Simulation
+from fingerpad.steps import Step
 from fingerpad.zone import Woken
+from geometry.profiles import GeometryError
 from variational import jit
 from variational.continuation import StepFailed
 
@@ -44,12 +46,16 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm) -> dict[str, Any]:
     Raises:
         PlaceError: the folder is in use, holds another scene's results, or cannot be written to.
         OptionError: PETSc refuses an option.
+        SceneError: the finger cannot be meshed; on every rank.
         DiskFull: there is no more room for results; on the ranks that found out, which end the others.
     """
     all_together(comm)
     petsc_options.check()
     with Place(folder, scene, comm) as place:
-        return _refine_start(scene, place, comm)
+        try:
+            return _refine_start(scene, place, comm)
+        except GeometryError as error:
+            raise SceneError(f"the finger cannot be meshed: {error}") from error
 
 
 def exit_code(summary: Mapping[str, Any]) -> int:
@@ -102,7 +108,8 @@ def _run(scene: Scene, place: Place, comm: MPI.Comm, failed_starts: list[dict[st
                     simulation.run()
                     if keeper is not None:
                         pause = partial(interrupt.stop_if_asked, simulation.continuation.steps)
-                        search = Search(present, needed, keeper.solve(), comm, report.say, pause)
+                        look = report.look if present.accuracy is not None else None
+                        search = Search(present, needed, keeper.solve(), comm, report.say, pause, look)
                         search.run()
                 except Woken as wake:
                     present, needed, again = wake.scene, wake.needed, True
@@ -113,6 +120,8 @@ def _run(scene: Scene, place: Place, comm: MPI.Comm, failed_starts: list[dict[st
                         ended["interrupted"] = error.signal.name
             if search is not None:
                 ended = search.summary() | ({"failure": search.failure} if search.failure else {}) | ended
+                ended["unknowns"] = search.base.unknowns
+                report.finer(search.base.views)
             ended["coarse_solve"] = decision.cost or None
             if failed_starts:
                 ended["failed_starts"] = failed_starts
@@ -137,7 +146,8 @@ def _run(scene: Scene, place: Place, comm: MPI.Comm, failed_starts: list[dict[st
 def _sentence(s: dict[str, Any], folder: Path) -> str:
     end = "full slip" if s["full_slip"] else "no full slip"
     if s["slip_mu_app"] is not None:
-        end += f" at mu_app {_show(s, 'mu_app', 4)}, f_T {_show(s, 'f_t', 3)} N/m"
+        end += f" under {s['slip_f_ext']:.4g} N/m and {s['slip_voltage']:.4g} V: mu_app {_show(s, 'mu_app', 4)}"
+        end += f", f_T {_show(s, 'f_t', 3)} N/m"
         end += f", contact length {_show(s, 'contact_length', 3, 1e3)} mm"
         end += " (±: estimated discretisation error)" if s.get("slip_mu_app_error") is not None else ""
         penalty = s.get("slip_contact_length_penalty")

@@ -1,7 +1,7 @@
 """One scene from mesh to accepted steps: joins geometry, mechanics and roughness, and reports as it goes."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from fingerpad import mirror
 from fingerpad.needs import Plan
 from fingerpad.scene import Load, Scene
+from fingerpad.states import SLIDE_ON, full_slip
+from fingerpad.steps import Checked, Step, force_error
 from fingerpad.zone import Woken, Zone, ZoneExceeded
 from geometry import fingertip, mesh, tags
 from geometry.profiles import Profiles
@@ -24,51 +26,13 @@ from variational.problem import Interface, Ogden, Problem, SaintVenant
 from variational.quantities import Observer, RidgeLoads, SurfaceState
 from variational.solver import Solver
 from variational.squeeze import squeeze
-from variational.stability import Stability, StabilityCheck
+from variational.stability import StabilityCheck
 from variational.surface import Surface
 from variational.transfer import Carried, give
 
 Array = NDArray[np.float64]
-_SLIDE_ON = 0.2e-3  # m, further sliding that must not change f_t at full slip
-_STEADY = 1e-6  # relative change of f_t that it may cause, beside that of gaps that are not closed
-_BALANCED = 1e-6  # largest part of f_ext by which bone and screen may disagree
-
-
-@dataclass(frozen=True)
-class Step:
-    """An accepted step; ``row`` is flat and in SI, the ridges' values have shape (ridges,)."""
-
-    row: dict[str, Any]
-    ridges: RidgeLoads
-    d_eq: Array
-    """Equivalent air gaps (m), NaN where no load of the scene has a voltage."""
-    states: list[str]
-    """What is to be known of each ridge's place on the closure, mostly nothing."""
-    attempt: Attempt
-    surface: SurfaceState
-
-
-@dataclass(frozen=True)
-class Checked:
-    """Stability of an accepted state."""
-
-    frozen: Stability
-    """At frozen air gaps."""
-    gain: float
-    """Largest measured gain of a ridge's loop over the scales, zero without voltage or where none was measured."""
-
-    @property
-    def stable(self) -> bool:
-        """Whether the skin stays, each ridge's air gap following its pressure."""
-        return self.frozen.stable and self.gain < 1
-
-    def __str__(self) -> str:
-        """Return the verdict in words."""
-        verdict = "stable" if self.stable else "not stable"
-        unsettled = "" if self.frozen.settled else ", not settled"
-        return (
-            f"{verdict}: lambda_min {self.frozen.lambda_min:.4g} Pa/m{unsettled}, gain of the air gaps {self.gain:.3g}"
-        )
+_STEADY = 1e-6  # relative change of f_t that sliding on at full slip may cause, beside that of gaps not closed
+_BALANCED = 1e-6  # largest part of f_ext that may be left at a node, and by which bone and screen may disagree
 
 
 class Simulation:
@@ -78,7 +42,7 @@ class Simulation:
         ridges: numbers of the ridges that can touch, of the whole finger.
         plan: the parts of the model that the scene needs.
         checks: stability of the state at the end of each load, at first full slip and after each jump, by step.
-        full_slip: whether full slip was reached, and held over a further 0.2 mm.
+        rows: of the accepted steps so far, and of states from elsewhere without their energies.
         unknowns: number of unknowns.
     """
 
@@ -129,7 +93,7 @@ class Simulation:
         self.continuation = Continuation(self.coupling, self._accepted, step_scale=numerics.step_scale)
         self.energy = EnergyBook(self.problem, *self._state(), copies=self._copies)
         self.unknowns = self.solver.layout.global_size
-        self.full_slip = False
+        self.rows: list[dict[str, Any]] = []
         self.checks: dict[int, Checked] = {}
         self._stability = StabilityCheck(self.solver)
         self._load, self._loads_done = "", 0.0
@@ -155,6 +119,17 @@ class Simulation:
                 self._check_stability()
             self.on_load()
 
+    @property
+    def force_error(self) -> float:
+        """What the solves' tolerance leaves of a sum of nodal forces (N/m), see :func:`force_error`."""
+        left = max(self.scene.numerics.tolerance, self.solver.floor)
+        return force_error(self.unknowns, left, self.solver.force_scale)
+
+    @property
+    def balanced(self) -> float:
+        """Largest force, over the solver's force scale, that an accepted state may leave at a node or of its sum."""
+        return _BALANCED
+
     def ridge_loads(self) -> RidgeLoads:
         """Return the resultants of all ridges that can touch, of the whole finger; collective."""
         loads = self.observer.ridge_loads(self.continuation.surface_state)
@@ -165,6 +140,7 @@ class Simulation:
         reaction = self.solver.reaction
         f_ext, f_t = float(reaction[1]), 0.0 - float(reaction[0])  # no negative zero
         return {
+            "f_ext": f_ext,
             "bone_height": float(self.solver.bone[1]),
             "f_t": f_t,
             "mu_app": f_t / f_ext if f_ext > _BALANCED * self.solver.force_scale else 0.0,
@@ -198,7 +174,7 @@ class Simulation:
             ) from error
 
     def _adopt(self, carried: Carried, name: str, direction: int, squeezed: tuple[float, float] | None) -> None:
-        give(carried, self.coupling, direction * _SLIDE_ON)
+        give(carried, self.coupling, direction * SLIDE_ON)
         if squeezed is not None:
             squeeze(self.solver, *squeezed)
         self._load = name
@@ -208,6 +184,7 @@ class Simulation:
         loads = self.ridge_loads()
         self._check_balance(loads)
         self._zone.check(self.ridges, loads)
+        self._take(self.present(loads).row, probe=False)
         ahead = Load.model_construct(name=name, bone_x=self.solver.control.x + direction)
         if direction and not self._slides_on(ahead):
             raise StepFailed(
@@ -226,10 +203,18 @@ class Simulation:
         """Slide a little further: full slip is steady, since the screen looks the same everywhere."""
         before, x = self.solver.reaction[0], self.solver.control.x
         direction = np.sign((load.bone_x or 0.0) - x) or 1.0
-        self.continuation.run(Target(load.name, bone_x=x + direction * _SLIDE_ON))
-        steady = bool(abs(self.solver.reaction[0] - before) <= self._steady() * abs(before))
-        self.full_slip = steady and self.continuation.slip[1]
-        return self.full_slip
+        self.continuation.run(Target(load.name, bone_x=x + direction * SLIDE_ON))
+        return self.continuation.slip[1] and self._unchanged(before, self.solver.reaction[0])
+
+    def _unchanged(self, before: Any, after: Any) -> bool:
+        """Return whether forces (N/m) before and after sliding on at full slip are the same."""
+        return bool(np.all(np.abs(after - before) <= self._steady() * np.abs(before) + self.force_error))
+
+    def _holds(self) -> bool:
+        """Return whether full slip would go on as it is for a further 0.2 mm; none of that is accepted."""
+        before, control = self.solver.reaction.copy(), self.solver.control
+        found = self.continuation.probe(replace(control, x=control.x - (np.sign(before[0]) or -1.0) * SLIDE_ON))
+        return found is not None and found[1] and self._unchanged(before, found[0])
 
     def _steady(self) -> float:
         """Return the relative change of f_t that means nothing.
@@ -265,18 +250,48 @@ class Simulation:
         solver = self.solver
         return self.continuation.surface_state, solver.bone, solver.reaction, self.coupling.d_eq
 
-    def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
-        state = self.continuation.surface_state
-        loads, d_eq = self.ridge_loads(), self.coupling.d_eq
+    def present(self, loads: RidgeLoads, attempt: Attempt | None = None, touches: bool = False) -> Step:
+        """Return the present state as a step whose row has no energies and no work.
+
+        Args:
+            loads: its :meth:`ridge_loads`.
+            attempt: how it was solved, where that is known.
+            touches: whether the bone was lowered to the first touch.
+        """
+        state, d_eq = self.continuation.surface_state, self.coupling.d_eq
         if not self.plan.both_halves:
             d_eq = np.array(mirror.values(list(d_eq)))
+        states = [self.closure.state(float(p), self._voltage) if self.closure else "" for p in loads.p_c]
+        slipping, full = self.continuation.slip
+        row = {
+            "step": self.continuation.steps,
+            "load": "touch" if touches else self._load,
+            "load_number": int(self._loads_done) + 1,
+            "f_ext": 0.0,  # its place in the table
+            "voltage": self._voltage,
+            "bone_x": float(self.solver.bone[0]),
+            **self.resultants(loads),
+            "slipping": slipping,
+            "all_slip": full,
+        }
+        return Step(row, loads, d_eq, states, attempt or Attempt(), state)
+
+    def _take(self, row: dict[str, Any], probe: bool) -> None:
+        """Add a row, and what full slip it is of; where none was held so long yet, a probe may show that it would."""
+        began, held = full_slip(self.rows, row, self._steady(), self.force_error)
+        row |= {"slip_began": began, "slip_held": held or (probe and began > 0 and self._holds())}
+        self.rows.append(row)
+
+    def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
+        loads = self.ridge_loads()
+        imbalance = self._check_balance(loads)
         if _jumped(attempt):
             self._check_stability()
-        states = [self.closure.state(float(p), self._voltage) if self.closure else "" for p in loads.p_c]
-        step = Step(self._row(target, loads, attempt), loads, d_eq, states, attempt, state)
+        step = self.present(loads, attempt, target.name == "touch")
+        self._take(step.row, probe=part >= 1 and not target.until_full_slip)
+        self._account(step.row, imbalance, attempt)
         whole = len(self.scene.loads())
         self.on_step(step, min((self._loads_done + (0.0 if target.name == "touch" else part)) / whole, 1.0))
-        self._check_balance(loads)
         try:
             self._zone.check(self.ridges, loads)
         except ZoneExceeded as error:
@@ -286,23 +301,17 @@ class Simulation:
     def _voltage(self) -> float:
         return float(self.problem.voltage.value)
 
-    def _row(self, target: Target, loads: RidgeLoads, attempt: Attempt) -> dict[str, Any]:
-        slipping, full = self.continuation.slip
+    def _account(self, row: dict[str, Any], imbalance: float, attempt: Attempt) -> None:
+        """Add energies and work to a row."""
         energy = self.energy.step(*self._state())
-        return {
-            "step": self.continuation.steps,
-            "load": self._load if target.name != "touch" else "touch",
-            "f_ext": float(self.solver.reaction[1]),
-            "voltage": self._voltage,
-            "bone_x": float(self.solver.bone[0]),
-            **self.resultants(loads),
-            "slipping": slipping,
-            "all_slip": full,
+        row |= {
             "penetration": self.observer.penetration(self.continuation.surface_state),
-            "imbalance": self.solver.imbalance(),
+            "imbalance": imbalance,
+            "floor": self.solver.floor,
             "stored": energy.stored,
             "dissipation": energy.dissipation,
             "energy_released": energy.released,
+            "released_error": energy.released_error,
             "newton_iterations": attempt.newton,
             "factorisations": attempt.factorisations,
             "sweeps": attempt.sweeps,
@@ -310,18 +319,31 @@ class Simulation:
             "jump": _jumped(attempt),
         }
 
-    def _check_balance(self, loads: RidgeLoads) -> None:
-        """Stop if the bone does not bear what the screen does: an error of the program, not of the load."""
+    def _check_balance(self, loads: RidgeLoads) -> float:
+        """Stop if forces are left at a node, or the bone does not bear what the screen does: no equilibrium.
+
+        Returns:
+            The largest force left at a node, over the solver's force scale.
+        """
+        scale, left = self.solver.force_scale, self.solver.imbalance()
+        step, remedy = (
+            f"step {self.continuation.steps} ({self._load})",
+            (
+                f"forces are not balanced to {self.balanced:g} of {scale:g} N/m; try a numerics.tolerance below "
+                f"{self.scene.numerics.tolerance:g}, and no PETSc option that ends a solve before it has converged"
+            ),
+        )
+        if not left <= self.balanced:
+            raise StepFailed(f"{step}: a force of {left * scale:.4g} N/m is left at a node; {remedy}")
         vertical = float((loads.f_contact - loads.f_attraction).sum())
         screen, bone = np.array([float(loads.f_friction.sum()), vertical]), self.solver.reaction
         worst = int(np.argmax(np.abs(screen - bone)))
-        if not abs(screen[worst] - bone[worst]) <= _BALANCED * self.solver.force_scale:
+        if not abs(screen[worst] - bone[worst]) <= self.balanced * scale:
             raise StepFailed(
-                f"step {self.continuation.steps} ({self._load}): the bone bears {bone[worst]:.9g} N/m "
-                f"{('sideways', 'downwards')[worst]} and the screen {screen[worst]:.9g} N/m; forces are not "
-                f"balanced to {_BALANCED:g} of {self.solver.force_scale:g} N/m; try a numerics.tolerance below "
-                f"{self.scene.numerics.tolerance:g}"
+                f"{step}: the bone bears {bone[worst]:.9g} N/m {('sideways', 'downwards')[worst]} and the screen "
+                f"{screen[worst]:.9g} N/m; {remedy}"
             )
+        return left
 
 
 def _jumped(attempt: Attempt) -> bool:

@@ -44,9 +44,7 @@ class Zone:
     def _lowest_outside(self) -> float:
         """Return the lowest height (m) of the skin that cannot touch."""
         V, u = self._problem.V, self._problem.displacement()
-        return self._observer.lowest_outside(
-            V.tabulate_dof_coordinates()[self._nodes, 1] + u[self._nodes, 1]
-        )
+        return self._observer.lowest_outside(V.tabulate_dof_coordinates()[self._nodes, 1] + u[self._nodes, 1])
 
     def check(self, names: list[int], loads: RidgeLoads) -> None:
         """Look at the present state; collective.

@@ -8,9 +8,9 @@ import pytest
 from benchmarks import ladder as page
 from fingerpad import closed_form, ladder, ridge_cell, start
 from fingerpad.processes import End
-from fingerpad.report import _NAMED
 from fingerpad.rungs import NAMES
 from fingerpad.scene import SceneError, from_data
+from fingerpad.states import RESULTS
 from variational.continuation import StepFailed
 
 
@@ -19,7 +19,7 @@ def scene(**data):
 
 
 def test_keys_are_those_of_the_full_summary():
-    assert set(NAMES) == set(_NAMED)
+    assert set(NAMES) == set(RESULTS)
 
 
 # -- rung 1 ------------------------------------------------------------------------------------------------

@@ -10,10 +10,10 @@ from matplotlib.colors import LogNorm
 from matplotlib.image import imread
 from matplotlib.tri import Triangulation
 
-from fingerpad import pictures
+from fingerpad import pictures, titles
 from geometry import tags
 
-TITLE = pictures.conditions(75.0, 200.0, 0.25)
+TITLE = titles.conditions(75.0, 200.0, 0.25)
 BREAK = np.full(1, np.nan)
 
 
@@ -40,7 +40,8 @@ def profile(title: str, shift: float, sign: float) -> pictures.SurfaceProfile:
         d_eq = np.full_like(s, 1.6e-6 + 1e-8 * j**2)
         p_el = 8.854e-12 * 200**2 / 2 / (0.514e-6 + np.maximum(y, d_eq)) ** 2
         columns += [np.stack([j * 0.45e-3 + s + shift, y, p, sign * 0.25 * p, p_el, d_eq]), np.tile(BREAK, (6, 1))]
-    return pictures.SurfaceProfile(title, *np.concatenate(columns, axis=1), f_ext=75.0, contact_length=1.5e-3)
+    arrays = np.concatenate(columns, axis=1)
+    return pictures.SurfaceProfile(title, *arrays, f_ext=75.0, voltage=200.0, bone_x=shift, contact_length=1.5e-3)
 
 
 def steps(f_ext: list[float]) -> list[dict]:
@@ -112,7 +113,8 @@ def test_surface(tmp_path):
     titles = [ax.get_title(loc="left") for ax in figure.axes[::2]]
     for title, state in zip(titles, states, strict=True):
         assert state.title in title
-        assert "75 N/m" in title and "1.5 mm" in title and "50 kPa" in title
+        assert "75 N/m" in title and "200 V" in title and "1.5 mm" in title and "50 kPa" in title
+        assert f"$x$ = {state.bone_x * 1e3:g} mm" in title
     pressure = next(line for line in figure.axes[0].lines if line.get_label().startswith("contact pressure"))
     assert np.nanmax(pressure.get_ydata()) == pytest.approx(100.0)
     assert np.isnan(pressure.get_ydata()).sum() == 17  # lines break between ridges
@@ -123,7 +125,7 @@ def test_surface_without_contact(tmp_path):
     touching = profile("above the screen", 0.0, 0.0)
     nothing = 0 * touching.p
     state = pictures.SurfaceProfile(
-        "above the screen", touching.x, touching.y + 1e-6, nothing, nothing, nothing, touching.d_eq, 0.0, 0.0
+        "above the screen", touching.x, touching.y + 1e-6, nothing, nothing, nothing, touching.d_eq, *(4 * [0.0])
     )
     pictures.surface(tmp_path / "surface.png", [state], TITLE)
     assert (tmp_path / "surface.png").stat().st_size > 10_000

@@ -313,6 +313,26 @@ class Continuation:
         finally:
             solver.release()
 
+    def probe(self, control: Control) -> tuple[Array, bool] | None:
+        """Look where the accepted state would lead, and stay in it.
+
+        Args:
+            control: what is prescribed of the bone, at the present voltage.
+
+        Returns:
+            The bone's reaction (N/m), shape (2,), and whether every point in contact slips one way; None where no
+            equilibrium is found in one step.
+        """
+        guess, gain = self.problem.guess.value.copy(), self.coupling.gain.copy()
+        try:
+            self._try((control, self._now.voltage), Attempt(), creep=False)
+            return self.solver.reaction.copy(), self.observer.slip(self.observer.state())[1]
+        except NotConverged:
+            return None
+        finally:
+            self._restore()
+            self.problem.guess.value, self.coupling.gain = guess, gain
+
     # -- one step --------------------------------------------------------------------------------------
     def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool, on_cone: bool = True) -> None:
         counts = self.solver.counts

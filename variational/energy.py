@@ -18,9 +18,15 @@ and slipping or a reversal. What is left over,
 
 vanishes with the square of the step on a smooth path. At a jump, where the body moves without the loads, it is the
 energy that a viscous or inertial body dissipates (Mielke and Roubicek 2015, doi 10.1007/978-1-4939-2706-7), but for
-the error of the works in a step that jumps, which falls with the step alone: jumps of forces times the loads' step,
-since it is not known where in the step the jump took place, and the slip of what slid on both sides of it. Where that
-error is larger than what is released even the sign is lost; smaller steps tell.
+the error of the works in a step that jumps, which falls with the step alone: it is not known where in the step the jump
+took place. Each work then lies between that with the forces before and that with the forces after, so that
+
+.. math:: |\text{error}| \le \tfrac12 \Big( |\Delta R| \cdot |\Delta u^{bone}|
+          + \Big|\Delta \frac{\partial E}{\partial U^2}\, \Delta U^2\Big| + |\Delta W^{gap}|
+          + \int \mu_f |\Delta p_n| |\Delta s| \,dS\Big)
+
+with :math:`\Delta W^{gap}` the difference of the air gaps' works at both shapes, and s the slip, of what slid on both
+sides of the jump. Where this error is larger than what is released even the sign is lost; smaller steps tell.
 """
 
 from dataclasses import dataclass
@@ -53,6 +59,8 @@ class Balance:
     """Work of the changing equivalent air gaps at frozen shape."""
     dissipation: float
     """Spent by friction, >= 0."""
+    released_error: float
+    """Bound of the error of :attr:`released` in a step that jumps; far above it on a smooth path."""
 
     @property
     def released(self) -> float:
@@ -100,14 +108,17 @@ class EnergyBook:
             surface,
         )
 
-    def _potential(self, surface: SurfaceState, d_eq: Array) -> float:
-        """Return the attraction's potential (J/m) at 1 V, :func:`variational.electroadhesion.potential` in NumPy."""
+    def _potential(self, surface: SurfaceState, d_eq: Array) -> Array:
+        """Return the attraction's potential (J/m) at 1 V by ridge, shape (ridges,).
+
+        It is :func:`variational.electroadhesion.potential` in NumPy.
+        """
         y, d = surface.y, d_eq[self._problem.surface.ridge, None]
         near, h_0 = np.minimum(y, d), self._problem.interface.h_0
         g = h_0 + np.maximum(y, d)
         phi = -VACUUM_PERMITTIVITY / 2 * (1 / g + (d - near) / g**2)
         width = -surface.area_y  # current dx per reference length
-        return self._copies * float(self._problem.surface.per_ridge(phi * width).sum())
+        return self._copies * self._problem.surface.per_ridge(phi * width)
 
     def step(self, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array) -> Balance:
         """Close the book on a step; collective.
@@ -120,21 +131,30 @@ class EnergyBook:
         """
         a, b = self._last, self._state(surface, bone, reaction, d_eq)
         self._last = b
-        # The potential at the shapes (rows) and air gaps (columns) before and after.
-        phi = np.zeros((2, 2))
+        # The potential at the shapes (rows) and air gaps (columns) before and after, by ridge.
+        phi = np.zeros((2, 2, len(d_eq)))
         if self._problem.interface.attraction:
             phi[:] = [[self._potential(shape.surface, gap.d_eq) for gap in (a, b)] for shape in (a, b)]
+        gaps = np.array([[a.square], [b.square]]) * (phi[:, 1] - phi[:, 0])
+        charges = np.stack([phi[0, 0], phi[1, 1]]) * (b.square - a.square)
+        slid, unsure = self._friction(a.surface, b.surface)
+        unsure += float(np.abs(b.reaction - a.reaction) @ np.abs(b.bone - a.bone)) / 2
+        unsure += float(np.abs(np.diff([charges, gaps], axis=1)).sum()) / 2
         return Balance(
             stored=b.stored,
             change=b.stored - a.stored,
             external=-float((a.reaction + b.reaction) / 2 @ (b.bone - a.bone)),
-            voltage=float(phi[0, 0] + phi[1, 1]) / 2 * (b.square - a.square),
-            air_gap=float(np.array([a.square, b.square]) @ (phi[:, 1] - phi[:, 0])) / 2,
-            dissipation=self._dissipation(a.surface, b.surface),
+            voltage=float(charges.sum()) / 2,
+            air_gap=float(gaps.sum()) / 2,
+            dissipation=slid,
+            released_error=unsure,
         )
 
-    def _dissipation(self, a: SurfaceState, b: SurfaceState) -> float:
+    def _friction(self, a: SurfaceState, b: SurfaceState) -> tuple[float, float]:
+        """Return what friction spends (J/m), and by how much that may be wrong in a step that jumps."""
         # A point that bears nothing is carried along: no slip.
         slip = np.where(b.p_n > 0, np.abs(self._problem.interface.formulation.slip(a, b)), 0.0)
-        cone = self._problem.interface.mu_f * (a.p_n + b.p_n) / 2
-        return self._copies * float(self._problem.surface.per_ridge(cone * slip).sum())
+        cones = (a.p_n + b.p_n) / 2, np.abs(b.p_n - a.p_n) / 2
+        integrate, mu_f = self._problem.surface.per_ridge, self._problem.interface.mu_f
+        spent, unsure = (self._copies * mu_f * float(integrate(cone * slip).sum()) for cone in cones)
+        return spent, unsure

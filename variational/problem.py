@@ -5,8 +5,8 @@ Find u, equal to the bone's translation on its rim, with for all v alike
 .. math:: \int P(F) : \nabla v \,dX - \int p_n v_y \,dS - \int t_t v_x \,dS
           - \int p_{el}\, \mathrm{cof} F N \cdot v \,dS + f_{ext} v_y^{bone} = 0
 
-The unknown is :math:`w = u - u^{bone}`, the displacement relative to the bone, which is a constant of the forms. A rigid
-translation then adds no digits to the strains: at 10 mm of sliding they are as exact as at none.
+The unknown is :math:`w = u - u^{bone}`, the displacement relative to the bone, which is a constant of the forms. A
+rigid translation then adds no digits to the strains: at 10 mm of sliding they are as exact as at none.
 
 P = dW/dF: :mod:`~variational.ogden`, :mod:`~variational.saint_venant`, the volumetric part as the
 :mod:`~variational.element` has it, which may bring a pressure p and a second equation, p = K (J - 1) weakly; p_n and

@@ -9,17 +9,17 @@ are in contact, and backtracking on the residual only slows it. But the first st
 they would drive open skin deep through the screen, of which the tangent knows nothing, and any step is halved that
 would turn elements inside out or send the residual up tenfold. A factorisation serves as long as the residual falls
 to half an iteration; a step it proposes is refused when the residual would rise, and made anew with the tangent of
-the present iterate. A residual that stalls within some units of roundoff of the forces that cancel in it is at its
-floor, and the solve ends as converged there; :attr:`Solver.floor` says where that was. The first tangent of a load is always that of the state it starts from, so that the first iterate
-is the tangent predictor.
+the present iterate. The first tangent of a load is always that of the state it starts from, so that the first iterate
+is the tangent predictor. A residual that stalls within some units of roundoff of the forces that cancel in it is at its
+floor, and the solve ends as converged there; :attr:`Solver.floor` says where that was.
 
-Where the iteration does not get ahead, points on the friction cone are first taken for slipping instead of
-sticking, or the other way round. Where only friction stays out of balance, its springs are softened and stiffened again
-step by step. Or, if the caller asks for it, a part of the skin is taken to be about to jump on
-or off the screen, where the tangent has a negative direction, and the solve is repeated as pseudo-transient
-continuation (Kelley and Keyes 1998, doi 10.1137/S0036142996304796): the tangent gets a shift :math:`\eta` on the
-touching skin, an implicit Euler step of :math:`\eta \dot u = -r(u)`, and eta falls as the residual falls. It creeps
-away from the equilibrium that is lost and ends in one of the unchanged equations.
+Where the iteration does not get ahead, points on the friction cone are first taken for slipping instead of sticking, or
+the other way round. Where only friction stays out of balance, its springs are softened and stiffened again step by
+step. Or, if the caller asks for it, a part of the skin is taken to be about to jump on or off the screen, where the
+tangent has a negative direction, and the solve is repeated as pseudo-transient continuation (Kelley and Keyes 1998, doi
+10.1137/S0036142996304796): the tangent gets a shift :math:`\eta` on the touching skin, an implicit Euler step of
+:math:`\eta \dot u = -r(u)`, and eta falls as the residual falls. It creeps away from the equilibrium that is lost and
+ends in one of the unchanged equations.
 """
 
 from collections.abc import Sequence
@@ -485,7 +485,8 @@ class Solver:
         self.problem.eta.value = 0.0
         reason = int(self._snes.getConvergedReason())
         self._ahead = False
-        if reason <= 0:  # nodes and reaction are those of a rejected iterate
+        # Nodes and reaction are those of a rejected iterate, or of one that another solver than Newton's went on from.
+        if reason <= 0 or self._snes.getType() != PETSc.SNES.Type.NEWTONLS:
             self._residual(None, self.x, self._f)
         return reason
 

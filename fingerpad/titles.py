@@ -1,0 +1,31 @@
+"""The loads of a state as the words of a picture's title."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+_MM = 1e3
+_NOTHING = 1e-9  # N/m, V or mm: what a title calls zero
+
+
+def conditions(f_ext: float, voltage: float, mu_0: float, bone_x: float | None = None) -> str:
+    """Return f_ext (N/m), U (V), where the bone is sideways (m) and mu_0 as the words of a title."""
+    return f"{loads([(f_ext, voltage, bone_x)])}, $\\mu_0$ = {mu_0:.3g}"
+
+
+def conditions_of(rows: Sequence[Mapping[str, Any]], mu_0: float) -> str:
+    """Return the range of f_ext (N/m) and U (V) over several states, and mu_0, as the words of a title."""
+    return f"{loads([(row['f_ext'], row['voltage'], None) for row in rows])}, $\\mu_0$ = {mu_0:.3g}"
+
+
+def loads(states: Sequence[tuple[float, float, float | None]]) -> str:
+    """Return the ranges of f_ext (N/m), U (V) and, where it is known, the bone's place (m), over several states."""
+    forces, voltages, places = zip(*states, strict=True)
+    words = [f"$f_{{ext}}$ = {_range(forces)} N/m", f"$U$ = {_range(voltages)} V"]
+    known = [_MM * x for x in places if x is not None]
+    return ", ".join([*words, f"bone at $x$ = {_range(known)} mm"] if known else words)
+
+
+def _range(values: Sequence[float]) -> str:
+    """Return a value to four digits, or the least and the largest of several, roundoff about zero left out."""
+    first, last = (f"{0.0 if abs(v) < _NOTHING else v:.4g}" for v in (min(values), max(values)))
+    return first if first == last else f"{first} to {last}"

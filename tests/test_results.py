@@ -1,0 +1,272 @@
+"""What a run says of itself: of which state, under which loads, on which mesh, and nothing of a state it rejects."""
+
+import csv
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from fingerpad import drawing, report
+from fingerpad.accuracy import Keeper
+from fingerpad.needs import plan
+from fingerpad.run import run
+from fingerpad.scene import from_data
+from fingerpad.simulation import Simulation
+from fingerpad.states import RESULTS, named
+from fingerpad.steps import force_error
+from tests import test_demo
+from variational.friction import CONE_ROUNDOFF
+from variational.solver import PREFIX, Solver
+
+MU_0 = 0.25
+SMALL = {
+    "geometry": {"ridge_count": 9},
+    "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
+}
+LEAN = SMALL | {"output": {"errors": False, "receptors": False}}
+PRESS, SLIDE = {"name": "press", "f_ext": 1.0}, {"name": "slide", "bone_x": 1e-3, "until_full_slip": True}
+
+
+def rows_of(folder: Path, name: str = "steps") -> list[dict[str, str]]:
+    """Return a table of a run."""
+    with (folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.fixture
+def titles(monkeypatch) -> dict[str, str]:
+    """Titles of the pictures that would be drawn, by file; of the surface's panels, by state."""
+    found: dict[str, str] = {}
+
+    def finger(path, snapshot, sites, title):
+        found[Path(path).stem] = title
+
+    def surface(path, states, title):
+        found[Path(path).stem] = title
+        found.update({state.title: drawing.pictures._surface_title("A", state) for state in states})
+
+    def history(path, rows, title, mu_0):
+        found[Path(path).stem] = title
+
+    for function in (finger, surface, history):
+        monkeypatch.setattr(drawing.pictures, function.__name__, function)
+    return found
+
+
+# -- which full slip ---------------------------------------------------------------------------------------
+def test_charged_while_it_slides(tmp_path, titles):
+    """The README's second example, small: the headline is the charged full slip at the end, and titles say so."""
+    charge = {"name": "charge while sliding", "f_ext": 1.0, "voltage": 100.0, "bone_x": 0.6e-3}
+    summary = run(from_data(LEAN | {"history": [PRESS, SLIDE, charge]}), tmp_path, MPI.COMM_WORLD)
+    rows = rows_of(tmp_path)
+    last = rows[-1]
+    assert summary["full_slip"] is True
+    assert summary["slip_step"] == len(rows) and summary["slip_load"] == "charge while sliding"
+    assert summary["slip_mu_app"] == float(last["mu_app"]) > 0.5
+    assert (summary["slip_voltage"], summary["slip_bone_x"]) == (100.0, pytest.approx(0.6e-3, rel=1e-12))
+    assert (summary["normal_voltage"], summary["normal_load"]) == (0.0, "press")
+    press, slide, end = summary["loads"]
+    assert (press["full_slip_reached"], slide["full_slip_held"], end["full_slip_held"]) == (False, True, True)
+    assert slide["end"]["mu_app"] == pytest.approx(MU_0, rel=1e-6)
+    assert slide["stable"] is press["stable"] is True
+    assert end["extremes"]["mu_app"]["max_step"] == summary["slip_step"]
+    assert "$U$ = 100 V, bone at $x$ = 0.6 mm" in titles["finger_charge_while_sliding"]
+    assert "$U$ = 0 V" in titles["Normal contact"] and "$U$ = 100 V" in titles["Full slip"]
+    assert "$f_{ext}$ = 1 N/m, $U$ = 0 to 100 V" in titles["history"] and "$U$ = 0 to 100 V" in titles["surface"]
+
+
+HEIGHT = {"name": "press", "bone_height": -20e-6}
+BACK = {"name": "back", "bone_x": 0.0}
+
+
+@pytest.mark.parametrize(
+    ("history", "load", "f_ext"),
+    [
+        ([PRESS, SLIDE, {"name": "lift", "f_ext": 0.5}], "lift", 0.5),
+        ([HEIGHT, SLIDE, {"name": "charge", "voltage": 80.0}], "slide", None),
+        ([HEIGHT, SLIDE, {"name": "charge", "voltage": 80.0}, SLIDE | {"name": "slide on"}], "slide on", None),
+        ([PRESS, SLIDE | {"bone_x": 0.3e-3}, BACK], "back", 1.0),
+    ],
+    ids=["lift", "height", "two slips", "there and back"],
+)
+def test_demo_passes(tmp_path, history, load, f_ext):
+    """Whatever came after the full slip, and whichever of height and force was given."""
+    loads = "\n".join(
+        "[[history]]\n" + "\n".join(f"{k} = {json.dumps(v)}" for k, v in load.items()) for load in history
+    )
+    tables = {"geometry": LEAN["geometry"], "mesh": LEAN["mesh"], "output": LEAN["output"]}
+    rest = "\n".join(
+        f"[{name}]\n" + "\n".join(f"{k} = {json.dumps(v)}" for k, v in t.items()) for name, t in tables.items()
+    )
+    (tmp_path / "scene.toml").write_text(f"{loads}\n{rest}\n", encoding="utf-8")
+    done = test_demo.run(tmp_path / "out", "--scene", str(tmp_path / "scene.toml"))
+    assert done.returncode == 0, done.stdout + done.stderr
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
+    assert summary["slip_load"] == load
+    assert f_ext is None or summary["slip_f_ext"] == pytest.approx(f_ext, rel=1e-9)
+    assert (summary["normal_load"], summary["normal_bone_x"]) == ("press", 0.0)
+    assert abs(summary["normal_mu_app"]) < 0.01
+    assert float(rows_of(tmp_path / "out")[-1]["f_ext"]) == summary["f_ext"]
+
+
+CHARGE, SLIDE_ON = {"name": "charge", "voltage": 60.0}, {"name": "slide on", "bone_x": 0.6e-3}
+
+
+TURN = {"name": "turn", "bone_x": 0.258e-3}  # after 0.26 mm: too little for a slip the other way
+
+
+@pytest.mark.parametrize(("more", "load"), [([CHARGE, SLIDE_ON], "slide on"), ([TURN], "slide")])
+def test_errors_are_estimated_of_the_headline(more, load):
+    """The states kept for it are the last full slip that was held and normal contact, not those of another load."""
+    scene = from_data(LEAN | {"history": [PRESS, SLIDE, *more]})
+    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: keeper.see(step), lambda: None)
+    keeper = Keeper(simulation)
+    simulation.run()
+    found, kept = named(simulation.rows), keeper.solve().states
+    assert found["slip"]["load"] == load and found["normal"]["load"] == "press"
+    for state in ("normal", "slip"):
+        assert {name: kept[state].row[name] for name in RESULTS} == {name: found[state][name] for name in RESULTS}
+        assert kept[state].carried.voltage == found[state]["voltage"]
+
+
+def test_probe_of_full_slip_leaves_no_trace(monkeypatch):
+    """A slide that ends before it was held for 0.2 mm is probed; what follows is as without, bit for bit."""
+    slides = [{"name": f"to {x:g} mm", "bone_x": x * 1e-3} for x in (0.12, 0.16)]
+    scene = from_data(LEAN | {"history": [PRESS, CHARGE, *slides]})
+    probed, plain = [], []
+    for rows in (probed, plain):
+        simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
+        simulation.run()
+        rows += simulation.rows
+        monkeypatch.setattr(Simulation, "_holds", lambda self: False)
+    assert probed[-1]["slip_held"] and not plain[-1]["slip_held"]
+    left = {"slip_held": None}
+    assert [row | left for row in probed] == [row | left for row in plain]
+
+
+COARSE_RUNS = {
+    "loose": {"numerics": {"tolerance": 1e-7}},
+    "heavy": {"f_ext": 3.0, "voltage": 150.0, "mesh": LEAN["mesh"] | {"touching_half_arc": 1.4e-3}},
+    "slippery": {"friction": 0.02},
+    "nitsche": {"contact": {"formulation": "nitsche"}, "voltage": 60.0},
+    "augmented": {"contact": {"formulation": "augmented"}, "voltage": 60.0},
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", COARSE_RUNS)
+def test_force_error_bounds_the_balance(tmp_path, name):
+    """Bone, screen and cone of full slip agree within what the solve's tolerance guarantees, on coarse runs."""
+    data = LEAN | {"f_ext": 1.0, "voltage": 100.0} | COARSE_RUNS[name]
+    s = run(from_data(data), tmp_path, MPI.COMM_WORLD)
+    cone = data.get("friction", MU_0) * s["slip_f_contact"]
+    assert abs(s["slip_f_contact"] - s["slip_f_electrostatic"] - s["slip_f_ext"]) <= s["force_error"]
+    assert abs(s["slip_f_t"] - cone) <= s["force_error"] + CONE_ROUNDOFF * cone
+
+
+def test_force_error():
+    """Of a hundred equal forces with the norm 1e-9 of 2 N/m each is a tenth of that, their sum ten times."""
+    forces = np.full(100, 2e-10)
+    assert np.linalg.norm(forces) == pytest.approx(2e-9)
+    assert forces.sum() == pytest.approx(force_error(100, 1e-9, 2.0), rel=1e-12)
+
+
+# -- states that are no equilibrium ------------------------------------------------------------------------
+@pytest.fixture
+def ksponly():
+    """One linear solve for Newton's method, which PETSc calls converged."""
+    options = PETSc.Options()
+    options.setValue(f"{PREFIX}snes_type", "ksponly")
+    yield
+    options.delValue(f"{PREFIX}snes_type")
+
+
+def test_state_that_is_no_equilibrium_is_neither_written_nor_kept(tmp_path, ksponly):
+    """The run stops at its first step, names the force that is left, and leaves no row, no picture and no state."""
+    summary = run(from_data(LEAN | {"history": [{"name": "press", "bone_height": -20e-6}]}), tmp_path, MPI.COMM_WORLD)
+    assert "is left at a node; forces are not balanced to 1e-06" in summary["failure"]
+    assert not (tmp_path / "steps.csv").exists() and not list(tmp_path.glob("*.png"))
+    assert summary["steps"] == 0 and summary["normal_f_contact"] is None and summary["loads"] == []
+
+
+def test_rejected_state_leaves_the_one_before(tmp_path, monkeypatch):
+    """From the third step on a force is left over: tables, fields, pictures and normal contact end with the second."""
+    solve, count, written = Solver.imbalance, [0], []
+
+    def left_over(self):
+        count[0] += 1
+        return 1e-3 if any(row for row in tables if row >= 2) else solve(self)
+
+    tables: list[int] = []
+    step = report.Report.step
+
+    def noted(self, given, done):
+        tables.append(given.row["step"])
+        step(self, given, done)
+
+    monkeypatch.setattr(Solver, "imbalance", left_over)
+    monkeypatch.setattr(report.Report, "step", noted)
+    monkeypatch.setattr(report.Fields, "write", lambda self, time: written.append(time))
+    history = [{"name": "press", "bone_height": -60e-6}, {"name": "charge", "voltage": 50.0}]
+    summary = run(from_data(LEAN | {"history": history}), tmp_path, MPI.COMM_WORLD)
+    assert "step 3 (charge): a force of 0.001 N/m is left at a node" in summary["failure"]
+    assert [row["step"] for row in rows_of(tmp_path)] == ["1", "2"]
+    assert (summary["normal_step"], summary["normal_voltage"]) == (2, 0.0)
+    assert written == [2.0]
+    assert not (tmp_path / "finger_charge.png").exists()
+
+
+# -- on which mesh -----------------------------------------------------------------------------------------
+@pytest.mark.slow
+def test_headline_states_are_shown_on_the_final_mesh(tmp_path, titles):
+    """And the path, with its own unknowns, on the mesh that it started from, each with its label."""
+    scene = from_data(SMALL | {"f_ext": 1.0, "voltage": 100.0, "accuracy": {"mu_app": 0.2}})
+    summary = run(scene, tmp_path, MPI.COMM_WORLD)
+    final = summary["accuracy"]["mesh"]["contact"]
+    assert summary["path_mesh"]["contact"] == 40e-6 > final
+    assert summary["unknowns_path"] < summary["unknowns"] == summary["accuracy"]["solves"][-1]["unknowns"]
+    assert {float(row["mesh_contact"]) for row in rows_of(tmp_path)} == {40e-6}
+    path, end = "path on the starting mesh, contact size 40 µm", f"final mesh, contact size {final * 1e6:.3g} µm"
+    for name in ("finger_press", "finger_charge", "finger_slide", "history", "Partial slip"):
+        assert path in titles.get(name, path), name
+    for name in ("finger_normal_contact", "finger_full_slip", "Normal contact", "Full slip"):
+        assert end in titles[name], name
+    ridges = [row for row in rows_of(tmp_path, "ridges_final") if row["of"] == "slip"]
+    assert sum(float(row["f_friction"]) for row in ridges) == pytest.approx(
+        -summary["slip_f_t"], abs=summary["force_error"]
+    )
+    assert {float(row["mesh_contact"]) for row in ridges} == {final}
+    assert {row["of"] for row in rows_of(tmp_path, "receptors_final")} == {"normal", "slip"}
+    with np.load(tmp_path / "surface.npz") as arrays:
+        x, p = arrays["slip_x"], arrays["slip_p"]
+    known = np.isfinite(x[1:] + x[:-1])
+    force = float((np.diff(x) * (p[1:] + p[:-1]) / 2)[known].sum())
+    assert force == pytest.approx(summary["slip_f_contact"], rel=0.1), "the trapezoidal rule on few facets"
+
+
+# -- jumps -------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("released", "error", "words"),
+    [
+        (-2.4e-5, 3e-5, "energy released below 3e-05 J/m"),
+        (2.4e-5, 3e-5, "energy released below 5.4e-05 J/m"),
+        (2.4e-4, 3e-5, "0.00024 ± 3e-05 J/m released"),
+    ],
+)
+def test_energy_hidden_by_its_error_is_not_said(released, error, words):
+    """A jump cannot gain energy; what is released is at most the value and its error."""
+    assert report._released({"energy_released": released, "released_error": error}) == words
+
+
+def test_profile_is_sorted_along_each_ridge():
+    """Two ridges, the second one's facets first: a line each, with a break between."""
+    profile = SimpleNamespace(ridge=np.array([1, 0]), values=np.ones((7, 2, 2)), d_eq=np.array([1e-6, 2e-6]))
+    profile.values[0] = [[3e-3, 2e-3], [1e-3, 0.0]]
+    row = {"f_ext": 1.0, "voltage": 0.0, "bone_x": 0.0, "contact_length": 1e-3}
+    found = drawing._along(profile, "full slip", row, "")
+    assert found.x[[0, 1, 3, 4]] == pytest.approx([0.0, 1e-3, 2e-3, 3e-3]) and np.isnan(found.x[[2, 5]]).all()
+    assert found.d_eq[[0, 3]] == pytest.approx([1e-6, 2e-6])
