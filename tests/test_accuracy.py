@@ -3,6 +3,7 @@
 import csv
 import itertools
 import json
+import signal
 from pathlib import Path
 
 import numpy as np
@@ -33,7 +34,7 @@ def mu_app(mesh) -> float:
     return EXACT * (1 + 0.08 * mesh.contact / 20e-6 - 0.02 * (mesh.growth / 0.5) ** 2)
 
 
-def known(scene, needed, states, comm) -> Solve:
+def known(scene, needed, states, comm, look=None) -> Solve:
     row = {
         "f_t": 75 * mu_app(scene.mesh),
         "mu_app": mu_app(scene.mesh),
@@ -98,7 +99,9 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
 
     monkeypatch.setattr(Search, "_with_steps", with_steps)
     monkeypatch.setattr(
-        accuracy, "solve_again", lambda scene, needed, states, comm: Solve(dict(states), scene.mesh, 1000, 10, 1.0)
+        accuracy,
+        "solve_again",
+        lambda scene, needed, states, comm, look: Solve(dict(states), scene.mesh, 1000, 10, 1.0),
     )
     scene = from_data({"accuracy": {"contact_length": 0.04}, "numerics": {"step_scale": 2.0}})
     path = stepped(1.0, scene.mesh)
@@ -124,7 +127,7 @@ def test_estimate_alone_refines_nothing(monkeypatch):
     """Coarser meshes tell the error: none is finer than the scene's. The last one tells of the penalty."""
     sizes = []
 
-    def noted(scene, needed, states, comm):
+    def noted(scene, needed, states, comm, look=None):
         sizes.append(scene.mesh)
         return known(scene, needed, states, comm)
 
@@ -143,7 +146,7 @@ def test_estimate_alone_refines_nothing(monkeypatch):
     assert told["error"] == pytest.approx(ONCE * told["estimate"], rel=1e-12)
 
 
-def springs(scene, needed, states, comm) -> Solve:
+def springs(scene, needed, states, comm, look=None) -> Solve:
     """A contact that springs of the screen make longer, by their law."""
     solve = known(scene, needed, states, comm)
     if scene.contact.formulation == "penalty":
@@ -179,7 +182,7 @@ def test_formulations_without_a_penalty_tell_none(monkeypatch, formulation):
 def test_penalty_that_cannot_be_told_is_noted(monkeypatch):
     """The run and its error stay."""
 
-    def lost(scene, needed, states, comm):
+    def lost(scene, needed, states, comm, look=None):
         if scene.contact.eps_n > 1.5e12:
             raise StepFailed("full slip found no equilibrium")
         return known(scene, needed, states, comm)
@@ -193,7 +196,7 @@ def test_penalty_that_cannot_be_told_is_noted(monkeypatch):
 def test_estimate_alone_that_is_lost_is_no_failure(monkeypatch):
     """The run is what was asked for; that it comes without its error is said."""
 
-    def lost(scene, needed, states, comm):
+    def lost(scene, needed, states, comm, look=None):
         raise StepFailed("full slip found no equilibrium")
 
     found = search(monkeypatch, {}, lost)
@@ -207,7 +210,7 @@ def test_estimate_alone_that_is_lost_is_no_failure(monkeypatch):
 def test_says_when_the_accuracy_is_out_of_reach(monkeypatch):
     """An error that no refinement lowers."""
 
-    def stubborn(scene, needed, states, comm):
+    def stubborn(scene, needed, states, comm, look=None):
         solve = known(scene, needed, states, comm)
         sign = 1 if round(np.log2(20e-6 / scene.mesh.contact)) % 2 else -1
         solve.states["slip"].row["mu_app"] = EXACT * (1 + 0.1 * sign)
@@ -219,7 +222,7 @@ def test_says_when_the_accuracy_is_out_of_reach(monkeypatch):
 
 
 def test_says_when_a_state_is_lost(monkeypatch):
-    def lost(scene, needed, states, comm):
+    def lost(scene, needed, states, comm, look=None):
         raise StepFailed("full slip found no equilibrium")
 
     found = search(monkeypatch, {"mu_app": 0.01}, lost)
@@ -231,14 +234,14 @@ def test_stops_when_it_is_asked_to(monkeypatch):
     """Asked to stop is no accuracy out of reach."""
 
     def pause():
-        raise Interrupted("stopped")
+        raise Interrupted(signal.SIGTERM, 3)
 
     with pytest.raises(Interrupted):
         search(monkeypatch, {"mu_app": 0.01}, pause=pause)
 
 
 def test_says_where_a_ridge_comes_or_goes(monkeypatch):
-    def fewer(scene, needed, states, comm):
+    def fewer(scene, needed, states, comm, look=None):
         solve = known(scene, needed, states, comm)
         solve.states["slip"].row["ridges_in_contact"] = 16 if scene.mesh.contact < 20e-6 else 17
         return solve
