@@ -1,5 +1,7 @@
 # make demo   press, charge and slide the default finger; results in results/demo
 # make test   all tests, then those marked mpi on two ranks
+# make test-order  all tests with other rounding: cells numbered the other way round, other kernels of OpenBLAS
+# make fuzz   10 000 scenes and command lines, each ready to run or refused in one sentence; some minutes
 # make verify every number with a known answer, some minutes; docs/verification.md
 # make paper  every figure and table of the paper, beside what it says; docs/paper.md, an hour or two
 # make chart  error over work, one numerical setting after the other; docs/chart.md, hours
@@ -9,7 +11,7 @@
 
 run := environment/run
 
-.PHONY: help demo test verify paper chart
+.PHONY: help demo test test-order fuzz verify paper chart
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -18,8 +20,14 @@ demo:
 	$(run) python3 demos/demo_fingerpad.py --out results/demo
 
 test:
-	$(run) python3 -m pytest -q --color=no tests
+	$(run) python3 -m pytest -q --color=no -n auto tests
 	$(run) mpirun -n 2 python3 -m pytest -q --color=no -p no:cacheprovider tests
+
+test-order:
+	OPENBLAS_CORETYPE=Nehalem $(run) python3 -m pytest -q --color=no -n auto --renumber tests
+
+fuzz:
+	$(run) python3 -m tests.fuzz --count 10000
 
 verify:
 	$(run) python3 benchmarks/verify.py

@@ -98,7 +98,7 @@ def test_default_memory_is_no_parameter():
 
 def test_refinement_ends_where_memory_does():
     """A search says that the accuracy could not be established, and meshes nothing."""
-    scene = from_data({"accuracy": {"mu_app": 0.01}, "mesh": COARSE})
+    scene = from_data({"accuracy": {"mu_app": 0.01}, "mesh": COARSE, "contact": {"formulation": "nitsche"}})
     numerics = scene.numerics.model_copy(update={"memory": 3e8})
     scene = scene.model_copy(update={"numerics": numerics})
     path = Solve({"slip": None}, scene.mesh, 1, 1, 0.0)
