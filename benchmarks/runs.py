@@ -76,9 +76,9 @@ class Run:
     @property
     def normal(self) -> int:
         """Row of normal contact, see :mod:`fingerpad.states`."""
-        return self._row(
-            "normal", lambda: len(states.before_sliding([{"bone_x": x} for x in self.steps["bone_x"]])) - 1
-        )
+        columns = [self.steps[name] for name in ("bone_x", "ridges_in_contact")]
+        rows = [{"bone_x": x, "ridges_in_contact": ridges} for x, ridges in zip(*columns, strict=True)]
+        return self._row("normal", lambda: len(states.before_sliding(rows)) - 1)
 
     @property
     def slip(self) -> int:

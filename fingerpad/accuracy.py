@@ -113,7 +113,7 @@ class Keeper:
     def see(self, step: Step) -> None:
         """Take note of an accepted step; collective."""
         rows, row = self._simulation.rows, step.row
-        if len(before_sliding(rows)) == len(rows):
+        if row["ridges_in_contact"] > 0 and len(before_sliding(rows)) == len(rows):
             self.keep("normal")
         if row["slip_began"] == row["step"]:
             self._begun = self._state(1 if row["f_t"] >= 0 else -1)
@@ -416,7 +416,12 @@ class Search:
 
 
 def loads_to_normal_contact(scene: Scene) -> tuple[Load, ...]:
-    """Return the loads before the bone first moves sideways."""
-    loads = scene.loads()
-    moving = next((k for k, load in enumerate(loads) if load.bone_x), len(loads))
-    return loads[:moving]
+    """Return the loads before the bone first moves sideways with the finger pressed."""
+    loads, pressed, place = scene.loads(), False, 0.0
+    for k, load in enumerate(loads):
+        x = place if load.bone_x is None else load.bone_x
+        pressed |= (load.f_ext or 0.0) > 0 or (load.bone_height or 0.0) < 0
+        if pressed and x != place:
+            return loads[:k]
+        place = x
+    return loads

@@ -61,7 +61,7 @@ class Drawing:
 
     def _surface(self) -> None:
         found, partial = named(self.rows), partial_slip(self.rows)
-        shown = {"normal": ("Normal contact", found["normal"])}
+        shown = {"normal": ("Normal contact", found["normal"])} if "normal" in found else {}
         if partial is not None:
             shown["partial"] = ("Partial slip", partial)
         shown["slip"] = ("Full slip", found["slip"]) if "slip" in found else ("Last state", self.rows[-1])

@@ -2,9 +2,9 @@
 
 A row is what :class:`fingerpad.simulation.Simulation` reports of an accepted step, as ``steps.csv`` holds it.
 
-* *uncharged*: the last state before a voltage is switched on and before the bone first moves sideways,
-* *normal*: normal contact, the last state before the bone first moves sideways; a bone that comes back later makes no
-  other one,
+* *uncharged*: the last state in contact before a voltage is switched on and before the bone first moves sideways,
+* *normal*: normal contact, the last state in contact before the bone first moves sideways with skin on the screen; a
+  way through the air before does not count, and a bone that comes back later makes no other one,
 * *slip*: full slip. Every point in contact slips one way, and goes on so with the same forces while the bone slides a
   further 0.2 mm. A full slip begins at its first state, and the last one that was held counts.
 """
@@ -25,14 +25,12 @@ _EXTREMES = ("mu_app", "f_t", "contact_length", "f_electrostatic")
 _ROUNDOFF = 1e-9  # relative, of a way or a voltage
 
 
-def moved(row: Row) -> bool:
-    """Return whether the bone is not where it was pressed down."""
-    return bool(abs(row["bone_x"]) >= STILL)
-
-
 def before_sliding(rows: Sequence[Row]) -> Sequence[Row]:
-    """Return the rows before the bone first moves sideways."""
-    return rows[: next((k for k, row in enumerate(rows) if moved(row)), len(rows))]
+    """Return the rows before the bone first moves sideways with skin on the screen."""
+    touch = next((k for k, row in enumerate(rows) if row["ridges_in_contact"] > 0), len(rows))
+    place = rows[touch - 1]["bone_x"] if touch else 0.0
+    moving = (k for k in range(touch, len(rows)) if abs(rows[k]["bone_x"] - place) >= STILL)
+    return rows[: next(moving, len(rows))]
 
 
 def full_slip(rows: Sequence[Row], row: Row, steady: float, least: float) -> tuple[int, bool]:
@@ -44,7 +42,7 @@ def full_slip(rows: Sequence[Row], row: Row, steady: float, least: float) -> tup
         steady: relative change of the forces that means nothing.
         least: change of the forces (N/m) that means nothing.
     """
-    if not row["all_slip"] or not (moved(row) or len(before_sliding(rows)) < len(rows)):
+    if not row["all_slip"] or len(before_sliding([*rows, row])) > len(rows):
         return 0, False
     last: Row = rows[-1] if rows else {"slip_began": 0}
     first = next((r for r in reversed(rows) if r["step"] == last["slip_began"]), None)
@@ -63,7 +61,7 @@ def unchanged(first: Row, row: Row, steady: float, least: float) -> bool:
 
 def named(rows: Sequence[Row]) -> dict[str, Row]:
     """Return the rows of the states of :data:`STATES` that a history has so far, by name."""
-    still = before_sliding(rows)
+    still = [row for row in before_sliding(rows) if row["ridges_in_contact"] > 0]
     uncharged = still[: next((k for k, row in enumerate(still) if row["voltage"] > 0), len(still))]
     held = next((row["slip_began"] for row in reversed(rows) if row["slip_held"]), None)
     found = {"uncharged": uncharged[-1:], "normal": still[-1:], "slip": [r for r in rows if r["step"] == held][:1]}

@@ -381,3 +381,15 @@ def test_steps_follow_the_scene_s_scale():
     assert "step_scale" not in from_data(SMALL).parameters()["numerics"]
     simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
     assert simulation.continuation.step_scale == 0.5
+
+
+@pytest.mark.parametrize(
+    ("places", "kept"),
+    [((None, None, 1e-3), 2), ((2e-3, None, 3e-3), 2), ((2e-3, 2e-3, 1e-3), 2), ((2e-3, 3e-3, 4e-3), 1)],
+)
+def test_loads_to_normal_contact(places, kept):
+    """A way through the air is none; a bone that is pressed and moved in one load slides in that load."""
+    loads = [{"name": "away", "bone_height": 1e-5}, {"name": "press", "f_ext": 1.0}, {"name": "slide"}]
+    moves = [{} if place is None else {"bone_x": place} for place in places]
+    scene = from_data({"history": [load | move for load, move in zip(loads, moves, strict=True)]})
+    assert accuracy.loads_to_normal_contact(scene) == scene.history[:kept]

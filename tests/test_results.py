@@ -270,3 +270,16 @@ def test_profile_is_sorted_along_each_ridge():
     found = drawing._along(profile, "full slip", row, "")
     assert found.x[[0, 1, 3, 4]] == pytest.approx([0.0, 1e-3, 2e-3, 3e-3]) and np.isnan(found.x[[2, 5]]).all()
     assert found.d_eq[[0, 3]] == pytest.approx([1e-6, 2e-6])
+
+
+def test_way_through_the_air_is_no_sliding(tmp_path, titles):
+    """The bone goes half a millimetre aside before it presses: normal contact is that of the place it presses at."""
+    place = 0.5e-3
+    away = {"name": "away", "bone_height": 20e-6, "bone_x": place}
+    loads = [away, PRESS, {"name": "charge", "voltage": 100.0}, SLIDE | {"bone_x": place + 1e-3}]
+    summary = run(from_data(LEAN | {"history": loads}), tmp_path, MPI.COMM_WORLD)
+    assert (summary["normal_load"], summary["normal_voltage"]) == ("charge", 100.0)
+    assert summary["uncharged_load"] == "press"
+    assert summary["normal_bone_x"] == pytest.approx(place, rel=1e-12)
+    assert summary["slip_mu_app"] > 0.5 and summary["slip_bone_x"] > place
+    assert "0.5 mm" in titles["Normal contact"]

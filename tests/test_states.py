@@ -23,7 +23,7 @@ class History:
         row |= {"voltage": self.voltage, "bone_x": self.x, "all_slip": all_slip, "slipping": float(all_slip)}
         row |= {"f_t": f_t, "mu_app": f_t / self.f_ext if self.f_ext else 0.0, "bone_height": -1e-5}
         row |= {"f_electrostatic": self._attraction, "f_contact": self.f_ext + self._attraction}
-        row |= {"ridges_in_contact": 3, "contact_length": 1e-4 * self.f_ext}
+        row |= {"ridges_in_contact": 3 if self.f_ext > 0 else 0, "contact_length": 1e-4 * self.f_ext}
         began, held = states.full_slip(self.rows, row, STEADY, LEAST)
         self.rows.append(row | {"slip_began": began, "slip_held": held})
 
@@ -160,7 +160,7 @@ def test_voltage_before_sliding_that_goes_up_and_down(pressed):
 
 def test_all_points_slip_without_friction_before_the_bone_moves():
     """Without friction every state is on its cone; full slip begins with the sliding."""
-    base = {"f_ext": 1.0, "voltage": 0.0, "f_t": 0.0, "all_slip": True}
+    base = {"f_ext": 1.0, "voltage": 0.0, "f_t": 0.0, "all_slip": True, "ridges_in_contact": 3}
     rows: list[dict] = []
     for step, x in enumerate((0.0, 0.0, 0.1e-3, 0.2e-3, 0.3e-3), start=1):
         row = base | {"step": step, "bone_x": x}
@@ -211,3 +211,27 @@ def test_touch_belongs_to_the_load_on_the_way():
     history.still("press", f_ext=2.0)
     history.still("press", f_ext=3.0)
     assert [(name, len(mine)) for name, mine in states.by_load(history.rows)] == [("press", 4), ("press", 2)]
+
+
+def test_normal_contact_after_a_way_through_the_air():
+    """The bone is carried 1 mm aside before it is pressed: normal contact is there, and the headline is its slip."""
+    history = History()
+    history.f_ext = 0.0
+    history.still("wait", f_ext=0.0)
+    history.slide("away", 1e-3)
+    history.still("press", f_ext=1.0)
+    history.still("charge", voltage=100.0)
+    history.slide("slide", 1.5e-3)
+    names = history.names()
+    assert names["uncharged"] == ("press", 0.0, 1.0)
+    assert names["normal"] == ("charge", 100.0, 1.0)
+    assert names["slip"][0] == "slide" and names["slip"][2] > 1.0
+
+
+def test_bone_that_moves_as_it_touches_has_no_normal_contact():
+    history = History()
+    history.f_ext = 0.0
+    history.still("wait", f_ext=0.0)
+    history.x, history.f_ext = 50e-6, 1.0
+    history.slide("slide", 0.5e-3)
+    assert "normal" not in states.named(history.rows) and "slip" in states.named(history.rows)
