@@ -192,6 +192,7 @@ def test_run_is_read(tmp_path):
         "step": [1, 2, 3, 4, 5],
         "load": ["press", "charge", "slide", "slide", "slide"],
         "bone_x": [0, 0, 1e-4, 2e-4, 4e-4],
+        "ridges_in_contact": [5, 5, 5, 4, 4],
         "all_slip": [False, False, False, True, True],
     }
     ridges = {
