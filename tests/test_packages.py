@@ -84,5 +84,14 @@ def test_packages_exist(project):
     assert set(listed) == found
 
 
+def test_papers_name_the_same_version_and_licence(project):
+    """What is cited is what is installed, and the licence's text is there."""
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"\nversion: {project['project']['version']}\n" in citation
+    assert f"\nlicense: {project['project']['license']['text']}\n" in citation
+    for name, words in (("LICENSE", "GNU LESSER GENERAL PUBLIC LICENSE"), ("COPYING", "GNU GENERAL PUBLIC LICENSE")):
+        assert (ROOT / name).read_text(encoding="utf-8").lstrip().startswith(words)
+
+
 def _run_script() -> str:
     return (ROOT / "environment/run").read_text()
