@@ -74,3 +74,15 @@ def finger_mesh(coarse) -> TaggedMesh:
 def profiles() -> Profiles:
     """The default fingertip's curves."""
     return Profiles(Fingertip())
+
+
+@pytest.fixture
+def write(tmp_path):
+    """Write a scene file and return its path."""
+
+    def write(text: str) -> Path:
+        path = tmp_path / "scene.toml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write

@@ -12,18 +12,6 @@ from fingerpad.scene import Scene, SceneError
 SCENES = Path(__file__).parent.parent / "demos/scenes"
 
 
-@pytest.fixture
-def write(tmp_path):
-    """Write a scene file and return its path."""
-
-    def write(text: str) -> Path:
-        path = tmp_path / "scene.toml"
-        path.write_text(text, encoding="utf-8")
-        return path
-
-    return write
-
-
 def refusal(path: Path | None = None, **overrides) -> str:
     with pytest.raises(SceneError) as error:
         scenes.check(scenes.load(path, {key.replace("__", "."): value for key, value in overrides.items()}))

@@ -16,18 +16,6 @@ from variational.penalty import Penalty
 SCENES = Path(__file__).parent.parent / "demos/scenes"
 
 
-@pytest.fixture
-def write(tmp_path):
-    """Write a scene file and return its path."""
-
-    def write(text: str) -> Path:
-        path = tmp_path / "scene.toml"
-        path.write_text(text, encoding="utf-8")
-        return path
-
-    return write
-
-
 # -- defaults ------------------------------------------------------------------------------------------
 def test_default_scene():
     scene = scenes.load()
