@@ -33,7 +33,8 @@ def main(comm: MPI.Comm, argv: list[str] | None = None) -> int:
     from variational.friction import CONE_ROUNDOFF
 
     try:
-        result = run(scene, args.out, comm)
+        answer = run(scene, args.out, comm)
+        result = answer.to_dict()
     except SceneError as error:
         if comm.rank == 0:
             print(f"fingerpad: {error}", file=sys.stderr)
@@ -47,7 +48,7 @@ def main(comm: MPI.Comm, argv: list[str] | None = None) -> int:
         assert abs(balance) <= result["force_error"], balance
         cone = scene.friction * result["slip_f_contact"]
         assert abs(abs(result["slip_f_t"]) - cone) <= result["force_error"] + CONE_ROUNDOFF * cone, result["slip_f_t"]
-    return exit_code(result)
+    return exit_code(answer)
 
 
 if __name__ == "__main__":
