@@ -134,7 +134,7 @@ class Contact(Part):
 
     def unread(self) -> set[str]:
         """Return the keys that the formulation does not read."""
-        return FORMULATION_KEYS - _FORMULATION_KEYS[self.formulation]
+        return set(FORMULATION_KEYS) - _FORMULATION_KEYS[self.formulation]
 
     def law(self) -> "Formulation":
         """Return the formulation with its parameters."""

@@ -9,7 +9,7 @@ are refused as all units of another dimension are.
 import re
 from decimal import Decimal
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import pint
@@ -58,7 +58,7 @@ def to_si(text: str, unit: str) -> float:
 
 
 @cache
-def _registry() -> "pint.UnitRegistry[Any]":
+def _registry() -> "pint.UnitRegistry":
     import pint
 
     return pint.UnitRegistry(non_int_type=Decimal)
@@ -74,4 +74,4 @@ def _root(unit: str) -> "tuple[Decimal, pint.Unit] | None":
         factor, root = registry.get_root_units(registry.parse_units(unit))
     except (AttributeError, ValueError, TypeError, ArithmeticError):  # pint's own errors are of the first three
         return None
-    return Decimal(factor), root
+    return Decimal(str(factor)), root
