@@ -39,7 +39,8 @@ def to_si(text: str, unit: str) -> float:
         unit: one of :data:`QUANTITIES`.
 
     Raises:
-        ValueError: it is no number, has no unit, or one of another dimension; to follow the text and a semicolon.
+        ValueError: it is no number, has no unit, or one of another dimension, or pint is not installed; to follow the
+            text and a semicolon.
     """
     parts = _NUMBER.fullmatch(text) if len(text) <= _LONGEST else None
     number, given = parts.groups() if parts else ("1", "")
@@ -48,7 +49,10 @@ def to_si(text: str, unit: str) -> float:
         raise ValueError(wanted)
     if not given:
         raise ValueError(f"it has no unit; {wanted}")
-    found = _root(given)
+    try:
+        found = _root(given)
+    except ImportError:
+        raise ValueError(f"its unit needs the package pint, which is not installed; {wanted}") from None
     if found is None:
         raise ValueError(f"its unit is not known; {wanted}")
     (factor, root), (one, wanted_root) = found, _root(unit) or found

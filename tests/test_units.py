@@ -90,6 +90,15 @@ def test_every_unit_of_a_parameter_is_known(unit):
     assert to_si(f"1.5 {unit}", unit) == 1.5
 
 
+def test_text_without_pint_is_refused():
+    """Where it is not installed, in a sentence."""
+    done = without("from fingerpad import scene; scene.load(None, {'f_ext': '50 N/m'})", *HEAVY, "pint")
+    assert done.stderr.splitlines()[-1].endswith(
+        "SceneError: f_ext is '50 N/m'; its unit needs the package pint, which is not installed; it must be a number "
+        "in N/m or a text such as '50 N/m'"
+    )
+
+
 def test_numbers_do_not_import_pint():
     done = without("from fingerpad import scene; scene.load(None, {'f_ext': 50, 'mesh.contact': 5e-6})", *HEAVY, "pint")
     assert done.returncode == 0, done.stderr
