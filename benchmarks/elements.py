@@ -84,7 +84,7 @@ def run(element: str, poisson: float, times: int) -> Run:
     body = load(MPI.COMM_WORLD, partial(refined, times))
     surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
     skin = {tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53, poisson)}
-    interface = Interface(Penalty(1.5e12, 5e10), mu_f=0.25, h_0=H_0)
+    interface = Interface(Penalty(1.5e12, 5e10), friction=0.25, h_0=H_0)
     problem = Problem(body.mesh, body.cell_tags, surface, skin, interface, element)
     solver = Solver(problem, body.facet_tags.find(tags.BONE_RIM), 1.0, 1e-8)
     observer = Observer(problem)

@@ -128,7 +128,7 @@ class Coupling:
             d = self.d_eq
             found, state = self._sweep(creep or sweep > 0)
             r = found - d if charged else np.zeros_like(d)  # without attraction the air gaps do not act
-            error = formulation.error(state, contact_history, problem.interface.mu_f)
+            error = formulation.error(state, contact_history, problem.interface.friction)
             self.history.errors.append(problem.mesh.comm.allreduce(error, op=MPI.MAX))
             change = np.abs(r) / d if charged else np.zeros_like(d)
             worst = int(np.argmax(change))

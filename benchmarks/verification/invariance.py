@@ -24,14 +24,15 @@ from benchmarks.verification.points import Points
 from benchmarks.verification.principal import moduli
 from geometry import tags
 from geometry.benchmarks import block
-from variational import saint_venant, stress
+from variational import saint_venant
 from variational.element import ELEMENTS
+from variational.material import Material
 from variational.problem import Ogden, Problem, SaintVenant
 from variational.solver import Solver
 
 Array = NDArray[np.float64]
 NAIL = (170e6, 0.3)
-SOLIDS: dict[int, Ogden | SaintVenant] = {
+SOLIDS: dict[int, Material] = {
     tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53, 0.48),
     tags.DERMIS: Ogden(2.55e3, -14.53, 0.48),
     tags.NAIL: SaintVenant(*NAIL),
@@ -44,7 +45,7 @@ _ROUNDOFF = 1e-13
 @cache
 def nail() -> Points:
     """Return the package's Saint Venant-Kirchhoff law."""
-    return Points(stress.saint_venant_law, 2)
+    return Points(SaintVenant(1.0, 0.3))
 
 
 def states(count: int) -> Array:

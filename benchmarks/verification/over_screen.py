@@ -15,9 +15,10 @@ from variational.augmented import AugmentedLagrangian
 from variational.contact import Formulation
 from variational.continuation import Continuation
 from variational.coupling import Coupling
+from variational.material import Material
 from variational.nitsche import Nitsche
 from variational.penalty import Penalty
-from variational.problem import Interface, Ogden, Problem, SaintVenant
+from variational.problem import Interface, Problem
 from variational.quantities import Observer
 from variational.roughness.closure import AirGap
 from variational.solver import Solver
@@ -44,7 +45,7 @@ class Smooth:
 
 def over_screen(
     build: Callable[[], float],
-    solid: Ogden | SaintVenant,
+    solid: Material,
     interface: Interface,
     force: float,
     element: str = "P2",
