@@ -13,6 +13,7 @@ from petsc4py import PETSc
 from geometry import tags
 from geometry.mesh import TaggedMesh, load
 from variational import jit
+from variational.material import Material
 from variational.penalty import Penalty
 from variational.problem import Interface, Problem
 from variational.solver import Solver

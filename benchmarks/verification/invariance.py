@@ -26,13 +26,12 @@ from geometry import tags
 from geometry.benchmarks import block
 from variational import saint_venant
 from variational.element import ELEMENTS
-from variational.material import Material
 from variational.problem import Ogden, Problem, SaintVenant
 from variational.solver import Solver
 
 Array = NDArray[np.float64]
 NAIL = (170e6, 0.3)
-SOLIDS: dict[int, Material] = {
+SOLIDS: dict[int, Ogden | SaintVenant] = {
     tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53, 0.48),
     tags.DERMIS: Ogden(2.55e3, -14.53, 0.48),
     tags.NAIL: SaintVenant(*NAIL),
