@@ -34,15 +34,12 @@ from fingerpad.smooth import smoothed
 from geometry import fingertip, tags
 from geometry.mesh import TaggedMesh, load
 from geometry.parameters import MeshSize
+from variational.body import Body
 from variational.contact import History
-from variational.continuation import Continuation, StepFailed, Target
-from variational.coupling import Coupling
+from variational.continuation import StepFailed, Target
 from variational.cylinder import Cylinder
 from variational.penalty import Penalty
-from variational.problem import Interface, Problem
-from variational.quantities import Observer
-from variational.solver import Solver
-from variational.surface import Surface
+from variational.problem import Interface
 
 _GROWTH, _COARSEST = 0.5, 1e-3  # m
 _TOLERANCE = 1e-6
@@ -107,12 +104,12 @@ class _Finger:
         period, horny = scene.geometry.ridge_wavelength, scene.materials.stratum_corneum
         self.modulus = 2 * horny.shear_modulus / (1 - horny.poisson)
         stiffness = np.pi * self.modulus / period
-        self.surface = Surface(body.mesh, body.facet_tags, {j: tags.ridge(j) for j in body.ridges()})
         interface = Interface(Penalty(stiffness, stiffness), mu_f, scene.h_0, attraction=None)
-        self.problem = Problem(body.mesh, body.cell_tags, self.surface, solids(scene), interface, "P1")
-        rim = body.facet_tags.find(tags.BONE_RIM)
-        self.solver = Solver(self.problem, rim, self.force or 1.0, _TOLERANCE)
-        self.walk = Continuation(Coupling(self.solver, Observer(self.problem), None), step_scale=_STEPS)
+        made = Body(
+            body, solids(scene), interface, element="P1", force_scale=self.force or 1.0, tolerance=_TOLERANCE,
+            step_scale=_STEPS,
+        )  # fmt: skip
+        self.surface, self.problem, self.solver, self.walk = made.surface, made.problem, made.solver, made.continuation
 
     def press(self) -> None:
         """Press with the largest force, and on to the lowest height of the bone."""

@@ -31,14 +31,11 @@ from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
 from variational import ogden
-from variational.carried import carried
-from variational.continuation import Attempt, Continuation, StepFailed, Target
-from variational.coupling import Coupling
+from variational.body import Body
+from variational.continuation import Attempt, StepFailed, Target
 from variational.electroadhesion import VACUUM_PERMITTIVITY
-from variational.problem import Interface, Ogden, Problem
-from variational.quantities import Observer
+from variational.problem import Interface, Ogden
 from variational.ridge_law import RidgeTable
-from variational.surface import Surface
 
 Array = NDArray[np.float64]
 VERSION = 2  # of the tables; another one makes the old ones forgotten
@@ -130,20 +127,17 @@ class _Cell:
         size = MeshSize(contact=scene.mesh.contact, interface=max(60e-6, scene.mesh.contact), growth=0.4)
         # A rank by itself makes the whole of it: it is small.
         body = load(MPI.COMM_SELF, partial(strip.build, finger, size, 1, top), strip.LAYERS)
-        surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)}, scene.numerics.quadrature_points)
         skins = {tag: s for tag, s in solids(scene).items() if tag in strip.LAYERS and isinstance(s, Ogden)}
         interface = Interface(scene.contact.law(), scene.friction, scene.h_0)
-        problem = Problem(body.mesh, body.cell_tags, surface, skins, interface, scene.numerics.element)
-        rim, sides = (body.facet_tags.find(tag) for tag in (tags.BONE_RIM, tags.SIDES))
-        self.solver = carried(problem, rim, sides, 1.0)
-        self.observer = Observer(problem)
         numerics = scene.numerics
         self.closure = scene.roughness.bearing_area(scene.h_0)
-        self.coupling = Coupling(
-            self.solver, self.observer, self.closure, numerics.coupling_tolerance, numerics.coupling_cap,
-            by_gap=scene.contact.length == "gap",
+        made = Body(
+            body, skins, interface, self.closure, element=numerics.element, points=numerics.quadrature_points,
+            carried_sides=body.facets(tags.SIDES), coupling_tolerance=numerics.coupling_tolerance,
+            coupling_cap=numerics.coupling_cap, by_gap=scene.contact.length == "gap", on_accept=self._accepted,
+            touch_depth=2e-6,
         )  # fmt: skip
-        self.walk = Continuation(self.coupling, self._accepted, touch_depth=2e-6)
+        self.solver, self.observer, self.walk = made.solver, made.observer, made.continuation
         self.finger, self.period = finger, finger.ridge_wavelength
         thicknesses = finger.sc_thickness, finger.ve_thickness, _DERMIS
         self.layers = [(skins[tag], t) for tag, t in zip(strip.LAYERS, thicknesses, strict=True)]

@@ -34,13 +34,10 @@ from geometry import fingertip, tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
-from variational.continuation import Attempt, Continuation, StepFailed, Target
-from variational.coupling import Coupling
-from variational.problem import Interface, Problem
-from variational.quantities import Observer
+from variational.body import Body
+from variational.continuation import Attempt, StepFailed, Target
+from variational.problem import Interface
 from variational.ridge_law import RidgeLaw, RidgeTable
-from variational.solver import Solver
-from variational.surface import Surface
 from variational.transfer import Carried, carry
 
 Array = NDArray[np.float64]
@@ -221,18 +218,16 @@ class _SmoothFinger:
         self.uncharged = uncharged = ridge_cell.tables(scene.model_copy(update={"voltage": 0.0}), folder)
         finger = smoothed(scene.geometry)
         body = load(comm, partial(fingertip.build, finger, sizes(scene)), tags.LAYERS.values())
-        ridges = {j: tags.ridge(j) for j in body.ridges()}
-        surface = Surface(body.mesh, body.facet_tags, ridges, scene.numerics.quadrature_points)
         self.law = RidgeLaw(uncharged.normal, charged.period, charged.tangential / charged.period)
         interface = Interface(self.law, scene.friction, scene.h_0)
         numerics = scene.numerics
-        problem = Problem(body.mesh, body.cell_tags, surface, solids(scene), interface, numerics.element)
-        rim = body.facet_tags.find(tags.BONE_RIM)
-        self.solver = Solver(problem, rim, scene.f_ext, numerics.tolerance)
-        self.observer = Observer(problem)
         # Without a voltage of the problem's own the air gaps do not act: they are inside the law.
-        coupling = Coupling(self.solver, self.observer, scene.roughness.bearing_area(scene.h_0))
-        self.walk = Continuation(coupling, self._accepted, step_scale=_STEPS)
+        made = Body(
+            body, solids(scene), interface, scene.roughness.bearing_area(scene.h_0), element=numerics.element,
+            points=numerics.quadrature_points, force_scale=scene.f_ext, tolerance=numerics.tolerance,
+            on_accept=self._accepted, step_scale=_STEPS,
+        )  # fmt: skip
+        self.solver, self.observer, self.walk = made.solver, made.observer, made.continuation
 
     def press(self) -> dict[str, Any]:
         """Press and charge the finger and return its normal contact."""
