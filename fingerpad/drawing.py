@@ -21,7 +21,8 @@ class Drawing:
     """What a run's pictures are drawn from."""
 
     folder: Path
-    mu_0: float
+    mu_0: float | None
+    """Friction coefficient; None where the law of friction is not Coulomb's."""
     rows: Sequence[Row]
     profiles: Mapping[int, Profile]
     """The skin by step."""

@@ -14,6 +14,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, Ti
 
 from fingerpad import drawing, states
 from fingerpad.files import Table, replace_json
+from fingerpad.laws import coefficient
 from fingerpad.place import Place
 from fingerpad.provenance import provenance
 from fingerpad.scene import Scene
@@ -287,7 +288,7 @@ class Report:
             assert self._simulation is not None
             size = None if self.scene.accuracy is None else self._simulation.scene.mesh.contact
             drawing.Drawing(
-                self.folder, self.scene.friction, self.rows, self._profiles, self._ends, self._finer, size
+                self.folder, coefficient(self.scene), self.rows, self._profiles, self._ends, self._finer, size
             ).draw()
         self.seconds += time.perf_counter() - start
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from fingerpad.scene import Scene, SceneError
+from fingerpad.sentences import show
 
 STATES = ("normal", "slip")
 NAMES = ("f_t", "mu_app", "f_electrostatic", "f_contact", "bone_height", "ridges_in_contact", "contact_length")
@@ -52,19 +53,28 @@ def at_rest(f_ext: float, contact: Mapping[str, float | int]) -> dict[str, Any]:
     return {"normal_f_t": 0.0, "normal_mu_app": 0.0} | {f"normal_{name}": value for name, value in contact.items()}
 
 
-def at_slip(f_ext: float, mu_0: float, contact: Mapping[str, float | int]) -> dict[str, Any]:
-    """Return the keys of full slip: f_T is mu_0 times the contact force, exactly."""
-    f_t = mu_0 * contact["f_contact"]
-    keys = {"full_slip": True, "slip_f_t": f_t, "slip_mu_app": f_t / f_ext}
+def at_slip(scene: Scene, contact: Mapping[str, float | int]) -> dict[str, Any]:
+    """Return the keys of full slip: f_T is the limit of friction, of the mean pressure over the contact length.
+
+    Coulomb's is mu_0 times the contact force, however that is spread.
+    """
+    law = scene.friction_law()
+    f_t = 0.0 if law is None else law.resultant(contact["f_contact"], contact["contact_length"])
+    keys = {"full_slip": True, "slip_f_t": f_t, "slip_mu_app": f_t / scene.f_ext}
     return keys | {f"slip_{name}": value for name, value in contact.items()}
 
 
-def refuse_history(scene: Scene, rung: int) -> None:
-    """Refuse a scene whose loads are not press, charge and slide.
+def refuse_others(scene: Scene, rung: int) -> None:
+    """Refuse a scene whose loads are not press, charge and slide, or whose finger has a mesh of its own.
 
     Raises:
-        SceneError: it has a history of its own.
+        SceneError: it has a history, or a mesh.
     """
+    if scene.laws.mesh is not None:
+        raise SceneError(
+            f"mesh is {show(str(scene.laws.mesh))}; rung {rung} of the ladder answers for fingers of the scene's own "
+            "geometry, so use rung 3"
+        )
     if scene.history is not None:
         raise SceneError(
             f"history is given; rung {rung} of the ladder answers for press, charge and slide alone, so use rung 3 "

@@ -27,20 +27,17 @@ from numpy.typing import NDArray
 from fingerpad import ridge_cell
 from fingerpad.estimate import Knob
 from fingerpad.reach import by_rule
-from fingerpad.rungs import NAMES, STATES, Answer, Cost, Stopwatch, at_rest, at_slip, refuse_history
+from fingerpad.rungs import NAMES, STATES, Answer, Cost, Stopwatch, at_rest, at_slip, refuse_others
 from fingerpad.scene import Scene, SceneError
-from fingerpad.simulation import solids
 from geometry import fingertip, tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
-from variational.continuation import Attempt, Continuation, StepFailed, Target
-from variational.coupling import Coupling
-from variational.problem import Interface, Problem
-from variational.quantities import Observer
+from variational.body import Body
+from variational.continuation import Attempt, StepFailed, Target
+from variational.friction import Coulomb
+from variational.problem import Interface
 from variational.ridge_law import RidgeLaw, RidgeTable
-from variational.solver import Solver
-from variational.surface import Surface
 from variational.transfer import Carried, carry
 
 Array = NDArray[np.float64]
@@ -86,11 +83,12 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Answer
         comm: communicator of the mesh.
 
     Raises:
-        SceneError: a scene with a history, one this rung finds no equilibrium for, or one whose mesh.contact is too
-            large for the answer to mean anything.
+        SceneError: a scene with a history, with a mesh or another friction law than Coulomb's of its own, one this rung
+            finds no equilibrium for, or one whose mesh.contact is too large for the answer to mean anything.
     """
     clock = Stopwatch()
-    refuse_history(scene, 2)
+    refuse_others(scene, 2)
+    _refuse_friction(scene)
     half = scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"contact": scene.mesh.contact / 2})})
     fingers, summaries = zip(*(_solved(one, folder, comm) for one in (scene, half)), strict=True)
     summary, found = summaries[0], errors(*summaries)
@@ -128,7 +126,17 @@ def _solved(scene: Scene, folder: Path, comm: MPI.Comm) -> tuple["_SmoothFinger"
             f"rung 2 found no equilibrium with the ridge's tables at mesh.contact {scene.mesh.contact:g} m: {error}; "
             "use another rung"
         ) from error
-    return finger, summary if slip is None else summary | at_slip(scene.f_ext, scene.friction, slip)
+    return finger, summary if slip is None else summary | at_slip(scene, slip)
+
+
+def _refuse_friction(scene: Scene) -> None:
+    """Refuse a law of friction that is not proportional to the contact force, all that a ridge's table has."""
+    law = scene.friction_law()
+    if not (law is None or isinstance(law, Coulomb)):
+        raise SceneError(
+            f"friction is {law}; rung 2 knows a ridge's contact force and not its pressures, so that it takes a "
+            "friction coefficient alone: use another rung"
+        )
 
 
 def _refuse_lost(scene: Scene, table: RidgeTable) -> None:
@@ -197,8 +205,13 @@ def full_slip(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Sl
     Raises:
         StepFailed: there is none, or rung 2 does not come to it.
     """
-    if scene.history is not None or scene.numerics.element == "P2-P1" or scene.friction == 0:
+    if scene.history is not None or scene.numerics.element == "P2-P1" or scene.friction_law() is None:
         raise StepFailed("rung 2 has no full slip of a scene with a history, without friction or with element 'P2-P1'")
+    try:
+        refuse_others(scene, 2)
+        _refuse_friction(scene)
+    except SceneError as error:
+        raise StepFailed(str(error)) from error
     finger = _SmoothFinger(scene, folder, comm)
     finger.press()
     found = finger.slide()
@@ -221,18 +234,16 @@ class _SmoothFinger:
         self.uncharged = uncharged = ridge_cell.tables(scene.model_copy(update={"voltage": 0.0}), folder)
         finger = smoothed(scene.geometry)
         body = load(comm, partial(fingertip.build, finger, sizes(scene)), tags.LAYERS.values())
-        ridges = {j: tags.ridge(j) for j in body.ridges()}
-        surface = Surface(body.mesh, body.facet_tags, ridges, scene.numerics.quadrature_points)
         self.law = RidgeLaw(uncharged.normal, charged.period, charged.tangential / charged.period)
-        interface = Interface(self.law, scene.friction, scene.h_0)
+        interface = Interface(self.law, scene.friction_law(), scene.h_0)
         numerics = scene.numerics
-        problem = Problem(body.mesh, body.cell_tags, surface, solids(scene), interface, numerics.element)
-        rim = body.facet_tags.find(tags.BONE_RIM)
-        self.solver = Solver(problem, rim, scene.f_ext, numerics.tolerance)
-        self.observer = Observer(problem)
         # Without a voltage of the problem's own the air gaps do not act: they are inside the law.
-        coupling = Coupling(self.solver, self.observer, scene.roughness.bearing_area(scene.h_0))
-        self.walk = Continuation(coupling, self._accepted, step_scale=_STEPS)
+        made = Body(
+            body, scene.solids(), interface, scene.closure(), element=numerics.element,
+            points=numerics.quadrature_points, force_scale=scene.f_ext, tolerance=numerics.tolerance,
+            on_accept=self._accepted, step_scale=_STEPS,
+        )  # fmt: skip
+        self.solver, self.observer, self.walk = made.solver, made.observer, made.continuation
 
     def press(self) -> dict[str, Any]:
         """Press and charge the finger and return its normal contact."""
@@ -253,8 +264,7 @@ class _SmoothFinger:
         found = carry(self.walk.coupling, self.walk.surface_state)
         force, _, length = self.law.table.at(self._mean_height())
         pressure = np.divide(force, length, out=np.zeros_like(force), where=length > 0)
-        closure = self.scene.roughness.bearing_area(self.scene.h_0)
-        d_eq = closure(pressure).d_eq if self.scene.voltage else np.full_like(pressure, np.nan)
+        d_eq = self.scene.closure()(pressure).d_eq if self.scene.voltage else np.full_like(pressure, np.nan)
         finger = self.scene.geometry
         up = np.array([0.0, ridge_cell.mean_depth(finger) - Profiles(finger).lowered])
         return replace(

@@ -90,7 +90,7 @@ def answer(scene: Scene, folder: Path, comm: MPI.Comm) -> Answer:
     found = full_slip(scene, folder, comm)
     row = found.solve.states["slip"].row
     names = ("f_contact", "f_electrostatic", "bone_height", "ridges_in_contact", "contact_length")
-    summary = at_slip(scene.f_ext, scene.friction, {name: row[name] for name in names})
+    summary = at_slip(scene, {name: row[name] for name in names})
     errors, notes = _errors(by_rule(scene), found.solve, comm)
     more = {
         "table_version": ridge_cell.VERSION,
