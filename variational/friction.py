@@ -28,7 +28,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from variational.coefficients import Law
+from variational.coefficients import Law, said
 
 Array = NDArray[np.float64]
 CONE_ROUNDOFF = 1e-8  # relative: a traction this near the limit counts as on it
@@ -85,7 +85,7 @@ class Friction(Law, ABC):
                 found = np.asarray(self.limit(_PRESSURES), dtype=float)
                 one = float(self.limit(_JUMP))
         except Exception as error:  # whatever the user's limit raises
-            raise ValueError(f"the limit of {self} cannot be evaluated: {error}") from error
+            raise ValueError(f"the limit of {self} cannot be evaluated: {said(error)}") from error
         if found.shape != _PRESSURES.shape:
             raise ValueError(
                 f"the limit of {self} has the shape {found.shape} for {len(_PRESSURES)} pressures; it must have one "
