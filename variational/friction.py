@@ -130,6 +130,12 @@ class Derjaguin(Friction):
     (B. Derjaguin, Molekulartheorie der äußeren Reibung, Zeitschrift für Physik 88, 1934, pages 661 to 675, where the
     attraction adds a constant pressure p_0 to the load, :math:`\tau_0 = \mu_f p_0`.) The root is this program's, so
     that :math:`\tau_0` does not jump on where contact begins: at ten times p_reg half a percent of tau_0 is missing.
+
+    With the default p_reg of 1 kPa Newton's method takes as many iterations as for Coulomb's law: 88 and 88 without
+    voltage, 212 and 224 at 100 V (a small finger of nine ridges slid to full slip at 1 N/m, mu_f = 0.3, tau_0 = 5 kPa).
+    With 100 Pa it took 226 and 548, with 10 Pa 462 and 777, and steps were cut. With tau_0 = 20 kPa at 100 V it took 534
+    at 1 kPa, 322 at 10 kPa, and found no full slip at 100 Pa and below. The default takes 3 % of that friction away,
+    whose ridges are pressed by some kPa; at the 30 to 80 kPa of a finger at 75 N/m it is below a thousandth of tau_0.
     """
 
     mu_f: float
@@ -137,7 +143,7 @@ class Derjaguin(Friction):
     tau_0: float
     """Friction without load (Pa of reference area)."""
     p_reg: float = 1e3
-    """Contact pressure (Pa) below which tau_0 fades out. *Assumption*."""
+    """Contact pressure (Pa) below which tau_0 fades out. *Assumption*; a larger tau_0 may need a larger one."""
 
     def limit(self, p):
         """Return the limit (Pa)."""
