@@ -80,7 +80,7 @@ def run(element: str, poisson: float, times: int) -> Run:
     """Press and slide."""
     body = load(MPI.COMM_WORLD, partial(refined, times))
     skin = {tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53, poisson)}
-    interface = Interface(Penalty(1.5e12, 5e10), mu_f=0.25, h_0=H_0)
+    interface = Interface(Penalty(1.5e12, 5e10), friction=0.25, h_0=H_0)
     made = Body(body, skin, interface, BearingArea(H_0), element=element, tolerance=1e-8)
     solver, observer, continuation = made.solver, made.observer, made.continuation
     failure, start = "", time.process_time()

@@ -32,9 +32,11 @@ from variational.contact import Formulation
 from variational.continuation import Attempt, StepFailed, Target
 from variational.electroadhesion import ELECTROSTATIC
 from variational.energy import Balance, EnergyBook
+from variational.friction import Friction
+from variational.material import Material
 from variational.penalty import Penalty
-from variational.problem import Interface, Ogden, SaintVenant
-from variational.roughness.closure import Closure
+from variational.problem import Interface
+from variational.roughness.closure import Closure, check
 from variational.state import ContactState, RidgeStates, Skin, StepRecord
 
 Array = NDArray[np.float64]
@@ -69,10 +71,10 @@ class Body:
     def __init__(
         self,
         shape: Callable[[], float] | TaggedMesh | str | Path,
-        material: Ogden | SaintVenant | Mapping[str, Ogden | SaintVenant],
+        material: Material | Mapping[str, Material],
         *,
         contact: Formulation = Penalty(1.5e12, 5e10),  # noqa: B008
-        friction: float = 0.0,
+        friction: Friction | float | None = None,
         roughness: Closure | None = None,
         h_0: float | None = None,
         element: str = "P2",
@@ -87,7 +89,7 @@ class Body:
             shape: a shape of :mod:`geometry`, a gmsh file (:mod:`geometry.meshfile`), or a mesh.
             material: of the whole body, or of each layer by its name in :data:`geometry.tags.LAYERS`.
             contact: how contact enters the weak form.
-            friction: friction coefficient.
+            friction: law of friction; a number is the coefficient of Coulomb's.
             roughness: the microscale, from pressure to air gap; without it there is no voltage.
             h_0: effective insulator thickness (m); by default that of ``roughness``.
             element: a name of :data:`variational.element.ELEMENTS`.
@@ -98,8 +100,11 @@ class Body:
 
         Raises:
             geometry.profiles.GeometryError: the shape or the file cannot be meshed.
-            ValueError: layers and materials do not agree, or ``roughness`` has no ``h_0`` and none is given.
+            ValueError: layers and materials do not agree, a law is none, or ``roughness`` has no ``h_0`` and none is
+                given.
         """
+        if roughness is not None:
+            check(roughness)
         build = file(shape) if isinstance(shape, str | Path) else shape
         self.mesh = build if isinstance(build, TaggedMesh) else load(comm, build)
         if h_0 is None:
@@ -325,21 +330,23 @@ class _Points:
         return Skin(self._ridge, *values[:, self._order])
 
 
-def _solids(
-    mesh: TaggedMesh, material: Ogden | SaintVenant | Mapping[str, Ogden | SaintVenant]
-) -> dict[int, Ogden | SaintVenant]:
+def _solids(mesh: TaggedMesh, material: Material | Mapping[str, Material]) -> dict[int, Material]:
     """Return the material of each layer's tag."""
     here = set(np.unique(mesh.cell_tags.values).tolist())
     present = set().union(*mesh.mesh.comm.allgather(here))
     layers = {name: tag for name, tag in tags.LAYERS.items() if tag in present}
-    if not isinstance(material, Mapping):
+    if isinstance(material, Material):
         return dict.fromkeys(layers.values(), material)
+    if not isinstance(material, Mapping):
+        raise ValueError(f"material is {material!r}; it must be a Material, or a dictionary of one for each layer")
     listed = ", ".join(map(repr, layers))
     for name in material:
         if name not in layers:
             near = get_close_matches(str(name), layers, n=1)
             hint = f"did you mean {near[0]!r}?" if near else f"its layers are {listed}"
             raise ValueError(f"there is a material for {name!r}, which is no layer of the body; {hint}")
+        if not isinstance(material[name], Material):
+            raise ValueError(f"the material of {name!r} is {material[name]!r}; it must be a Material")
     missing = next((name for name in layers if name not in material), None)
     if missing is not None:
         raise ValueError(f"there is no material for the layer {missing!r}; the body's layers are {listed}")

@@ -33,7 +33,7 @@ from geometry.profiles import Profiles
 from variational import ogden
 from variational.body import Body
 from variational.continuation import Attempt, StepFailed, Target
-from variational.electroadhesion import VACUUM_PERMITTIVITY
+from variational.insulator import VACUUM_PERMITTIVITY
 from variational.problem import Interface, Ogden
 from variational.ridge_law import RidgeTable
 

@@ -363,6 +363,7 @@ def solids(scene: Scene) -> dict[int, Ogden | SaintVenant]:
         tags.STRATUM_CORNEUM: m.stratum_corneum,
     }
     stiff = {tags.NAIL: m.nail, tags.NAIL_BED: m.nail_bed}
-    found: dict[int, Ogden | SaintVenant] = {tag: SaintVenant(s.young, s.poisson) for tag, s in stiff.items()}
-    found |= {tag: Ogden(s.shear_modulus, s.alpha, s.poisson, m.exponent) for tag, s in skins.items()}
-    return found
+    found: dict[int, Ogden | SaintVenant] = {
+        tag: Ogden(s.shear_modulus, s.alpha, s.poisson, m.exponent) for tag, s in skins.items()
+    }
+    return found | {tag: SaintVenant(s.young, s.poisson) for tag, s in stiff.items()}

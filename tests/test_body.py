@@ -12,9 +12,11 @@ from geometry import tags
 from geometry.mesh import load
 from variational import body as parts
 from variational.continuation import StepFailed, Target
+from variational.ogden import Ogden
 from variational.penalty import Penalty
-from variational.problem import Interface, Ogden, SaintVenant
+from variational.problem import Interface
 from variational.roughness.bam import BearingArea
+from variational.saint_venant import SaintVenant
 
 MU_F, H_0, FORCE, VOLTAGE = 0.25, 0.51e-6, 4.4, 150.0
 SKIN, SPRINGS = Ogden(86.76e3, -14.53, 0.48), Penalty(1.5e12, 5e10)
@@ -196,6 +198,8 @@ def test_load_is_refused(call, message):
     [
         ({"stratum corneom": SKIN}, "'stratum corneom', which is no layer of the body; did you mean 'stratum corneum'"),
         ({"stratum corneum": SKIN, "bone": SKIN}, "'bone', which is no layer of the body; its layers are 'stratum c"),
+        (5.0, "material is 5.0; it must be a Material, or a dictionary of one for each layer"),
+        ({"stratum corneum": 5.0}, "the material of 'stratum corneum' is 5.0; it must be a Material"),
         ({}, "there is no material for the layer 'stratum corneum'"),
     ],
 )

@@ -27,7 +27,7 @@ class Stub:
         self.pressure, self.timings, self.noise = pressure, Timings(), noise
         self.draw = np.random.default_rng(0)
         self.problem = SimpleNamespace(
-            interface=SimpleNamespace(formulation=SimpleNamespace(error=lambda *_: 0.0, tolerance=0.0), mu_f=0.0),
+            interface=SimpleNamespace(formulation=SimpleNamespace(error=lambda *_: 0.0, tolerance=0.0), friction=None),
             history=None,
             voltage=SimpleNamespace(value=FOLD_VOLTAGE),
             mesh=SimpleNamespace(comm=MPI.COMM_SELF),

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from variational.carried import carried
 from variational.continuation import Attempt, Continuation, Target
 from variational.coupling import Coupling
-from variational.problem import Interface, Ogden, Problem, SaintVenant
+from variational.material import Material
+from variational.problem import Interface, Problem
 from variational.quantities import Observer
 from variational.roughness.closure import Closure
 from variational.solver import Solver
@@ -66,7 +67,7 @@ class Body:
     def __init__(
         self,
         tagged: Tagged,
-        solids: Mapping[int, Ogden | SaintVenant],
+        solids: Mapping[int, Material],
         interface: Interface,
         closure: Closure | None = None,
         *,

@@ -14,9 +14,10 @@ from variational.augmented import AugmentedLagrangian
 from variational.body import Body
 from variational.contact import Formulation
 from variational.continuation import Continuation
+from variational.material import Material
 from variational.nitsche import Nitsche
 from variational.penalty import Penalty
-from variational.problem import Interface, Ogden, SaintVenant
+from variational.problem import Interface
 from variational.roughness.closure import AirGap
 
 Array = NDArray[np.float64]
@@ -40,7 +41,7 @@ class Smooth:
 
 def over_screen(
     build: Callable[[], float],
-    solid: Ogden | SaintVenant,
+    solid: Material,
     interface: Interface,
     force: float,
     element: str = "P2",
