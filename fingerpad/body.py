@@ -13,7 +13,7 @@ ranks construct the body and call its loads together; what it then holds is the 
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -23,6 +23,8 @@ from numpy.typing import NDArray
 
 import fingerpad.started  # noqa: F401
 from fingerpad.entry import MPI
+from fingerpad.states import full_slip
+from fingerpad.steps import force_error
 from geometry import tags
 from geometry.mesh import TaggedMesh, load
 from geometry.meshfile import file
@@ -40,6 +42,8 @@ from variational.roughness.closure import Closure, check
 from variational.state import ContactState, RidgeStates, Skin, StepRecord
 
 Array = NDArray[np.float64]
+_TOLERANCE = 1e-9  # of the solves, over the force scale
+_STEADY = 1e-6  # relative change of a force by sliding on at full slip that means nothing
 _BEARS = 1e-6  # part of the force scale above which the bone is said to be pressed
 
 
@@ -115,7 +119,7 @@ class Body:
         self._closure, self._force_scale = roughness, force_scale
         made = setup.Body(
             self.mesh, _solids(self.mesh, material), law, roughness, element=element, force_scale=force_scale,
-            on_accept=self._accepted, touch_depth=touch_depth, step_scale=step_scale,
+            tolerance=_TOLERANCE, on_accept=self._accepted, touch_depth=touch_depth, step_scale=step_scale,
         )  # fmt: skip
         self.problem, self._made = made.problem, made
         self._nodes = _Nodes(made)
@@ -231,12 +235,8 @@ class Body:
         loads = made.observer.ridge_loads(surface)
         slipping, all_slip = made.continuation.slip
         f_ext, f_t = float(solver.reaction[1]), 0.0 - float(solver.reaction[0])  # no negative zero
-        steps, began = made.continuation.steps, 0
-        if all_slip:  # the same full slip as before, or a new one
-            before = self.state
-            began = before.slip_began if before.all_slip and before.f_t * f_t > 0 else steps
-        return ContactState(
-            step=steps,
+        found = ContactState(
+            step=made.continuation.steps,
             load=self._load,
             load_number=self._loads,
             f_ext=f_ext,
@@ -251,7 +251,6 @@ class Body:
             contact_length=float(loads.length.sum()),
             slipping=slipping,
             all_slip=all_slip,
-            slip_began=began,
             record=record,
             ridges=RidgeStates(
                 np.array(made.surface.names), loads.length, loads.f_contact, loads.f_friction, loads.f_attraction,
@@ -259,6 +258,9 @@ class Body:
             ),
             skin=self._points.gather(surface),
         )  # fmt: skip
+        least = force_error(solver.layout.global_size, max(_TOLERANCE, solver.floor), solver.force_scale)
+        began, held = full_slip(self.states, found, _STEADY, least)
+        return replace(found, slip_began=began, slip_held=held)
 
     def _record(self, balance: Balance, attempt: Attempt) -> StepRecord:
         made = self._made
