@@ -62,7 +62,7 @@ _HALF = Omission(
 def plan(scene: Scene) -> Plan:
     """Return what a scene needs; a pure function of it."""
     voltage = any(load.voltage for load in scene.loads())
-    friction, receptors = scene.friction > 0, scene.output.receptors
+    friction, receptors = scene.friction_law() is not None, scene.output.receptors
     omitted = []
     if not voltage:
         omitted.append(Omission("attraction and the air gaps of the ridges", "no load has a voltage"))

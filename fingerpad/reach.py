@@ -22,6 +22,7 @@ MARGIN = 2
 _HALF_ARC = 5e-3
 _FORCE, _WIDENS = 75.0, 0.27
 _FRICTION, _ROLLS = 0.25, 0.3
+_PRESSURE = 30e3  # Pa, mean contact pressure of ridges, at which a friction law that is not Coulomb's counts
 
 
 @dataclass(frozen=True)
@@ -72,8 +73,10 @@ def by_rule(scene: Scene) -> Scene:
     """
     if scene.mesh.touching_half_arc is not None:
         return scene
+    law = scene.friction_law()
+    mu_f = 0.0 if law is None else law.coefficient(_PRESSURE)
     force = max((load.f_ext for load in scene.loads() if load.f_ext), default=0.0) / _FORCE
-    wider = max(force, 1.0) ** _WIDENS * max(scene.friction / _FRICTION, 1.0) ** _ROLLS
+    wider = max(force, 1.0) ** _WIDENS * max(mu_f / _FRICTION, 1.0) ** _ROLLS
     return _with(scene, _HALF_ARC * wider)
 
 

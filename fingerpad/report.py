@@ -13,6 +13,7 @@ from mpi4py import MPI
 from fingerpad import states
 from fingerpad.console import Console
 from fingerpad.drawing import Drawing, End
+from fingerpad.laws import coefficient
 from fingerpad.place import Place
 from fingerpad.provenance import provenance
 from fingerpad.result import Cost, Result
@@ -248,7 +249,7 @@ class Report:
         if not self.states or self.comm.rank != 0:
             return None
         size = None if self.scene.accuracy is None else self._simulation.scene.mesh.contact
-        return Drawing(self.scene.friction, self.states, self._profiles, self._ends, self._finer, size)
+        return Drawing(coefficient(self.scene), self.states, self._profiles, self._ends, self._finer, size)
 
     def _loads(self) -> list[states.LoadResult]:
         found = []

@@ -3,11 +3,13 @@
 import json
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
+from fingerpad.laws import LAYERS, Laws
 from fingerpad.materials import Electric, Materials, Roughness
 from fingerpad.names import first_clash
 from fingerpad.parameters import Accuracy, Contact, Load, Numerics, Output, Voltage
@@ -18,6 +20,11 @@ from geometry import sizing
 from geometry.bounds import within
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
+from variational.friction import Friction, law_of
+from variational.roughness.closure import Closure
+
+if TYPE_CHECKING:
+    from variational.material import Material
 
 
 class Scene(Part):
@@ -125,6 +132,63 @@ class Scene(Part):
         """Effective insulator thickness (m)."""
         return self.electric.h_0(self.geometry.sc_thickness)
 
+    # -- laws ------------------------------------------------------------------------------------------
+    _laws: Laws = PrivateAttr(default_factory=Laws)  # no field: it is no key of a file
+
+    @property
+    def laws(self) -> Laws:
+        """Laws given from Python, in the place of those of the keys."""
+        return self._laws
+
+    def with_laws(
+        self,
+        closure: Closure | None = None,
+        materials: "Mapping[str, Material] | None" = None,
+        friction: Friction | float | None = None,
+        mesh: Path | str | None = None,
+    ) -> "Scene":
+        """Return the scene with laws of one's own; what is left out stays, and so do the materials of other layers.
+
+        Args:
+            closure: the microscale.
+            materials: solids by the layer's key.
+            friction: law of friction; a number is the friction coefficient of Coulomb's law.
+            mesh: file of a mesh.
+
+        Raises:
+            SceneError: what is no law; in one sentence.
+        """
+        given = {"closure": closure, "friction": friction, "mesh": mesh}
+        changes: dict[str, Any] = {name: law for name, law in given.items() if law is not None}
+        if materials is not None:
+            changes["materials"] = {**self.laws.materials, **Laws(materials=materials).materials}
+        found = self.model_copy()
+        found._laws = replace(self.laws, **changes)
+        return found
+
+    def closure(self) -> Closure:
+        """Return the microscale."""
+        return self.roughness.bearing_area(self.h_0) if self.laws.closure is None else self.laws.closure
+
+    def friction_law(self) -> Friction | None:
+        """Return the law of friction, None without friction."""
+        return law_of(self.friction if self.laws.friction is None else self.laws.friction)
+
+    def solids(self) -> "dict[int, Material]":
+        """Return the material of each layer's tag."""
+        from variational.ogden import Ogden  # UFL: not for those who only read scenes
+        from variational.saint_venant import SaintVenant
+
+        m = self.materials
+        skins = ("subcutis", "dermis", "viable_epidermis", "stratum_corneum")
+        found: dict[str, Material] = {}
+        for layer in skins:
+            skin = getattr(m, layer)
+            found[layer] = Ogden(skin.shear_modulus, skin.alpha, skin.poisson, m.exponent)
+        found |= {"nail": SaintVenant(m.nail.young, m.nail.poisson)}
+        found |= {"nail_bed": SaintVenant(m.nail_bed.young, m.nail_bed.poisson)}
+        return {LAYERS[layer]: self.laws.materials.get(layer, solid) for layer, solid in found.items()}
+
     def loads(self) -> tuple[Load, ...]:
         """Return the loads to reach one after the other."""
         if self.history is not None:
@@ -143,7 +207,8 @@ class Scene(Part):
             unused["output"] = True
         default = Numerics()  # likewise
         unused["numerics"] = {n for n in ("step_scale", "memory") if getattr(self.numerics, n) == getattr(default, n)}
-        return self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
+        found = self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
+        return found | ({"laws": self.laws.parameters()} if self.laws else {})
 
 
 _LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
@@ -178,6 +243,8 @@ def from_data(data: Mapping[str, Any]) -> Scene:
     data = plain(data)
     if not isinstance(data, dict):
         raise SceneError(f"a scene is {show(data)}; it must be a table of keys")
+    if "laws" in data:
+        raise SceneError("laws is given, which no file can hold; give laws from Python, by Scene.with_laws")
     try:
         # As JSON, because there a list is a tuple and a table is a model even under strict rules.
         return Scene.model_validate_json(json.dumps(_coarse_start(data)), strict=True)

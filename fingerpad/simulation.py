@@ -22,7 +22,7 @@ from variational.continuation import Attempt, StepFailed, Target
 from variational.electroadhesion import ELECTROSTATIC
 from variational.energy import EnergyBook
 from variational.failure import NotConverged
-from variational.problem import Interface, Ogden, SaintVenant
+from variational.problem import Interface
 from variational.quantities import RidgeLoads, SurfaceState
 from variational.squeeze import squeeze
 from variational.stability import StabilityCheck
@@ -69,11 +69,13 @@ class Simulation:
         build = partial(fingertip.build, scene.geometry, scene.mesh, needed.receptors, half)
         self.body = mesh.load(comm, build, tags.LAYERS.values())
         body, contact, numerics = self.body, scene.contact, scene.numerics
-        interface = Interface(contact.law(), scene.friction, scene.h_0, ELECTROSTATIC if self.plan.voltage else None)
-        self.closure = scene.roughness.bearing_area(scene.h_0) if self.plan.voltage else None
+        interface = Interface(
+            contact.law(), scene.friction_law(), scene.h_0, ELECTROSTATIC if self.plan.voltage else None
+        )
+        self.closure = scene.closure() if self.plan.voltage else None
         made = Body(
             body,
-            solids(scene),
+            scene.solids(),
             interface,
             self.closure,
             element=numerics.element,
@@ -362,19 +364,3 @@ class Simulation:
 
 def _target(load: Load) -> Target:
     return Target(load.name, load.f_ext, load.bone_height, load.voltage, load.bone_x, load.until_full_slip)
-
-
-def solids(scene: Scene) -> dict[int, Ogden | SaintVenant]:
-    """Return the material of each layer's tag."""
-    m = scene.materials
-    skins = {
-        tags.SUBCUTIS: m.subcutis,
-        tags.DERMIS: m.dermis,
-        tags.VIABLE_EPIDERMIS: m.viable_epidermis,
-        tags.STRATUM_CORNEUM: m.stratum_corneum,
-    }
-    stiff = {tags.NAIL: m.nail, tags.NAIL_BED: m.nail_bed}
-    found: dict[int, Ogden | SaintVenant] = {
-        tag: Ogden(s.shear_modulus, s.alpha, s.poisson, m.exponent) for tag, s in skins.items()
-    }
-    return found | {tag: SaintVenant(s.young, s.poisson) for tag, s in stiff.items()}

@@ -6,7 +6,6 @@ from mpi4py import MPI
 
 from fingerpad import ridge_cell
 from fingerpad.scene import from_data
-from fingerpad.simulation import solids
 from geometry import tags
 from geometry.bodies import block
 from geometry.mesh import load
@@ -49,7 +48,7 @@ def test_what_is_no_table_is_refused(change, sentence):
 @pytest.mark.parametrize(("exponent", "stretch"), [("printed", 0.60), ("abaqus", 0.70)])
 def test_confined_dermis(exponent, stretch):
     """Under 30 kPa it loses 40 % of its volume, 30 % with the other sign; half of the last digit."""
-    dermis = solids(from_data({"materials": {"exponent": exponent}}))[tags.DERMIS]
+    dermis = from_data({"materials": {"exponent": exponent}}).solids()[tags.DERMIS]
     assert ridge_cell.confined(dermis, 30e3) == pytest.approx(stretch, abs=0.005)
 
 

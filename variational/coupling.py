@@ -108,7 +108,8 @@ class Coupling:
             d_eq = air_gaps(self.closure, p_c)
         names = self.observer.surface.names
         if not np.isfinite(d_eq).all():
-            raise NotConverged(f"NOT_A_NUMBER in the air gap of ridge {names[int(np.argmin(np.isfinite(d_eq)))]}", False)
+            ridge = names[int(np.argmin(np.isfinite(d_eq)))]
+            raise NotConverged(f"NOT_A_NUMBER in the air gap of ridge {ridge}", False)
         if not (d_eq > 0).all():
             k = int(np.argmin(d_eq))
             raise ValueError(

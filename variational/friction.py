@@ -64,6 +64,10 @@ class Friction(Law, ABC):
         """Return the friction coefficient t_max / p_n at a contact pressure (Pa) above zero."""
         return float(self.limit(p) / p)
 
+    def resultant(self, force: float, length: float) -> float:
+        """Return the largest friction (N/m) of a contact force (N/m) spread evenly over a length (m)."""
+        return float(self.limit(force / length) * length) if length > 0 else 0.0
+
     def with_constants(self, constant: Callable[[float], Any]) -> Self:
         """Return the law with what ``constant`` makes of each of its numbers."""
         return self.with_values({name: constant(getattr(self, name)) for name in self.names()})
@@ -107,6 +111,14 @@ class Coulomb(Friction):
     def limit(self, p):
         """Return mu_f p (Pa)."""
         return self.mu_f * p
+
+    def coefficient(self, p: float) -> float:
+        """Return mu_f, whatever the pressure."""
+        return self.mu_f
+
+    def resultant(self, force: float, length: float) -> float:
+        """Return mu_f times the force (N/m), however it is spread."""
+        return self.mu_f * force
 
 
 @dataclass(frozen=True)
