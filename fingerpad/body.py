@@ -25,7 +25,6 @@ import fingerpad.started  # noqa: F401
 from fingerpad.entry import MPI
 from fingerpad.states import full_slip
 from fingerpad.steps import force_error
-from geometry import tags
 from geometry.mesh import TaggedMesh, load
 from geometry.meshfile import file
 from variational import body as setup
@@ -334,9 +333,7 @@ class _Points:
 
 def _solids(mesh: TaggedMesh, material: Material | Mapping[str, Material]) -> dict[int, Material]:
     """Return the material of each layer's tag."""
-    here = set(np.unique(mesh.cell_tags.values).tolist())
-    present = set().union(*mesh.mesh.comm.allgather(here))
-    layers = {name: tag for name, tag in tags.LAYERS.items() if tag in present}
+    layers = mesh.layers()
     if isinstance(material, Material):
         return dict.fromkeys(layers.values(), material)
     if not isinstance(material, Mapping):

@@ -281,7 +281,7 @@ class Report:
         seconds = {"setup": self._setup, **simulation.solver.timings.seconds, "output": self.seconds}
         return {
             "unknowns_path": simulation.unknowns,
-            "path_mesh": simulation.scene.mesh.model_dump(),
+            "path_mesh": None if self.scene.laws.mesh else simulation.scene.mesh.model_dump(),
             "steps": len(self.states),
             "jumps": len(jumps),
             "cutbacks": sum(r.cutbacks for r in records),

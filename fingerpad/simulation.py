@@ -15,7 +15,7 @@ from fingerpad.scene import Load, Scene
 from fingerpad.states import SLIDE_ON, full_slip
 from fingerpad.steps import Checked, Step, force_error
 from fingerpad.zone import Woken, Zone, ZoneExceeded
-from geometry import fingertip, mesh, tags
+from geometry import fingertip, mesh, meshfile, tags
 from geometry.profiles import Profiles
 from variational.body import Body
 from variational.continuation import Attempt, StepFailed, Target
@@ -66,8 +66,7 @@ class Simulation:
         self.profiles = Profiles(scene.geometry)
         self.plan = needed
         half = not needed.both_halves
-        build = partial(fingertip.build, scene.geometry, scene.mesh, needed.receptors, half)
-        self.body = mesh.load(comm, build, tags.LAYERS.values())
+        self.body = _meshed(scene, needed, comm)
         body, contact, numerics = self.body, scene.contact, scene.numerics
         interface = Interface(
             contact.law(), scene.friction_law(), scene.h_0, ELECTROSTATIC if self.plan.voltage else None
@@ -75,7 +74,7 @@ class Simulation:
         self.closure = scene.closure() if self.plan.voltage else None
         made = Body(
             body,
-            scene.solids(),
+            {tag: solid for tag, solid in scene.solids().items() if tag in body.layers().values()},
             interface,
             self.closure,
             element=numerics.element,
@@ -92,6 +91,8 @@ class Simulation:
         self.problem, self.solver, self.observer = made.problem, made.solver, made.observer
         self.coupling, self.continuation = made.coupling, made.continuation
         self.ridges = mirror.names(made.surface.names) if half else made.surface.names
+        shortest = float(np.min(comm.allgather(made.surface.length.min(initial=np.inf))))
+        self._contact_size = scene.mesh.contact if scene.laws.mesh is None else shortest
         self.energy = EnergyBook(self.problem, *self._state(), copies=self._copies)
         self.unknowns = self.solver.layout.global_size
         self.states: list[ContactState] = []
@@ -273,7 +274,7 @@ class Simulation:
             **self.resultants(loads),
             slipping=slipping,
             all_slip=full,
-            mesh_contact=self.scene.mesh.contact,
+            mesh_contact=self._contact_size,
             ridges=RidgeStates(
                 np.array(self.ridges),
                 loads.length,
@@ -360,6 +361,14 @@ class Simulation:
                 f"{screen[worst]:.9g} N/m; {remedy}"
             )
         return left
+
+
+def _meshed(scene: Scene, needed: Plan, comm: MPI.Comm) -> mesh.TaggedMesh:
+    """Return the mesh of a scene's finger."""
+    if scene.laws.mesh is not None:
+        return mesh.load(comm, meshfile.file(scene.laws.mesh))
+    build = partial(fingertip.build, scene.geometry, scene.mesh, needed.receptors, not needed.both_halves)
+    return mesh.load(comm, build, tags.LAYERS.values())
 
 
 def _target(load: Load) -> Target:
