@@ -29,7 +29,7 @@ def main(comm: MPI.Comm, argv: list[str] | None = None) -> int:
     start(petsc)
 
     # PETSc has its options from here on.
-    from fingerpad.run import exit_code, run
+    from fingerpad.full import exit_code, run
     from variational.friction import CONE_ROUNDOFF
 
     try:

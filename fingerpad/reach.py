@@ -30,7 +30,7 @@ class Decision:
     """What was decided of a scene's mesh, the same on every rank."""
 
     scene: Scene
-    """With a ``mesh.touching_half_arc``."""
+    """With a ``mesh.touching_half_arc``, unless its mesh is of a file."""
     reason: str
     """Why so many ridges; empty where the scene gave the number."""
     cost: dict[str, Any]
@@ -38,8 +38,10 @@ class Decision:
 
     def plan(self, needed: Plan, scene: Scene) -> Plan:
         """Return a plan that says which ridges are left out of the decision's scene, or of a wider one."""
+        if not self.reason:
+            return needed
         last = touching_ridges(scene.geometry, scene.mesh)[-1]
-        if not self.reason or last == (scene.geometry.ridge_count - 1) // 2:
+        if last == (scene.geometry.ridge_count - 1) // 2:
             return needed
         return needed.with_ridges(last, self.reason)
 
@@ -48,7 +50,7 @@ def decide(scene: Scene, comm: "MPI.Comm") -> Decision:
     """Decide how many ridges can touch; collective."""
     from fingerpad import coarse  # dolfinx: not for those who want the rule alone
 
-    if scene.mesh.touching_half_arc is not None:
+    if scene.mesh.touching_half_arc is not None or scene.laws.mesh is not None:  # a file says which ridges there are
         return Decision(scene, "", {})
     try:
         found = coarse.solve(scene, comm)

@@ -36,6 +36,12 @@ class TaggedMesh:
         """Return the facets of this rank with a tag."""
         return np.asarray(self.facet_tags.find(tag))
 
+    def layers(self) -> dict[str, int]:
+        """Return the tag of each layer that has a cell, by its name, the same on every rank."""
+        here = set(np.unique(self.cell_tags.values).tolist())
+        present = set().union(*self.mesh.comm.allgather(here))
+        return {name: tag for name, tag in tags.LAYERS.items() if tag in present}
+
     def ridge_tags(self) -> dict[int, int]:
         """Return the facet tag of each ridge's number, in order, the same on every rank."""
         return {j: tags.ridge(j) for j in self.ridges()}
