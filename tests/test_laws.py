@@ -89,6 +89,15 @@ def test_laws_are_kept_by_copies():
     assert pickle.loads(pickle.dumps(scene)) == scene != Scene()
 
 
+def test_laws_are_kept_by_changes():
+    """But for friction, whose number takes the place of a law: a series of runs over it is one over it."""
+    scene = Scene().with_laws(**OWN)
+    assert scene.replace(f_ext=10.0).laws == scene.laws
+    changed = scene.replace(friction=0.1)
+    assert changed.friction_law() == Coulomb(0.1)
+    assert changed.closure() == Held()
+
+
 def test_laws_are_added_to_those_there_are():
     scene = Scene().with_laws(materials={"dermis": NeoHooke(2e3)}).with_laws(materials={"nail": NeoHooke(1e7)})
     assert set(scene.with_laws(friction=0.1).laws.materials) == {"dermis", "nail"}
@@ -131,8 +140,9 @@ def test_what_is_no_law_is_refused(given, sentence):
 
 
 def test_files_hold_no_laws():
-    with pytest.raises(SceneError, match="laws is given, which no file can hold"):
-        from_data({"laws": {"friction": {"mu_f": 0.3}}})
+    for make in (from_data, lambda data: Scene(**data)):
+        with pytest.raises(SceneError, match="laws is no key, since no file can hold one; give laws from Python"):
+            make({"laws": {"friction": {"mu_f": 0.3}}})
 
 
 # -- scenes apart ----------------------------------------------------------------------------------------------
