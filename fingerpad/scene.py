@@ -153,9 +153,9 @@ class Scene(Part):
     def replace(self, **changes: Any) -> "Scene":
         """Return a checked copy with some values changed.
 
-        Laws given from Python stay, but for a law of friction where ``friction`` changes. What the changes make meaningless goes: the sizes of a coarse start with another
-        ``accuracy``, the values of the default loads with a ``history``, and the values of one
-        ``contact.formulation`` with another.
+        Laws given from Python stay, but for a law of friction where ``friction`` changes. What the changes make
+        meaningless goes: the sizes of a coarse start with another ``accuracy``, the values of the default loads with a
+        ``history``, and the values of one ``contact.formulation`` with another.
 
         Args:
             changes: values by key. A table given as a mapping keeps the keys that are not in it; any other value, also
