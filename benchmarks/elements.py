@@ -21,17 +21,14 @@ import numpy as np
 from mpi4py import MPI
 
 from geometry import tags
-from geometry.benchmarks import ridge
+from geometry.bodies import ridge
 from geometry.mesh import load
-from variational.continuation import Continuation, StepFailed, Target
-from variational.coupling import Coupling
+from variational.body import Body
+from variational.continuation import StepFailed, Target
 from variational.element import ELEMENTS
 from variational.penalty import Penalty
-from variational.problem import Interface, Ogden, Problem
-from variational.quantities import Observer
+from variational.problem import Interface, Ogden
 from variational.roughness.bam import BearingArea
-from variational.solver import Solver
-from variational.surface import Surface
 
 matplotlib.use("Agg")
 
@@ -73,7 +70,7 @@ class Run:
 
 def refined(times: int) -> float:
     """Mesh the ridge and cut every triangle in four, ``times`` times."""
-    unit = ridge(COARSEST)
+    unit = ridge(COARSEST)()
     for _ in range(times):
         gmsh.model.mesh.refine()
     return unit
@@ -82,13 +79,10 @@ def refined(times: int) -> float:
 def run(element: str, poisson: float, times: int) -> Run:
     """Press and slide."""
     body = load(MPI.COMM_WORLD, partial(refined, times))
-    surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
     skin = {tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53, poisson)}
-    interface = Interface(Penalty(1.5e12, 5e10), mu_f=0.25, h_0=H_0)
-    problem = Problem(body.mesh, body.cell_tags, surface, skin, interface, element)
-    solver = Solver(problem, body.facet_tags.find(tags.BONE_RIM), 1.0, 1e-8)
-    observer = Observer(problem)
-    continuation = Continuation(Coupling(solver, observer, BearingArea(H_0)))
+    interface = Interface(Penalty(1.5e12, 5e10), friction=0.25, h_0=H_0)
+    made = Body(body, skin, interface, BearingArea(H_0), element=element, tolerance=1e-8)
+    solver, observer, continuation = made.solver, made.observer, made.continuation
     failure, start = "", time.process_time()
     try:
         continuation.run(Target("press", bone_height=-PRESS))

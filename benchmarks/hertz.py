@@ -6,14 +6,12 @@ depends on where in a facet it should be: near an edge the pressure falls with t
 length of its own, so that the facets' is the only one (the penalty's falls with it).
 """
 
-from functools import partial
-
 import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, NU, RADIUS, SPAN, YOUNG
 from benchmarks.verification.over_screen import formulations, over_screen
-from geometry.benchmarks import pad
+from geometry.bodies import pad
 from variational.continuation import Target
 from variational.problem import Interface, SaintVenant
 
@@ -29,7 +27,7 @@ def contact_length(a: float, facets: int) -> float:
     """Return the length in contact (m), 2a by Hertz, with ``facets`` facets to :data:`HALF_WIDTH`."""
     size, force = HALF_WIDTH / facets, np.pi * E_STAR * a**2 / (4 * RADIUS)
     interface = Interface(formulations(YOUNG / size, 1e-11)["penalty"], 0.0, 1e-6)
-    build = partial(pad, size, int(np.ceil(_REACH * facets)), RADIUS, SPAN)
+    build = pad(size, int(np.ceil(_REACH * facets)), RADIUS, SPAN)
     run = over_screen(build, SaintVenant(YOUNG, NU), interface, force, touch_depth=0.5e-6, step_scale=15.0)
     run.run(Target("press", f_ext=force))
     return float(run.observer.ridge_loads(run.surface_state).length[0])

@@ -46,7 +46,8 @@ def main(comm: MPI.Comm, argv: list[str] | None = None) -> int:
     if result["full_slip"]:
         balance = result["slip_f_contact"] - result["slip_f_electrostatic"] - result["slip_f_ext"]
         assert abs(balance) <= result["force_error"], balance
-        cone = scene.friction * result["slip_f_contact"]
+        law = scene.friction_law()
+        cone = 0.0 if law is None else law.resultant(result["slip_f_contact"], result["slip_contact_length"])
         assert abs(abs(result["slip_f_t"]) - cone) <= result["force_error"] + CONE_ROUNDOFF * cone, result["slip_f_t"]
     return exit_code(answer)
 

@@ -103,7 +103,8 @@ class Search:
         if self.asked and not path.states:
             raise StepFailed("accuracy is given and the history has neither normal contact nor full slip")
         self.knobs = {key: Knob() for key in _SIZES if key != "receptor" or "sed" in self.asked or self._looks()}
-        if scene.friction > 0 and "charged" in path.states and {"contact_length", "sed"} & set(self.asked):
+        contact = {"contact_length", "sed"} & set(self.asked)
+        if scene.friction_law() is not None and "charged" in path.states and contact:
             self.knobs["steps"] = Knob()
         self.halved = dict.fromkeys(self.knobs, 0)
 

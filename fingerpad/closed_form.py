@@ -1,9 +1,10 @@
 r"""The model "cylinders": every ridge in contact the same charged cylinder, an answer in a fraction of a second.
 
 n ridges bear :math:`f = f_{ext} / n` each; :mod:`variational.cylinder` says what contact force, attraction and air gap
-that makes, and friction at full slip is :math:`f_T = \mu_0 (f_{ext} + f_{el})`. What it cannot say by itself is how
-many ridges there are and how long their contact is, for that is the finger's doing. A :class:`Footprint` says so, of
-normal contact and full slip:
+that makes. Friction at full slip is the limit of the friction law at the mean pressure, over the length in contact;
+Coulomb's is :math:`f_T = \mu_0 (f_{ext} + f_{el})`. What the cylinders cannot say by themselves is how many ridges
+there are and how long their contact is, for that is the finger's doing. A :class:`Footprint` says so, of normal contact
+and full slip:
 
 - :func:`fitted`: of the default finger *without* voltage, interpolated between full runs. The modulus E* of the
   cylinders is then the one with which Hertz's law gives that length, by which it knows of finite strain, layers and
@@ -18,11 +19,13 @@ voltage; how much that is: ``docs/ladder.md``.
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from fingerpad.laws import skin_modulus, used
 from fingerpad.result import Cost, Result
-from fingerpad.rungs import STATES, Stopwatch, at_rest, at_slip, refuse_history
+from fingerpad.rungs import STATES, Stopwatch, at_rest, at_slip, refuse_others
 from fingerpad.scene import Scene, SceneError
 from fingerpad.sentences import show
 from fingerpad.states import PREFIXES, WORDS
@@ -62,6 +65,11 @@ def fitted(scene: Scene) -> Footprint:
         SceneError: the scene's finger is another one.
     """
     default = Scene()
+    if scene.laws.materials:
+        raise SceneError(
+            f"materials are given for {', '.join(scene.laws.materials)}, and a contact length is known of the default "
+            "finger alone; give a contact length and a number of ridges, a folder of a run, or use rung 2"
+        )
     for name in _SHAPING:
         if getattr(scene, name) != getattr(default, name):
             raise SceneError(
@@ -71,7 +79,7 @@ def fitted(scene: Scene) -> Footprint:
     source = "uncharged contact length interpolated between full runs of the default finger"
     if not _FORCES[0] <= scene.f_ext <= _FORCES[-1]:
         source = f"uncharged contact length extrapolated from full runs at {_FORCES[0]:g} to {_FORCES[-1]:g} N/m"
-    if scene.friction != default.friction:
+    if scene.friction_law() != default.friction_law():
         source += f"; that of full slip with a friction coefficient of {default.friction:g}"
     length = {state: _interpolate(scene.f_ext, _LENGTHS[state]) for state in STATES}
     ridges = {state: max(1, round(_interpolate(scene.f_ext, _RIDGES[state]))) for state in STATES}
@@ -128,7 +136,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         SceneError: a scene with a history, another finger than the footprint's, or ridges that do not stay.
     """
     clock = Stopwatch()
-    refuse_history(scene, "cylinders")
+    refuse_others(scene, "cylinders")
     footprint = footprint or fitted(scene)
     found: dict[str, ContactState] = {}
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
@@ -148,9 +156,10 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         found[state] = at_rest(scene, contact) if state == "charged" else at_slip(scene, contact)
         states[state] = ridge
         notes += _remarks(scene, state, ridge)
-    more = {
+    more: dict[str, Any] = {
         f"{PREFIXES[state]}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
     }
+    more["laws"] = used(scene)
     cost = Cost(processor_seconds=clock.seconds())
     return Result(
         scene, "cylinders", None, found["charged"], found["full_slip"], cost=cost, notes=tuple(notes), record=more
@@ -159,11 +168,9 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
 
 def _ridge(scene: Scene, footprint: Footprint, state: str) -> RidgeState:
     n, length = footprint.ridges[state], footprint.length[state]
-    f, radius, closure = scene.f_ext / n, tip_radius(scene.geometry), scene.roughness.bearing_area(scene.h_0)
+    f, radius, closure = scene.f_ext / n, tip_radius(scene.geometry), scene.closure()
     if footprint.charged:
-        horny = scene.materials.stratum_corneum
-        modulus = 2 * horny.shear_modulus / (1 - horny.poisson)
-        return Cylinder(radius, modulus, scene.h_0, closure).over_length(length / n, f, scene.voltage)
+        return Cylinder(radius, skin_modulus(scene), scene.h_0, closure).over_length(length / n, f, scene.voltage)
     modulus = hertz_modulus(radius, f, length / n)
     return Cylinder(radius, modulus, scene.h_0, closure).under_load(f, scene.voltage)
 
@@ -171,7 +178,7 @@ def _ridge(scene: Scene, footprint: Footprint, state: str) -> RidgeState:
 def _remarks(scene: Scene, state: str, ridge: RidgeState) -> list[str]:
     """Say where on the closure the ridges are, and whether there are other equilibria."""
     said = []
-    place = scene.roughness.bearing_area(scene.h_0).state(ridge.p_c, scene.voltage)
+    place = scene.closure().state(ridge.p_c, scene.voltage)
     if place:
         said.append(f"{WORDS[state]}: a mean pressure of {ridge.p_c:.4g} Pa is {place}")
     if ridge.others:

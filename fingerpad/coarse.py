@@ -6,14 +6,14 @@ over its amplitude (Westergaard 1939, doi 10.1115/1.4008919; :math:`E^* = 2 G_0 
 
 .. math:: p_n = \frac{\pi E^*}{\lambda} \langle -y \rangle_+ .
 
-Friction rolls the finger onto its leading side. At full slip the traction is :math:`-\mu p_n` whatever the way
+Friction rolls the finger onto its leading side. At full slip the traction is the limit of friction whatever the way
 there, so that one more solve has it, with all anchors far behind. A voltage draws ridges to the screen, which bears
 both what presses and what attracts: the bone feels it as friction alone,
 
-.. math:: \mu = \mu_0 (1 + f_{el} / f_{ext}),
+.. math:: \mu = \frac{t_{max}(p_c)}{p_c} (1 + f_{el} / f_{ext}),
 
-with the attraction :math:`f_{el}` of as many equal charged cylinders (:mod:`variational.cylinder`) as ridges touch.
-The ridge law's tables would take ten times as long as all of this.
+with the mean pressure :math:`p_c` and the attraction :math:`f_{el}` of as many equal charged cylinders
+(:mod:`variational.cylinder`) as ridges touch. The ridge law's tables would take ten times as long as all of this.
 
 A ridge counts where the smooth skin is in contact over more than half of its period. Ridges that barely touch are
 missed, which the margin of :mod:`fingerpad.reach` is for.
@@ -26,23 +26,21 @@ import numpy as np
 from mpi4py import MPI
 
 from fingerpad.closed_form import tip_radius
+from fingerpad.laws import skin_modulus
 from fingerpad.ridge_cell import flat_junction
 from fingerpad.rungs import Stopwatch
 from fingerpad.scene import Scene
-from fingerpad.simulation import solids
 from fingerpad.smooth import smoothed
 from geometry import fingertip, tags
 from geometry.mesh import TaggedMesh, load
 from geometry.parameters import MeshSize
+from variational.body import Body
 from variational.contact import History
-from variational.continuation import Continuation, StepFailed, Target
-from variational.coupling import Coupling
+from variational.continuation import StepFailed, Target
 from variational.cylinder import Cylinder
+from variational.friction import Coulomb, Friction
 from variational.penalty import Penalty
-from variational.problem import Interface, Problem
-from variational.quantities import Observer
-from variational.solver import Solver
-from variational.surface import Surface
+from variational.problem import Interface
 
 _GROWTH, _COARSEST = 0.5, 1e-3  # m
 _TOLERANCE = 1e-6
@@ -81,11 +79,12 @@ def solve(scene: Scene, comm: MPI.Comm) -> Reach:
             touching_half_arc=skin.ridge_count * half, touching_fraction=1.0,
         )  # fmt: skip
         body = load(comm, partial(fingertip.build, skin, size, False), tags.LAYERS.values())
-        pressed = _Finger(scene, body, scene.friction)
+        friction = scene.friction_law()
+        pressed = _Finger(scene, body, friction)
         pressed.press()
         fingers, touched = [pressed], pressed.touched()
-        if scene.friction > 0 and any(load.bone_x for load in scene.loads()):
-            dragged = _Finger(scene, body, scene.friction * pressed.weight(len(touched)))
+        if friction is not None and any(load.bone_x for load in scene.loads()):
+            dragged = _Finger(scene, body, pressed.friction(friction, len(touched)))
             dragged.drag(pressed)
             fingers.append(dragged)
             touched |= dragged.touched()
@@ -99,20 +98,19 @@ def solve(scene: Scene, comm: MPI.Comm) -> Reach:
 
 
 class _Finger:
-    """The coarse finger under a friction coefficient."""
+    """The coarse finger under a law of friction, or a friction coefficient."""
 
-    def __init__(self, scene: Scene, body: TaggedMesh, mu_f: float) -> None:
+    def __init__(self, scene: Scene, body: TaggedMesh, friction: Friction | float | None) -> None:
         self.scene, self.loads = scene, scene.loads()
         self.force = max((load.f_ext for load in self.loads if load.f_ext), default=0.0)
-        period, horny = scene.geometry.ridge_wavelength, scene.materials.stratum_corneum
-        self.modulus = 2 * horny.shear_modulus / (1 - horny.poisson)
-        stiffness = np.pi * self.modulus / period
-        self.surface = Surface(body.mesh, body.facet_tags, {j: tags.ridge(j) for j in body.ridges()})
-        interface = Interface(Penalty(stiffness, stiffness), mu_f, scene.h_0, attraction=None)
-        self.problem = Problem(body.mesh, body.cell_tags, self.surface, solids(scene), interface, "P1")
-        rim = body.facet_tags.find(tags.BONE_RIM)
-        self.solver = Solver(self.problem, rim, self.force or 1.0, _TOLERANCE)
-        self.walk = Continuation(Coupling(self.solver, Observer(self.problem), None), step_scale=_STEPS)
+        self.modulus = skin_modulus(scene)
+        stiffness = np.pi * self.modulus / scene.geometry.ridge_wavelength
+        interface = Interface(Penalty(stiffness, stiffness), friction, scene.h_0, attraction=None)
+        made = Body(
+            body, scene.solids(), interface, element="P1", force_scale=self.force or 1.0, tolerance=_TOLERANCE,
+            step_scale=_STEPS,
+        )  # fmt: skip
+        self.surface, self.problem, self.solver, self.walk = made.surface, made.problem, made.solver, made.continuation
 
     def press(self) -> None:
         """Press with the largest force, and on to the lowest height of the bone."""
@@ -138,13 +136,13 @@ class _Finger:
         half = self.scene.geometry.ridge_wavelength / 2
         return {0} | {j for j, length in zip(self.surface.names, lengths, strict=True) if length > half}
 
-    def weight(self, ridges: int) -> float:
-        """Return what the screen bears at the largest voltage over what presses."""
+    def friction(self, law: Friction, ridges: int) -> float:
+        """Return the friction at full slip over what presses, at the largest voltage and the ridges' mean pressure."""
         voltage = max((load.voltage for load in self.loads if load.voltage), default=0.0)
         f_ext = float(self.solver.reaction[1])
-        if not (voltage and f_ext > 0):
-            return 1.0
+        if isinstance(law, Coulomb) and not (voltage and f_ext > 0):
+            return law.mu_f
         scene = self.scene
-        closure = scene.roughness.bearing_area(scene.h_0)
-        ridge = Cylinder(tip_radius(scene.geometry), self.modulus, scene.h_0, closure)
-        return ridge.under_load(f_ext / ridges, voltage).f_contact * ridges / f_ext
+        ridge = Cylinder(tip_radius(scene.geometry), self.modulus, scene.h_0, scene.closure())
+        found = ridge.under_load(f_ext / ridges, voltage)
+        return law.coefficient(found.p_c) * (found.f_contact * ridges / f_ext)

@@ -35,7 +35,8 @@ class End(NamedTuple):
 class Drawing:
     """What a run's pictures are drawn from."""
 
-    mu_0: float
+    mu_0: float | None
+    """Friction coefficient; None where the law of friction is not Coulomb's."""
     states: Sequence[ContactState]
     profiles: "Mapping[int, Profile]"
     """The skin by step."""

@@ -66,7 +66,8 @@ def run(scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True) -
         with Place(folder, scene, comm) as place:
             return _refine_start(scene, place, comm, lines)
     except GeometryError as error:
-        raise SceneError(f"the finger cannot be meshed: {error}") from error
+        what = "the finger cannot be meshed" if scene.laws.mesh is None else "mesh"
+        raise SceneError(f"{what}: {error}") from error
 
 
 def exit_code(result: Result) -> int:
@@ -142,10 +143,12 @@ def _run(
                     present, needed, waking = wake.scene, wake.needed, True
                     report.restart(wake)
                 except StepFailed as error:
-                    ended = {"failure": "; ".join(filter(None, (str(error), advice(error))))}
+                    remedy = advice(error) if scene.laws.mesh is None else ""
+                    ended = {"failure": "; ".join(filter(None, (str(error), remedy)))}
                     if isinstance(error, Interrupted):
                         ended["interrupted"] = error.signal.name
-                    again = search is None and finer_mesh_may_help(error, scene.accuracy is not None)
+                    own = scene.laws.mesh is None and search is None
+                    again = own and finer_mesh_may_help(error, scene.accuracy is not None)
             named = report.named()
             if search is not None:
                 notes, found = _found(search)

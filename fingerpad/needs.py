@@ -52,6 +52,7 @@ class Plan:
         return replace(self, omitted=(*others, Omission(f"{_RIDGES} ±{last}", reason)))
 
 
+_FILE = "the mesh is of a file"
 _RIDGES = "contact of the ridges beyond"
 _HALF = Omission(
     "the half at x < 0, but in tables and pictures (displacement.bp, stress.bp and sed.bp hold the other)",
@@ -62,7 +63,7 @@ _HALF = Omission(
 def plan(scene: Scene) -> Plan:
     """Return what a scene needs; a pure function of it."""
     voltage = any(load.voltage for load in scene.loads())
-    friction, receptors = scene.friction > 0, scene.output.receptors
+    friction, receptors = scene.friction_law() is not None, scene.output.receptors
     omitted = []
     if not voltage:
         omitted.append(Omission("attraction and the air gaps of the ridges", "no load has a voltage"))
@@ -76,6 +77,12 @@ def plan(scene: Scene) -> Plan:
     elif not errors:
         omitted.append(Omission("discretisation errors", "output.errors is false"))
     both_halves = any(load.bone_x for load in scene.loads())
+    if scene.laws.mesh is not None:  # the whole of it, and no other mesh of the same finger
+        if receptors:
+            omitted.append(Omission("receptor sites", _FILE))
+        if carried and errors:
+            omitted.append(Omission("discretisation errors", f"{_FILE} and cannot be refined"))
+        return Plan(voltage, friction, False, True, False, tuple(omitted))
     if not both_halves:
         omitted.append(_HALF)
     return Plan(voltage, friction, receptors, both_halves, carried and errors, tuple(omitted))

@@ -22,6 +22,7 @@ MARGIN = 2
 _HALF_ARC = 5e-3
 _FORCE, _WIDENS = 75.0, 0.27
 _FRICTION, _ROLLS = 0.25, 0.3
+_PRESSURE = 30e3  # Pa, mean contact pressure of ridges, at which a friction law that is not Coulomb's counts
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ class Decision:
     """What was decided of a scene's mesh, the same on every rank."""
 
     scene: Scene
-    """With a ``mesh.touching_half_arc``."""
+    """With a ``mesh.touching_half_arc``, unless its mesh is of a file."""
     reason: str
     """Why so many ridges; empty where the scene gave the number."""
     cost: dict[str, Any]
@@ -37,8 +38,10 @@ class Decision:
 
     def plan(self, needed: Plan, scene: Scene) -> Plan:
         """Return a plan that says which ridges are left out of the decision's scene, or of a wider one."""
+        if not self.reason:
+            return needed
         last = touching_ridges(scene.geometry, scene.mesh)[-1]
-        if not self.reason or last == (scene.geometry.ridge_count - 1) // 2:
+        if last == (scene.geometry.ridge_count - 1) // 2:
             return needed
         return needed.with_ridges(last, self.reason)
 
@@ -47,7 +50,7 @@ def decide(scene: Scene, comm: "MPI.Comm") -> Decision:
     """Decide how many ridges can touch; collective."""
     from fingerpad import coarse  # dolfinx: not for those who want the rule alone
 
-    if scene.mesh.touching_half_arc is not None:
+    if scene.mesh.touching_half_arc is not None or scene.laws.mesh is not None:  # a file says which ridges there are
         return Decision(scene, "", {})
     try:
         found = coarse.solve(scene, comm)
@@ -72,8 +75,10 @@ def by_rule(scene: Scene) -> Scene:
     """
     if scene.mesh.touching_half_arc is not None:
         return scene
+    law = scene.friction_law()
+    mu_f = 0.0 if law is None else law.coefficient(_PRESSURE)
     force = max((load.f_ext for load in scene.loads() if load.f_ext), default=0.0) / _FORCE
-    wider = max(force, 1.0) ** _WIDENS * max(scene.friction / _FRICTION, 1.0) ** _ROLLS
+    wider = max(force, 1.0) ** _WIDENS * max(mu_f / _FRICTION, 1.0) ** _ROLLS
     return _with(scene, _HALF_ARC * wider)
 
 

@@ -13,6 +13,7 @@ from mpi4py import MPI
 from fingerpad import states
 from fingerpad.console import Console
 from fingerpad.drawing import Drawing, End
+from fingerpad.laws import coefficient, used
 from fingerpad.place import Place
 from fingerpad.provenance import provenance
 from fingerpad.result import Cost, Result
@@ -235,7 +236,7 @@ class Report:
             cost=self._cost(unknowns),
             **words,
             notes=notes,
-            record=self._record(unknowns) | more | {"provenance": provenance()},
+            record=self._record(unknowns) | more | {"laws": used(self.scene), "provenance": provenance()},
             folder=self._folder,
             drawing=drawing,
         )
@@ -248,7 +249,7 @@ class Report:
         if not self.states or self.comm.rank != 0:
             return None
         size = None if self.scene.accuracy is None else self._simulation.scene.mesh.contact
-        return Drawing(self.scene.friction, self.states, self._profiles, self._ends, self._finer, size)
+        return Drawing(coefficient(self.scene), self.states, self._profiles, self._ends, self._finer, size)
 
     def _loads(self) -> list[states.LoadResult]:
         found = []
@@ -280,7 +281,7 @@ class Report:
         seconds = {"setup": self._setup, **simulation.solver.timings.seconds, "output": self.seconds}
         return {
             "unknowns_path": simulation.unknowns,
-            "path_mesh": simulation.scene.mesh.model_dump(),
+            "path_mesh": None if self.scene.laws.mesh else simulation.scene.mesh.model_dump(),
             "steps": len(self.states),
             "jumps": len(jumps),
             "cutbacks": sum(r.cutbacks for r in records),

@@ -12,33 +12,35 @@ model that uses the law has it.
 
 import hashlib
 import json
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import ufl
+from basix.ufl import element
 from mpi4py import MPI
 from numpy.typing import NDArray
 from scipy.optimize import brentq
+from ufl.algorithms.apply_algebra_lowering import apply_algebra_lowering
+from ufl.algorithms.apply_derivatives import apply_derivatives
 
 from fingerpad.files import replace_json
+from fingerpad.laws import coefficient
 from fingerpad.rungs import Stopwatch
 from fingerpad.scene import Scene
-from fingerpad.simulation import solids
 from geometry import strip, tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
-from variational import ogden
-from variational.carried import carried
-from variational.continuation import Attempt, Continuation, StepFailed, Target
-from variational.coupling import Coupling
+from variational.body import Body
+from variational.continuation import Attempt, StepFailed, Target
 from variational.insulator import VACUUM_PERMITTIVITY
-from variational.problem import Interface, Ogden, Problem
-from variational.quantities import Observer
+from variational.material import Material
+from variational.problem import Interface, Ogden
 from variational.ridge_law import RidgeTable
-from variational.surface import Surface
 
 Array = NDArray[np.float64]
 VERSION = 2  # of the tables; another one makes the old ones forgotten
@@ -100,15 +102,20 @@ def _made_of(scene: Scene) -> dict[str, Any]:
     parameters = scene.parameters()
     skin = ("sc_thickness", "ve_thickness", "ridge_wavelength", "ridge_amplitude", "ridge_profile")
     layers = ("stratum_corneum", "viable_epidermis", "dermis", "exponent")
+    given = scene.laws.parameters()
+    own = {layer: solid for layer, solid in given.get("materials", {}).items() if layer in layers}
+    laws = ({"materials": own} if own else {}) | ({"closure": given["closure"]} if "closure" in given else {})
     return {
         "version": VERSION,
         "voltage": scene.voltage,
-        "friction": scene.friction,
+        "friction": coefficient(scene),
         "f_max": _largest(scene.f_ext),
         "geometry": {name: parameters["geometry"][name] for name in skin},
         "materials": {name: parameters["materials"][name] for name in layers},
         "contact_size": scene.mesh.contact,
-    } | {name: parameters[name] for name in ("electric", "roughness", "contact", "numerics")}
+        **{name: parameters[name] for name in ("electric", "roughness", "contact", "numerics")},
+        **({"laws": laws} if laws else {}),
+    }
 
 
 def _largest(f_ext: float) -> float:
@@ -130,20 +137,17 @@ class _Cell:
         size = MeshSize(contact=scene.mesh.contact, interface=max(60e-6, scene.mesh.contact), growth=0.4)
         # A rank by itself makes the whole of it: it is small.
         body = load(MPI.COMM_SELF, partial(strip.build, finger, size, 1, top), strip.LAYERS)
-        surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)}, scene.numerics.quadrature_points)
-        skins = {tag: s for tag, s in solids(scene).items() if tag in strip.LAYERS and isinstance(s, Ogden)}
-        interface = Interface(scene.contact.law(), scene.friction, scene.h_0)
-        problem = Problem(body.mesh, body.cell_tags, surface, skins, interface, scene.numerics.element)
-        rim, sides = (body.facet_tags.find(tag) for tag in (tags.BONE_RIM, tags.SIDES))
-        self.solver = carried(problem, rim, sides, 1.0)
-        self.observer = Observer(problem)
+        skins = {tag: s for tag, s in scene.solids().items() if tag in strip.LAYERS}
+        interface = Interface(scene.contact.law(), scene.friction_law(), scene.h_0)
         numerics = scene.numerics
-        self.closure = scene.roughness.bearing_area(scene.h_0)
-        self.coupling = Coupling(
-            self.solver, self.observer, self.closure, numerics.coupling_tolerance, numerics.coupling_cap,
-            by_gap=scene.contact.length == "gap",
+        self.closure = scene.closure()
+        made = Body(
+            body, skins, interface, self.closure, element=numerics.element, points=numerics.quadrature_points,
+            carried_sides=body.facets(tags.SIDES), coupling_tolerance=numerics.coupling_tolerance,
+            coupling_cap=numerics.coupling_cap, by_gap=scene.contact.length == "gap", on_accept=self._accepted,
+            touch_depth=2e-6,
         )  # fmt: skip
-        self.walk = Continuation(self.coupling, self._accepted, touch_depth=2e-6)
+        self.solver, self.observer, self.walk = made.solver, made.observer, made.continuation
         self.finger, self.period = finger, finger.ridge_wavelength
         thicknesses = finger.sc_thickness, finger.ve_thickness, _DERMIS
         self.layers = [(skins[tag], t) for tag, t in zip(strip.LAYERS, thicknesses, strict=True)]
@@ -229,17 +233,28 @@ def _unpressed(finger: Fingertip, d_eq: float | Array, scene: Scene, height: flo
     return float(pressure.mean() * finger.ridge_wavelength)
 
 
-def confined(solid: Ogden, pressure: float) -> float:
+def confined(solid: Material, pressure: float) -> float:
     r"""Return the stretch J of a layer between rigid walls under a pressure (Pa).
 
-    With one stretch J and none sideways :math:`W(J) = 2 G_0 / \alpha^2 (2 J^{-a/3} + J^{2a/3} - 3) + K (J-1)^2 / 2`,
-    and -p is its derivative.
+    With one stretch J and none sideways -p is dW/dJ. Of Ogden's solid
+    :math:`W(J) = 2 G_0 / \alpha^2 (2 J^{-a/3} + J^{2a/3} - 3) + K (J-1)^2 / 2`; another's density is differentiated.
     """
-    a, shear = ogden.exponent(solid.alpha, solid.convention), solid.shear_modulus
-    bulk = ogden.bulk_modulus(shear, solid.poisson)
+    if not isinstance(solid, Ogden):
+        stress = _confined_stress(solid)
+        return float(brentq(lambda J: stress(J) + pressure, 0.05, 5.0, xtol=1e-14))
+    a, shear, bulk = solid.a, solid.shear_modulus, solid.bulk
 
     def excess(J: float) -> float:
         shape = 4 * shear / (3 * a) * (J ** (2 * a / 3 - 1) - J ** (-a / 3 - 1))
         return float(shape + bulk * (J - 1) + pressure)
 
     return float(brentq(excess, 0.05, 5.0, xtol=1e-14))
+
+
+def _confined_stress(solid: Material) -> Callable[[float], float]:
+    """Return dW/dJ (Pa) of a solid with one stretch J and none sideways, as a function of J."""
+    given = ufl.Constant(ufl.Mesh(element("Lagrange", "triangle", 1, shape=(2,))))
+    J = ufl.variable(given)
+    slope = ufl.diff(solid.density(ufl.as_matrix([[1, 0], [0, J]])), J)
+    compiled = apply_derivatives(apply_algebra_lowering(slope))
+    return lambda value: float(compiled((0.0, 0.0), {given: value}))

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from fingerpad.scene import Scene, SceneError
+from fingerpad.sentences import show
 from variational.state import ContactState, Errors
 
 STATES = ("charged", "full_slip")
@@ -26,8 +27,13 @@ def at_rest(scene: Scene, contact: Mapping[str, float], error: Errors | None = N
 
 
 def at_slip(scene: Scene, contact: Mapping[str, float], error: Errors | None = None) -> ContactState:
-    """Return full slip: f_T is mu_0 times the contact force, exactly; arguments as of :func:`at_rest`."""
-    return _state(scene, contact, scene.friction * contact["f_contact"], error)
+    """Return full slip: f_T is the limit of friction, of the mean pressure over the contact length.
+
+    Coulomb's is mu_0 times the contact force, however that is spread. Arguments as of :func:`at_rest`.
+    """
+    law = scene.friction_law()
+    f_t = 0.0 if law is None else law.resultant(contact["f_contact"], contact["contact_length"])
+    return _state(scene, contact, f_t, error)
 
 
 def _state(scene: Scene, contact: Mapping[str, float], f_t: float, error: Errors | None) -> ContactState:
@@ -43,12 +49,17 @@ def _state(scene: Scene, contact: Mapping[str, float], f_t: float, error: Errors
     )
 
 
-def refuse_history(scene: Scene, model: str) -> None:
-    """Refuse a scene whose loads are not press, charge and slide.
+def refuse_others(scene: Scene, model: str) -> None:
+    """Refuse a scene whose loads are not press, charge and slide, or whose finger has a mesh of its own.
 
     Raises:
-        SceneError: it has a history of its own.
+        SceneError: it has a history, or a mesh.
     """
+    if scene.laws.mesh is not None:
+        raise SceneError(
+            f"mesh is {show(str(scene.laws.mesh))}; the model '{model}' answers for fingers of the scene's own "
+            "geometry, so use the model 'full'"
+        )
     if scene.history is not None:
         raise SceneError(
             f"history is given; the model '{model}' answers for press, charge and slide alone, so use the model 'full' "

@@ -6,11 +6,13 @@ A number is in SI units, or a text with its unit (:mod:`geometry.units`).
 import json
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
+from fingerpad.laws import LAYERS, Laws
 from fingerpad.materials import Electric, Materials, Roughness
 from fingerpad.names import first_clash
 from fingerpad.parameters import FORMULATION_KEYS, Accuracy, Contact, Load, Numerics, Output, Voltage
@@ -22,6 +24,11 @@ from geometry import sizing
 from geometry.bounds import within
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
+from variational.friction import Friction, law_of
+from variational.roughness.closure import Closure
+
+if TYPE_CHECKING:
+    from variational.material import Material
 
 
 class Scene(Part):
@@ -65,6 +72,8 @@ class Scene(Part):
         Raises:
             SceneError: the first key at fault.
         """
+        if "laws" in data:
+            raise SceneError("laws is no key, since no file can hold one; give laws from Python, by Scene.with_laws")
         text = json.dumps(_coarse_start(plain(data)))
         try:
             # As JSON, because there a list is a tuple and a table is a model even under strict rules.
@@ -144,9 +153,9 @@ class Scene(Part):
     def replace(self, **changes: Any) -> "Scene":
         """Return a checked copy with some values changed.
 
-        Laws given from Python stay. What the changes make meaningless goes: the sizes of a coarse start with another
-        ``accuracy``, the values of the default loads with a ``history``, and the values of one
-        ``contact.formulation`` with another.
+        Laws given from Python stay, but for a law of friction where ``friction`` changes. What the changes make
+        meaningless goes: the sizes of a coarse start with another ``accuracy``, the values of the default loads with a
+        ``history``, and the values of one ``contact.formulation`` with another.
 
         Args:
             changes: values by key. A table given as a mapping keeps the keys that are not in it; any other value, also
@@ -171,12 +180,71 @@ class Scene(Part):
         found = Scene(**_merged(present, changes))
         for name, value in (self.__pydantic_private__ or {}).items():
             setattr(found, name, value)
+        if "friction" in changes:
+            found._laws = replace(found._laws, friction=None)
         return found
 
     @property
     def h_0(self) -> float:
         """Effective insulator thickness (m)."""
         return self.electric.h_0(self.geometry.sc_thickness)
+
+    # -- laws ------------------------------------------------------------------------------------------
+    _laws: Laws = PrivateAttr(default_factory=Laws)  # no field: it is no key of a file
+
+    @property
+    def laws(self) -> Laws:
+        """Laws given from Python, in the place of those of the keys."""
+        return self._laws
+
+    def with_laws(
+        self,
+        closure: Closure | None = None,
+        materials: "Mapping[str, Material] | None" = None,
+        friction: Friction | float | None = None,
+        mesh: Path | str | None = None,
+    ) -> "Scene":
+        """Return the scene with laws of one's own; what is left out stays, and so do the materials of other layers.
+
+        Args:
+            closure: the microscale.
+            materials: solids by the layer's key.
+            friction: law of friction; a number is the friction coefficient of Coulomb's law.
+            mesh: file of a mesh.
+
+        Raises:
+            SceneError: what is no law; in one sentence.
+        """
+        given = {"closure": closure, "friction": friction, "mesh": mesh}
+        changes: dict[str, Any] = {name: law for name, law in given.items() if law is not None}
+        if materials is not None:
+            changes["materials"] = {**self.laws.materials, **Laws(materials=materials).materials}
+        found = self.model_copy()
+        found._laws = replace(self.laws, **changes)
+        return found
+
+    def closure(self) -> Closure:
+        """Return the microscale."""
+        return self.roughness.bearing_area(self.h_0) if self.laws.closure is None else self.laws.closure
+
+    def friction_law(self) -> Friction | None:
+        """Return the law of friction, None without friction."""
+        return law_of(self.friction if self.laws.friction is None else self.laws.friction)
+
+    def solids(self) -> "dict[int, Material]":
+        """Return the material of each layer's tag."""
+        from variational.ogden import Ogden  # UFL: not for those who only read scenes
+        from variational.saint_venant import SaintVenant
+
+        m = self.materials
+        skins = ("subcutis", "dermis", "viable_epidermis", "stratum_corneum")
+        found: dict[str, Material] = {}
+        for layer in skins:
+            skin = getattr(m, layer)
+            found[layer] = Ogden(skin.shear_modulus, skin.alpha, skin.poisson, m.exponent)
+        found |= {"nail": SaintVenant(m.nail.young, m.nail.poisson)}
+        found |= {"nail_bed": SaintVenant(m.nail_bed.young, m.nail_bed.poisson)}
+        return {LAYERS[layer]: self.laws.materials.get(layer, solid) for layer, solid in found.items()}
 
     def loads(self) -> tuple[Load, ...]:
         """Return the loads to reach one after the other."""
@@ -196,7 +264,8 @@ class Scene(Part):
             unused["output"] = True
         default = Numerics()  # likewise
         unused["numerics"] = {n for n in ("step_scale", "memory") if getattr(self.numerics, n) == getattr(default, n)}
-        return self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
+        found = self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
+        return found | ({"laws": self.laws.parameters()} if self.laws else {})
 
 
 _LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
@@ -253,10 +322,16 @@ def check(scene: Scene) -> None:
 
     Raises:
         SceneError: layers touch or cross, ridges do not fit, the bone touches the skin, elements are too large, or so
-            many that they need more memory than the scene allows.
+            many that they need more memory than the scene allows; or an accuracy is asked of a mesh of a file.
     """
     from fingerpad.budget import refuse_beyond
 
+    if scene.laws.mesh is not None:  # checked when it is read
+        if scene.accuracy is not None:
+            raise SceneError(
+                "accuracy is given and the mesh is of a file, which cannot be refined; leave one of the two out"
+            )
+        return
     try:
         sizing.check(scene.geometry, scene.mesh)
         refuse_beyond(scene)

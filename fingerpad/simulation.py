@@ -15,20 +15,18 @@ from fingerpad.scene import Load, Scene
 from fingerpad.states import SLIDE_ON, full_slip
 from fingerpad.steps import Checked, Step, force_error
 from fingerpad.zone import Woken, Zone, ZoneExceeded
-from geometry import fingertip, mesh, tags
+from geometry import fingertip, mesh, meshfile, tags
 from geometry.profiles import Profiles
-from variational.continuation import Attempt, Continuation, StepFailed, Target
-from variational.coupling import Coupling
+from variational.body import Body
+from variational.continuation import Attempt, StepFailed, Target
 from variational.electroadhesion import ELECTROSTATIC
 from variational.energy import EnergyBook
 from variational.failure import NotConverged
-from variational.problem import Interface, Ogden, Problem, SaintVenant
-from variational.quantities import Observer, RidgeLoads, SurfaceState
-from variational.solver import Solver
+from variational.problem import Interface
+from variational.quantities import RidgeLoads, SurfaceState
 from variational.squeeze import squeeze
 from variational.stability import StabilityCheck
 from variational.state import ContactState, RidgeStates, StepRecord
-from variational.surface import Surface
 from variational.transfer import Carried, give
 
 Array = NDArray[np.float64]
@@ -68,30 +66,33 @@ class Simulation:
         self.profiles = Profiles(scene.geometry)
         self.plan = needed
         half = not needed.both_halves
-        build = partial(fingertip.build, scene.geometry, scene.mesh, needed.receptors, half)
-        self.body = mesh.load(comm, build, tags.LAYERS.values())
+        self.body = _meshed(scene, needed, comm)
         body, contact, numerics = self.body, scene.contact, scene.numerics
-        ridges = {j: tags.ridge(j) for j in body.ridges()}
-        surface = Surface(body.mesh, body.facet_tags, ridges, numerics.quadrature_points)
-        attraction = ELECTROSTATIC if self.plan.voltage else None
-        interface = Interface(contact.law(), scene.friction, scene.h_0, attraction)
-        self.problem = Problem(body.mesh, body.cell_tags, surface, solids(scene), interface, numerics.element)
-        force = max((load.f_ext for load in scene.loads() if load.f_ext), default=1.0)
-        rim = body.facet_tags.find(tags.BONE_RIM)
-        line = body.facet_tags.find(tags.SYMMETRY) if half else None
-        self.solver = Solver(self.problem, rim, force, numerics.tolerance, mirror=line)
-        self.observer = Observer(self.problem, half)
-        self.ridges = mirror.names(surface.names) if half else surface.names
-        self.closure = scene.roughness.bearing_area(scene.h_0) if self.plan.voltage else None
-        self.coupling = Coupling(
-            self.solver,
-            self.observer,
-            self.closure,
-            numerics.coupling_tolerance,
-            numerics.coupling_cap,
-            by_gap=contact.length == "gap",
+        interface = Interface(
+            contact.law(), scene.friction_law(), scene.h_0, ELECTROSTATIC if self.plan.voltage else None
         )
-        self.continuation = Continuation(self.coupling, self._accepted, step_scale=numerics.step_scale)
+        self.closure = scene.closure() if self.plan.voltage else None
+        made = Body(
+            body,
+            {tag: solid for tag, solid in scene.solids().items() if tag in body.layers().values()},
+            interface,
+            self.closure,
+            element=numerics.element,
+            points=numerics.quadrature_points,
+            force_scale=max((load.f_ext for load in scene.loads() if load.f_ext), default=1.0),
+            tolerance=numerics.tolerance,
+            mirror=body.facets(tags.SYMMETRY) if half else None,
+            coupling_tolerance=numerics.coupling_tolerance,
+            coupling_cap=numerics.coupling_cap,
+            by_gap=contact.length == "gap",
+            on_accept=self._accepted,
+            step_scale=numerics.step_scale,
+        )
+        self.problem, self.solver, self.observer = made.problem, made.solver, made.observer
+        self.coupling, self.continuation = made.coupling, made.continuation
+        self.ridges = mirror.names(made.surface.names) if half else made.surface.names
+        shortest = float(np.min(comm.allgather(made.surface.length.min(initial=np.inf))))
+        self._contact_size = scene.mesh.contact if scene.laws.mesh is None else shortest
         self.energy = EnergyBook(self.problem, *self._state(), copies=self._copies)
         self.unknowns = self.solver.layout.global_size
         self.states: list[ContactState] = []
@@ -273,7 +274,7 @@ class Simulation:
             **self.resultants(loads),
             slipping=slipping,
             all_slip=full,
-            mesh_contact=self.scene.mesh.contact,
+            mesh_contact=self._contact_size,
             ridges=RidgeStates(
                 np.array(self.ridges),
                 loads.length,
@@ -299,7 +300,7 @@ class Simulation:
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
         loads = self.ridge_loads()
         imbalance = self._check_balance(loads)
-        if _jumped(attempt):
+        if attempt.jump:
             self._check_stability()
         step = self.present(loads, attempt, target.name == "touch")
         state = self._placed(step.state, probe=part >= 1 and not target.until_full_slip)
@@ -332,7 +333,7 @@ class Simulation:
             factorisations=attempt.factorisations,
             sweeps=attempt.sweeps,
             cutbacks=len(attempt.cutbacks),
-            jump=_jumped(attempt),
+            jump=attempt.jump,
         )
 
     def _check_balance(self, loads: RidgeLoads) -> float:
@@ -362,25 +363,13 @@ class Simulation:
         return left
 
 
-def _jumped(attempt: Attempt) -> bool:
-    """Return whether skin or an air gap moved without the loads."""
-    return attempt.pseudo_transient > 0 or bool(attempt.jumped) or attempt.leapt
+def _meshed(scene: Scene, needed: Plan, comm: MPI.Comm) -> mesh.TaggedMesh:
+    """Return the mesh of a scene's finger."""
+    if scene.laws.mesh is not None:
+        return mesh.load(comm, meshfile.file(scene.laws.mesh))
+    build = partial(fingertip.build, scene.geometry, scene.mesh, needed.receptors, not needed.both_halves)
+    return mesh.load(comm, build, tags.LAYERS.values())
 
 
 def _target(load: Load) -> Target:
     return Target(load.name, load.f_ext, load.bone_height, load.voltage, load.bone_x, load.until_full_slip)
-
-
-def solids(scene: Scene) -> dict[int, Ogden | SaintVenant]:
-    """Return the material of each layer's tag."""
-    m = scene.materials
-    skins = {
-        tags.SUBCUTIS: m.subcutis,
-        tags.DERMIS: m.dermis,
-        tags.VIABLE_EPIDERMIS: m.viable_epidermis,
-        tags.STRATUM_CORNEUM: m.stratum_corneum,
-    }
-    stiff = {tags.NAIL: m.nail, tags.NAIL_BED: m.nail_bed}
-    found: dict[int, Ogden | SaintVenant] = {tag: SaintVenant(s.young, s.poisson) for tag, s in stiff.items()}
-    found |= {tag: Ogden(s.shear_modulus, s.alpha, s.poisson, m.exponent) for tag, s in skins.items()}
-    return found

@@ -24,26 +24,23 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from fingerpad import ridge_cell
+from fingerpad import laws, ridge_cell
 from fingerpad.estimate import Knob
 from fingerpad.reach import by_rule
 from fingerpad.result import Cost, Result
-from fingerpad.rungs import Stopwatch, at_rest, at_slip, refuse_history
+from fingerpad.rungs import Stopwatch, at_rest, at_slip, refuse_others
 from fingerpad.scene import Scene, SceneError
-from fingerpad.simulation import solids
 from fingerpad.states import WORDS
 from geometry import fingertip, tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
-from variational.continuation import Attempt, Continuation, StepFailed, Target
-from variational.coupling import Coupling
-from variational.problem import Interface, Problem
-from variational.quantities import Observer
+from variational.body import Body
+from variational.continuation import Attempt, StepFailed, Target
+from variational.friction import Coulomb
+from variational.problem import Interface
 from variational.ridge_law import RidgeLaw, RidgeTable
-from variational.solver import Solver
 from variational.state import ContactState, Errors
-from variational.surface import Surface
 from variational.transfer import Carried, carry
 
 Array = NDArray[np.float64]
@@ -89,11 +86,12 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Result
         comm: communicator of the mesh.
 
     Raises:
-        SceneError: a scene with a history, one this model finds no equilibrium for, or one whose mesh.contact is too
-            large for the answer to mean anything.
+        SceneError: a scene with a history, with a mesh or another friction law than Coulomb's of its own, one this
+            model finds no equilibrium for, or one whose mesh.contact is too large for the answer to mean anything.
     """
     clock = Stopwatch()
-    refuse_history(scene, "smooth")
+    refuse_others(scene, "smooth")
+    _refuse_friction(scene)
     half = scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"contact": scene.mesh.contact / 2})})
     fingers, answers = zip(*(_solved(one, folder, comm) for one in (scene, half)), strict=True)
     errors = {state: estimated(answers[0][state], answers[1].get(state)) for state in answers[0]}
@@ -107,7 +105,7 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Result
     notes = [made, "receptors are not in this model", counted]
     if "full_slip" not in found:
         notes.append(f"no full slip within {scene.slide_length:g} m of sliding")
-    more = {
+    more: dict[str, Any] = {
         "table_seconds": made_in,
         "table_factorisations": sum(tables.factorisations for tables in used),
         "table_version": ridge_cell.VERSION,
@@ -115,6 +113,7 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Result
     size = fingers[0].solver.layout.global_size
     cost = Cost(processor_seconds=clock.seconds(), factorisations=sum(counts), unknowns=size, ranks=comm.size)
     states = (None, found["charged"], found.get("full_slip"))
+    more["laws"] = laws.used(scene)
     return Result(scene, "smooth", *states, cost=cost, notes=tuple(notes), record=more)
 
 
@@ -135,6 +134,16 @@ def _solved(scene: Scene, folder: Path, comm: MPI.Comm) -> tuple["_SmoothFinger"
             f"m: {error}; use another model"
         ) from error
     return finger, found if slip is None else found | {"full_slip": at_slip(scene, slip)}
+
+
+def _refuse_friction(scene: Scene) -> None:
+    """Refuse a law of friction that is not proportional to the contact force, all that a ridge's table has."""
+    law = scene.friction_law()
+    if not (law is None or isinstance(law, Coulomb)):
+        raise SceneError(
+            f"friction is {law}; the model 'smooth' has a ridge's contact force and not its pressures, so that it "
+            "takes a friction coefficient alone: use another model"
+        )
 
 
 def _refuse_lost(scene: Scene, table: RidgeTable) -> None:
@@ -215,10 +224,15 @@ def full_slip(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Sl
     Raises:
         StepFailed: there is none, or rung 2 does not come to it.
     """
-    if scene.history is not None or scene.numerics.element == "P2-P1" or scene.friction == 0:
+    if scene.history is not None or scene.numerics.element == "P2-P1" or scene.friction_law() is None:
         raise StepFailed(
             "the model 'smooth' has no full slip of a scene with a history, without friction or with element 'P2-P1'"
         )
+    try:
+        refuse_others(scene, "smooth")
+        _refuse_friction(scene)
+    except SceneError as error:
+        raise StepFailed(str(error)) from error
     finger = _SmoothFinger(scene, folder, comm)
     finger.press()
     found = finger.slide()
@@ -241,18 +255,16 @@ class _SmoothFinger:
         self.uncharged = uncharged = ridge_cell.tables(scene.model_copy(update={"voltage": 0.0}), folder)
         finger = smoothed(scene.geometry)
         body = load(comm, partial(fingertip.build, finger, sizes(scene)), tags.LAYERS.values())
-        ridges = {j: tags.ridge(j) for j in body.ridges()}
-        surface = Surface(body.mesh, body.facet_tags, ridges, scene.numerics.quadrature_points)
         self.law = RidgeLaw(uncharged.normal, charged.period, charged.tangential / charged.period)
-        interface = Interface(self.law, scene.friction, scene.h_0)
+        interface = Interface(self.law, scene.friction_law(), scene.h_0)
         numerics = scene.numerics
-        problem = Problem(body.mesh, body.cell_tags, surface, solids(scene), interface, numerics.element)
-        rim = body.facet_tags.find(tags.BONE_RIM)
-        self.solver = Solver(problem, rim, scene.f_ext, numerics.tolerance)
-        self.observer = Observer(problem)
         # Without a voltage of the problem's own the air gaps do not act: they are inside the law.
-        coupling = Coupling(self.solver, self.observer, scene.roughness.bearing_area(scene.h_0))
-        self.walk = Continuation(coupling, self._accepted, step_scale=_STEPS)
+        made = Body(
+            body, scene.solids(), interface, scene.closure(), element=numerics.element,
+            points=numerics.quadrature_points, force_scale=scene.f_ext, tolerance=numerics.tolerance,
+            on_accept=self._accepted, step_scale=_STEPS,
+        )  # fmt: skip
+        self.solver, self.observer, self.walk = made.solver, made.observer, made.continuation
 
     def press(self) -> dict[str, Any]:
         """Press and charge the finger and return its normal contact."""
@@ -273,8 +285,7 @@ class _SmoothFinger:
         found = carry(self.walk.coupling, self.walk.surface_state)
         force, _, length = self.law.table.at(self._mean_height())
         pressure = np.divide(force, length, out=np.zeros_like(force), where=length > 0)
-        closure = self.scene.roughness.bearing_area(self.scene.h_0)
-        d_eq = closure(pressure).d_eq if self.scene.voltage else np.full_like(pressure, np.nan)
+        d_eq = self.scene.closure()(pressure).d_eq if self.scene.voltage else np.full_like(pressure, np.nan)
         finger = self.scene.geometry
         up = np.array([0.0, ridge_cell.mean_depth(finger) - Profiles(finger).lowered])
         return replace(

@@ -58,6 +58,9 @@ class Zone:
             Woken: more ridges must be able to touch.
             ZoneExceeded: the same, and there are no more.
         """
+        if self._scene.laws.mesh is not None:
+            self._check_file()
+            return
         wider = self._wider()
         last = [j for j, length in ((names[0], loads.length[0]), (names[-1], loads.length[-1])) if length > 0]
         lowest = self._lowest_outside()
@@ -73,6 +76,15 @@ class Zone:
                 f"{self._scene.geometry.ridge_count} and must be larger, or f_ext smaller"
             )
         raise Woken(reason, wider, self._needed)
+
+    def _check_file(self) -> None:
+        """Refuse contact of skin that a mesh file does not give to a ridge."""
+        lowest = self._lowest_outside()
+        if lowest < 0:
+            raise ZoneExceeded(
+                f"skin of the group 'outer skin' is at a height of {lowest:.3g} m; {self._scene.laws.mesh} must have "
+                "more ridges, or f_ext be smaller"
+            )
 
     def _wider(self) -> Scene | None:
         """Return the scene with more ridges that can touch, None if all can."""

@@ -7,9 +7,11 @@ from numpy.typing import NDArray
 from geometry import tags
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
+from geometry.shape import shape
 from geometry.sizing import check, touching_ridges
 
 _MM = 1e3  # gmsh's tolerances suit models in mm
+_HALF_ARC = 5e-3  # m
 _SAMPLES = 32  # spline points a ridge
 _SHARP_SAMPLES = 128  # of the VE-D junction, whose tips have a radius of some um
 
@@ -36,6 +38,20 @@ def build(finger: Fingertip, size: MeshSize, receptors: bool = True, half: bool 
     _sizes(profiles, size, curves, touching, receptors)
     gmsh.model.mesh.generate(2)
     return 1 / _MM
+
+
+@shape(tags.LAYERS.values())
+def finger(parameters: Fingertip | None = None, receptors: bool = False, **sizes: float) -> float:
+    """Return the whole fingertip.
+
+    Args:
+        parameters: what is meshed; by default the default fingertip.
+        receptors: whether elements are small at the receptor sites.
+        sizes: of elements, as in :class:`geometry.parameters.MeshSize`; ridges within 5 mm of the centre can touch
+            unless ``touching_half_arc`` says otherwise.
+    """
+    size = MeshSize.model_validate({"touching_half_arc": _HALF_ARC} | sizes)
+    return build(parameters or Fingertip(), size, receptors)
 
 
 class _Curves:

@@ -13,7 +13,7 @@ start()
 
 from geometry import fingertip
 from geometry import mesh as meshing
-from geometry.benchmarks import block
+from geometry.bodies import block
 from geometry.mesh import TaggedMesh, load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
@@ -55,7 +55,7 @@ def pytest_collection_modifyitems(config, items):
 @pytest.fixture(scope="session")
 def square() -> TaggedMesh:
     """A block 1 mm wide and high, 8 x 8 x 2 cells, its bottom on the screen."""
-    return load(MPI.COMM_WORLD, partial(block, 1e-3, 1e-3, 0.125e-3))
+    return load(MPI.COMM_WORLD, block(1e-3, 1e-3, 0.125e-3))
 
 
 @pytest.fixture(scope="session")

@@ -5,15 +5,13 @@ half as wide as it is high or less, so that bending the skin is stiffer than mov
 and the skin, at height y, is in equilibrium where k (gap - y) = p_el(y).
 """
 
-from functools import partial
-
 import numpy as np
 from dolfinx import fem
 from mpi4py import MPI
 from scipy.optimize import brentq
 
 from geometry import tags
-from geometry.benchmarks import block
+from geometry.bodies import block
 from geometry.mesh import load
 from variational.penalty import Penalty
 from variational.problem import Interface, Problem, SaintVenant
@@ -29,7 +27,7 @@ FOLD = (2 * HALF / STIFFNESS) ** (1 / 3) - H_0  # height of the skin (m) where t
 
 def charged() -> Solver:
     """Return the solver of a charged block, its bone unmoved."""
-    body = load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, WIDTH / 2, gap=GAP))
+    body = load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, WIDTH / 2, gap=GAP))
     surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
     solid, law = {tags.STRATUM_CORNEUM: SaintVenant(YOUNG, 0.0)}, Interface(Penalty(1e12, 1e11), 0.0, H_0)
     problem = Problem(body.mesh, body.cell_tags, surface, solid, law)

@@ -1,14 +1,12 @@
 """The attraction has the resultants of Eq. 3 and derives from its potential."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 import ufl
 from dolfinx import fem
 from mpi4py import MPI
 
-from geometry.benchmarks import block, ridge
+from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_problem import D_EQ, EPS_0, H_0, VOLTAGE, make, rates, residual, wave
 from variational import electroadhesion, kinematics
@@ -33,7 +31,7 @@ def traction(problem):
 
 def tilted(cells: int, low: float, high: float) -> Problem:
     """Return a block with its bottom on a slope between two heights."""
-    body = load(MPI.COMM_SELF, partial(block, 1e-3, 0.25e-3, 1e-3 / cells))
+    body = load(MPI.COMM_SELF, block(1e-3, 0.25e-3, 1e-3 / cells))
     problem = make(body)
     problem.w.interpolate(lambda x: np.stack([0.1 * x[0], low + (high - low) * (x[0] / 1e-3 + 0.5)]))
     return problem
@@ -107,7 +105,7 @@ def test_attraction_of_a_ridge():
     Tolerance: over a facet of 10 um that holds the kink the quadrature misses about a thousandth of its force. The
     forces' horizontal part, there to be compared, is a seventh of the largest.
     """
-    problem = make(load(MPI.COMM_SELF, partial(ridge, 10e-6)))
+    problem = make(load(MPI.COMM_SELF, ridge(10e-6)))
     problem.w.interpolate(lambda x: np.stack([0.3 * x[1] + 0.1 * x[0], -1e-6 - 0.2 * x[1] + 0.01 * x[0]]))
     found, expected = attraction(problem), traction(problem)
     x = problem.V.tabulate_dof_coordinates()

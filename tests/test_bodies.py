@@ -1,7 +1,5 @@
 """Bodies of the verification: their sizes, their groups and what they refuse."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 import ufl
@@ -9,7 +7,7 @@ from dolfinx import fem
 from mpi4py import MPI
 
 from geometry import tags
-from geometry.benchmarks import block, cooks_membrane, foot, pad, quarter_tube, ridge
+from geometry.bodies import block, cooks_membrane, foot, pad, quarter_tube, ridge
 from geometry.mesh import load
 from geometry.profiles import GeometryError
 from tests.measures import integral, vertices
@@ -29,7 +27,7 @@ def test_block():
 
     Tolerance: roundoff.
     """
-    body = load(MPI.COMM_WORLD, partial(block, MM, 0.4 * MM, 0.21 * MM, gap=7 * UM))
+    body = load(MPI.COMM_WORLD, block(MM, 0.4 * MM, 0.21 * MM, gap=7 * UM))
     assert body.mesh.topology.index_map(2).size_global == 20
     assert integral(body, tags.STRATUM_CORNEUM) == pytest.approx(0.4 * MM**2, rel=1e-12, abs=0)
     expected = {tags.ridge(0): MM, tags.BONE_RIM: MM, tags.SIDES: 0.8 * MM}
@@ -42,7 +40,7 @@ def test_block():
 @pytest.mark.mpi
 def test_one_ridge():
     """Its area is w (h - A / 2), its sides h - A each, its bottom a sinusoid's length. Tolerance: chords of 10 um."""
-    body = load(MPI.COMM_WORLD, partial(ridge, 10 * UM))
+    body = load(MPI.COMM_WORLD, ridge(10 * UM))
     x = np.linspace(-0.5, 0.5, 20001) * 483 * UM
     y = 50 * UM * (1 - np.cos(2 * np.pi * x / (483 * UM)))
     expected = {tags.ridge(0): np.hypot(np.diff(x), np.diff(y)).sum(), tags.BONE_RIM: 483 * UM, tags.SIDES: 1000 * UM}
@@ -54,7 +52,7 @@ def test_one_ridge():
 @pytest.mark.mpi
 def test_quarter_tube():
     """Its arcs are 24 chords each, on its radii about an axis 4 mm up, its wall the area between; up to roundoff."""
-    body, n = load(MPI.COMM_WORLD, partial(quarter_tube, MM, 2 * MM, 24)), 24
+    body, n = load(MPI.COMM_WORLD, quarter_tube(MM, 2 * MM, 24)), 24
     assert body.mesh.topology.index_map(2).size_global == 2 * n**2
     chord = 2 * n * np.sin(np.pi / 4 / n) * MM
     assert lengths(body) == pytest.approx(
@@ -70,7 +68,7 @@ def test_quarter_tube():
 @pytest.mark.mpi
 def test_cooks_membrane():
     """Its edges' lengths and its area, 48 mm times the mean of 44 and 16 mm; tolerance: roundoff."""
-    body = load(MPI.COMM_WORLD, partial(cooks_membrane, 3))
+    body = load(MPI.COMM_WORLD, cooks_membrane(3))
     assert body.mesh.topology.index_map(2).size_global == 18
     expected = {tags.ridge(0): np.hypot(48, 44), tags.BONE_RIM: 44.0, tags.SIDES: 16 + np.hypot(48, 16)}
     assert lengths(body) == pytest.approx({tag: value * MM for tag, value in expected.items()}, rel=1e-12)
@@ -91,7 +89,7 @@ def test_pad():
     Tolerance: roundoff; gmsh places nodes along a spline to a millionth of their distance.
     """
     size, radius, span = 10 * UM, 0.1, 2 * MM
-    body = load(MPI.COMM_SELF, partial(pad, size, 8, radius, span))
+    body = load(MPI.COMM_SELF, pad(size, 8, radius, span))
     x, y = bottom(body).T
     np.testing.assert_allclose(y, x**2 / (2 * radius), rtol=0, atol=1e-12 * span)
     np.testing.assert_allclose(x[np.abs(x) < 8.5 * size], size * np.arange(-8, 9), rtol=0, atol=1e-6 * size)
@@ -102,16 +100,14 @@ def test_pad():
 def test_foot():
     """Flat within its half-width, recessed by the step a facet farther out. Tolerance: roundoff."""
     size, half_width, step, span = 10 * UM, 0.2 * MM, 2 * UM, 2 * MM
-    body = load(MPI.COMM_SELF, partial(foot, size, half_width, step, span))
+    body = load(MPI.COMM_SELF, foot(size, half_width, step, span))
     x, y = bottom(body).T
     np.testing.assert_allclose(y, np.where(np.abs(x) < half_width + size / 2, 0.0, step), rtol=0, atol=1e-12 * span)
     assert np.abs(np.abs(x[y > step / 2]).min() - half_width - size) < 1e-12 * span
     assert lengths(body)[tags.BONE_RIM] == pytest.approx(span, rel=1e-12, abs=0)
 
 
-@pytest.mark.parametrize(
-    ("build", "name"), [(partial(pad, MM, 8, 0.1, 2 * MM), "flank"), (partial(foot, UM, MM, UM, MM), "recess")]
-)
+@pytest.mark.parametrize(("build", "name"), [(pad(MM, 8, 0.1, 2 * MM), "flank"), (foot(UM, MM, UM, MM), "recess")])
 def test_body_without_its_sides_is_refused(build, name):
     with pytest.raises(GeometryError, match=f"{name} is .*; it must be positive"):
         build()
@@ -124,14 +120,14 @@ def test_body_without_its_sides_is_refused(build, name):
 def test_verification_body_is_refused(build, name, value):
     lengths = {"width": MM, "height": MM, "size": MM, name: value}
     with pytest.raises(GeometryError, match=f"{name} is .*; it must be positive"):
-        build(**lengths)
+        build(**lengths)()
 
 
 def test_ridge_without_a_top_is_refused():
     with pytest.raises(GeometryError, match="amplitude is 0.001 m; it must be below the height, 0.0006 m"):
-        ridge(10 * UM, amplitude=MM)
+        ridge(10 * UM, amplitude=MM)()
 
 
 def test_tube_without_a_wall_is_refused():
     with pytest.raises(GeometryError, match="inner is 0.001 m; it must be below the outer radius, 0.001 m"):
-        quarter_tube(MM, MM, 4)
+        quarter_tube(MM, MM, 4)()

@@ -1,7 +1,5 @@
 """Contact, force control and friction of solved states against closed forms and balances, on any number of ranks."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 import ufl
@@ -10,15 +8,16 @@ from mpi4py import MPI
 from scipy.optimize import brentq
 
 from geometry import tags
-from geometry.benchmarks import block, ridge
+from geometry.bodies import block, ridge
 from geometry.mesh import load
 from variational import contact
+from variational.body import Body
 from variational.contact import History
 from variational.penalty import Penalty
-from variational.problem import Interface, Ogden, Problem
+from variational.problem import Interface, Ogden
 from variational.quantities import Observer
+from variational.roughness.bam import BearingArea
 from variational.solver import Control, Solver
-from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi
 WIDTH, HEIGHT = 1e-3, 0.5e-3
@@ -29,22 +28,25 @@ P_EL = 8.854e-12 * VOLTAGE**2 / 2 / (H_0 + D_EQ) ** 2
 TOLERANCE = 1e-9  # N/m, imbalance of the nodal forces at which the solves here end
 
 
-def make(body, mu_f=0.0, eps_n=EPS_N, eps_t=EPS_T, held=True, element="P2") -> Solver:
-    """Return a solver for a body; with ``held`` its sides do not move sideways."""
-    surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
+def over(body, mu_f=0.0, eps_n=EPS_N, eps_t=EPS_T, held=True, element="P2") -> Body:
+    """Return a body over the screen; with ``held`` its sides do not move sideways."""
     skin = {tags.STRATUM_CORNEUM: Ogden(G_0, ALPHA, NU)}
     interface = Interface(Penalty(eps_n, eps_t), mu_f, H_0)
-    problem = Problem(body.mesh, body.cell_tags, surface, skin, interface, element)
-    problem.set_air_gaps(np.array([D_EQ]))
-    sides = fem.locate_dofs_topological(problem.V, 1, body.facet_tags.find(tags.SIDES))
-    fixed = [(2 * sides, 0.0)] if held else []
-    return Solver(problem, body.facet_tags.find(tags.BONE_RIM), 1.0, TOLERANCE, fixed)
+    sides = body.facets(tags.SIDES) if held else None
+    return Body(body, skin, interface, BearingArea(H_0), element=element, tolerance=TOLERANCE, held=sides)
+
+
+def make(body, *args, **kwargs) -> Solver:
+    """Return the solver of :func:`over` with every air gap at D_EQ."""
+    solver = over(body, *args, **kwargs).solver
+    solver.problem.set_air_gaps(np.array([D_EQ]))
+    return solver
 
 
 @pytest.fixture(scope="module")
 def body():
     """A block of 4 x 2 x 2 cells on the screen."""
-    return load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3))
+    return load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3))
 
 
 def confined_stress(stretch: float) -> float:
@@ -95,7 +97,7 @@ def test_patch_under_voltage(body):
 
 def test_no_contact_no_force():
     """Above the screen the body keeps its shape. Tolerance: ten nodal imbalances; contact is exactly none."""
-    solver = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3, gap=10e-6)))
+    solver = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3, gap=10e-6)))
     solver.control = Control(0.0, -9e-6)
     solver.solve()
     loads = Observer(solver.problem).ridge_loads()
@@ -177,7 +179,7 @@ def test_ridge():
     Straight facets of 20, 10 and 5 um miss it by 4e-3, 8e-4 and 6e-5: the limit is known to 6e-5 itself. The bone
     bears the same but for some hundred nodal imbalances.
     """
-    solver = make(load(MPI.COMM_WORLD, partial(ridge, 5e-6)), eps_n=1e12)
+    solver = make(load(MPI.COMM_WORLD, ridge(5e-6)), eps_n=1e12)
     for step in range(1, 7):
         solver.control = Control(0.0, -step * 10e-6)
         solver.solve(creep=True)
@@ -193,7 +195,7 @@ def slide():
 
     The penalties are as stiff, against elements of 0.1 mm, as those of a fingertip against elements of 5 um.
     """
-    body = load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.125e-3))
+    body = load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.125e-3))
     solver = make(body, MU_F, eps_n=1e11, eps_t=1e10, held=False)
     observer = Observer(solver.problem)
     states = []

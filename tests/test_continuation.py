@@ -1,20 +1,16 @@
 """Steps that are cut, leapt over, and given up, on a block that slides."""
 
 import itertools
-from functools import partial
 
 import pytest
 from mpi4py import MPI
 
-from geometry.benchmarks import block
+from geometry.bodies import block
 from geometry.mesh import load
-from tests.test_contact import H_0, HEIGHT, MU_F, WIDTH, make
+from tests.test_contact import HEIGHT, MU_F, WIDTH, over
 from variational import continuation
-from variational.continuation import Continuation, StepFailed, Target
-from variational.coupling import Coupling
+from variational.continuation import StepFailed, Target
 from variational.failure import NotConverged
-from variational.quantities import Observer
-from variational.roughness.bam import BearingArea
 
 
 @pytest.fixture
@@ -22,8 +18,8 @@ def sliding():
     """Return a function that slides a pressed block by 0.6 mm, where solves in a range of loads fail."""
 
     def slide(first, last, cycling=False, times=1000, each=0, but_creeping=False):
-        solver = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), MU_F, 1e11, 1e10, held=False)
-        run = Continuation(Coupling(solver, Observer(solver.problem), BearingArea(H_0)))
+        run = over(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), MU_F, 1e11, 1e10, held=False).continuation
+        solver = run.solver
         run.run(Target("press", bone_height=-2e-6))
         solve, reached = run.coupling.solve, []
 
@@ -95,8 +91,7 @@ def test_other_failures_are_not_leapt_over(sliding):
 
 def test_target_that_is_reached_already():
     """A load that changes nothing, such as a charge to 0 V, is one step."""
-    solver = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), held=False)
-    run = Continuation(Coupling(solver, Observer(solver.problem), BearingArea(H_0)))
+    run = over(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), held=False).continuation
     run.run(Target("press", f_ext=1.0))
     for target in (Target("charge", voltage=0.0), Target("stay", f_ext=1.0), Target("stand", bone_x=0.0)):
         before = run.steps

@@ -12,7 +12,7 @@ from mpi4py import MPI
 from scipy.optimize import brentq
 
 from geometry import tags
-from geometry.benchmarks import block, ridge
+from geometry.bodies import block, ridge
 from geometry.mesh import load
 from variational import kinematics, stress
 from variational.cellwise import Cellwise
@@ -41,7 +41,7 @@ def make(body, cell_tags, solids, element, eps_n=EPS_N) -> Solver:
     return Solver(problem, body.facet_tags.find(tags.BONE_RIM), 1.0, TOLERANCE, [(2 * sides, 0.0)])
 
 
-BLOCK = partial(block, WIDTH, HEIGHT, 0.125e-3)
+BLOCK = block(WIDTH, HEIGHT, 0.125e-3)
 
 
 def layered(element, eps_n=EPS_N, build=BLOCK, comm=MPI.COMM_WORLD) -> Solver:
@@ -56,7 +56,7 @@ def layered(element, eps_n=EPS_N, build=BLOCK, comm=MPI.COMM_WORLD) -> Solver:
 
 def refined_ridge(times: int) -> float:
     """Mesh one ridge of 20 um facets and cut every triangle in four, ``times`` times."""
-    unit = ridge(20e-6)
+    unit = ridge(20e-6)()
     for _ in range(times):
         gmsh.model.mesh.refine()
     return unit
@@ -228,7 +228,7 @@ def test_pressure_is_compiled_once():
     """Its scale, which goes with the mesh and the moduli, is no part of the compiled forms."""
     signatures = set()
     for size in (0.25e-3, 0.125e-3):
-        body = load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, size))
+        body = load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, size))
         pressure = LayerwisePressure(body.mesh, body.cell_tags, (tags.STRATUM_CORNEUM,), 1e9 * size)
         signatures.add((pressure.p * ufl.dx).signature())
     assert len(signatures) == 1
@@ -237,7 +237,7 @@ def test_pressure_is_compiled_once():
 # -- a layered ridge -----------------------------------------------------------------------------------
 def pressed_layers(element, comm=MPI.COMM_WORLD) -> Problem:
     """Return a ridge of three layers, pressed by 20 um."""
-    solver = layered(element, build=partial(ridge, 40e-6, height=HEIGHT), comm=comm)
+    solver = layered(element, build=ridge(40e-6, height=HEIGHT), comm=comm)
     for y in (-5e-6, -10e-6, -15e-6, -20e-6):
         solver.control = Control(0.0, y)
         solver.solve(creep=True)

@@ -1,14 +1,13 @@
 """The energy balance closes on smooth paths, each of its terms is a derivative, and a jump leaves what it releases."""
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
 from mpi4py import MPI
 
 from benchmarks.verification.energy import D_EQ, PHASES, VOLTAGE, Walk, cycle
-from geometry.benchmarks import block, ridge
+from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests import spring
 from tests.test_contact import HEIGHT, MU_F, WIDTH, make
@@ -23,7 +22,7 @@ from variational.solver import Control
 def cycles(request):
     """Cycles of 8, 16, 32 and 64 steps a phase, without jumps."""
     flat = request.param == "block"
-    model = partial(block, WIDTH, HEIGHT, 0.25e-3) if flat else partial(ridge, 20e-6)
+    model = block(WIDTH, HEIGHT, 0.25e-3) if flat else ridge(20e-6)
     depth, far = (2e-6, 30e-6) if flat else (20e-6, 150e-6)
     body = load(MPI.COMM_WORLD, model)
     law = {"mu_f": MU_F, "eps_n": 1e11, "eps_t": 1e10, "held": False}
@@ -69,7 +68,7 @@ def test_friction_dissipates(cycles):
 @pytest.fixture
 def walk():
     """A ridge pressed and charged without friction."""
-    walk = Walk(make(load(MPI.COMM_WORLD, partial(ridge, 20e-6)), held=False))
+    walk = Walk(make(load(MPI.COMM_WORLD, ridge(20e-6)), held=False))
     for part in (0.25, 0.5, 0.75, 1.0):
         walk.to(Control(0.0, -20e-6 * part))
     walk.to(Control(0.0, -20e-6), VOLTAGE)
@@ -116,7 +115,7 @@ def test_contact_springs_give_the_contact_forces():
 
     Tolerance: roundoff of energies that differ by a hundredth.
     """
-    solver = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), mu_f=10.0)
+    solver = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), mu_f=10.0)
     problem, observer = solver.problem, Observer(solver.problem)
     energies, step = [], 1e-9
     for sign in (-1, 0, 1):
@@ -130,7 +129,7 @@ def test_contact_springs_give_the_contact_forces():
 
 def test_dissipation_of_full_slip():
     """A block that slips everywhere dissipates its friction times the way. Tolerance: elastic skin still adjusts."""
-    body = load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3))
+    body = load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3))
     walk = Walk(make(body, MU_F, eps_n=1e11, eps_t=1e10, held=False))
     walk.to(Control(0.0, -2e-6))
     for x in (4e-6, 20e-6, 40e-6, 60e-6):
@@ -220,7 +219,7 @@ def test_error_is_above_what_a_smooth_step_is_off_by(cycles):
 
 def test_another_attraction_is_refused():
     """The book takes the work of the voltage from the electrostatic potential."""
-    problem = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3))).problem
+    problem = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3))).problem
     other = Attraction(electroadhesion.attraction, lambda y, d_eq, voltage, h_0: -y)
     problem.interface = replace(problem.interface, attraction=other)
     with pytest.raises(ValueError, match="electrostatic attraction only"):

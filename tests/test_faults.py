@@ -9,15 +9,13 @@ from mpi4py import MPI
 
 from fingerpad import full
 from fingerpad.scene import from_data
-from geometry.benchmarks import block
+from geometry.bodies import block
 from geometry.mesh import load
 from tests.measures import accepted
 from tests.runs import run
-from tests.test_contact import H_0, HEIGHT, MU_F, WIDTH, make
+from tests.test_contact import HEIGHT, MU_F, WIDTH, over
 from variational.continuation import Attempt, Continuation
-from variational.coupling import Coupling
 from variational.failure import NotConverged
-from variational.quantities import Observer
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap
 from variational.solver import Control, Solver
@@ -164,9 +162,8 @@ def test_last_ridge_of_the_finger_touches(tmp_path):
 # -- rejected iterates -------------------------------------------------------------------------------------
 def trajectory(chance: float, seed: int) -> tuple[list[dict[str, np.ndarray]], int]:
     """Press, charge and slide a block; after a solve, reject by chance and try the same step again."""
-    solver = make(load(MPI.COMM_SELF, lambda: block(WIDTH, HEIGHT, 0.125e-3)), MU_F, 1e11, 1e10, held=False)
-    coupling = Coupling(solver, Observer(solver.problem), BearingArea(H_0))
-    continuation = Continuation(coupling)
+    made = over(load(MPI.COMM_SELF, block(WIDTH, HEIGHT, 0.125e-3)), MU_F, 1e11, 1e10, held=False)
+    solver, coupling, continuation = made.solver, made.coupling, made.continuation
     draw, solve, rejected = np.random.default_rng(seed), solver.solve, 0
 
     def capricious(creep=False):

@@ -1,28 +1,22 @@
 """Penalty, Nitsche and augmented Lagrangian solve the same contact problems, on any number of ranks."""
 
-from functools import partial
-
 import numpy as np
 import pytest
-from dolfinx import fem
 from mpi4py import MPI
 from scipy.optimize import brentq
 
 from geometry import tags
-from geometry.benchmarks import block, ridge
+from geometry.bodies import block, ridge
 from geometry.mesh import load
 from variational.augmented import AugmentedLagrangian
+from variational.body import Body
 from variational.contact import History
 from variational.continuation import Continuation, StepFailed, Target
-from variational.coupling import Coupling
 from variational.failure import NotConverged
 from variational.nitsche import Nitsche
 from variational.penalty import Penalty
-from variational.problem import Interface, Ogden, Problem
-from variational.quantities import Observer
+from variational.problem import Interface, Ogden
 from variational.roughness.bam import BearingArea
-from variational.solver import Solver
-from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi
 WIDTH, HEIGHT = 1e-3, 0.5e-3
@@ -34,13 +28,9 @@ NITSCHE = [Nitsche(10.0, 0), Nitsche(100.0, 1), Nitsche(10.0, -1)]
 
 def make(body, formulation, mu_f=0.0, held=True) -> Continuation:
     """Return a body above the screen; with ``held`` its sides do not move sideways."""
-    surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
-    skin = {tags.STRATUM_CORNEUM: Ogden(G_0, ALPHA, NU)}
-    problem = Problem(body.mesh, body.cell_tags, surface, skin, Interface(formulation, mu_f, H_0))
-    sides = fem.locate_dofs_topological(problem.V, 1, body.facet_tags.find(tags.SIDES))
-    fixed = [(2 * sides, 0.0)] if held else []
-    solver = Solver(problem, body.facet_tags.find(tags.BONE_RIM), 1.0, IMBALANCE, fixed)
-    return Continuation(Coupling(solver, Observer(problem), BearingArea(H_0)))
+    skin, law = {tags.STRATUM_CORNEUM: Ogden(G_0, ALPHA, NU)}, Interface(formulation, mu_f, H_0)
+    sides = body.facets(tags.SIDES) if held else None
+    return Body(body, skin, law, BearingArea(H_0), tolerance=IMBALANCE, held=sides).continuation
 
 
 def contact_force(run: Continuation) -> float:
@@ -64,7 +54,7 @@ def test_patch(formulation, voltage):
     Tolerance: the imbalance at which solves end, 1e-9 N/m on a tenth of a millimetre, is 1e-9 of the pressure;
     the skin is on the screen to what that much bends it.
     """
-    run = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), formulation)
+    run = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), formulation)
     run.run(Target("press", bone_height=-0.02 * HEIGHT))
     if voltage:
         run.run(Target("charge", voltage=voltage))
@@ -75,7 +65,7 @@ def test_patch(formulation, voltage):
 def test_patch_of_the_penalty():
     """The skin of the penalty sinks by p_n / eps_n, which the compression lacks, and no more. Tolerance: as above."""
     eps_n = 1.5e12
-    run = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), Penalty(eps_n, 1e11))
+    run = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), Penalty(eps_n, 1e11))
     run.run(Target("press", bone_height=-0.02 * HEIGHT))
     p_n = brentq(lambda p: confined_stress(0.98 + p / eps_n / HEIGHT) + p, 0.0, 1e6, xtol=1e-12, rtol=1e-15)
     np.testing.assert_allclose(run.surface_state.p_n, p_n, rtol=1e-8)
@@ -86,7 +76,7 @@ def test_patch_of_the_penalty():
 @pytest.fixture(scope="module")
 def pressed():
     """Press one ridge by 60 um without friction; the accepted run by formulation."""
-    body = load(MPI.COMM_WORLD, partial(ridge, 20e-6))
+    body = load(MPI.COMM_WORLD, ridge(20e-6))
 
     def press(formulation) -> Continuation:
         run = make(body, formulation)
@@ -142,7 +132,7 @@ SLIDING = [Penalty(1e11, 1e10), AugmentedLagrangian(1e12, 1e10, 5e-9), *(Nitsche
 
 def slide(comm, formulation) -> list:
     """Press a block whose sides are free with friction and move it sideways at constant force; states by step."""
-    run = make(load(comm, partial(block, WIDTH, HEIGHT, 0.125e-3)), formulation, MU_F, held=False)
+    run = make(load(comm, block(WIDTH, HEIGHT, 0.125e-3)), formulation, MU_F, held=False)
     steps = []
 
     def accept(target, part, attempt):
@@ -198,7 +188,7 @@ def test_ranks(formulation):
 
 def test_points_that_slip_are_expected_to_slip_on():
     """Once more than half of the points slip and the bone moves on, a step starts from the tangent of slip."""
-    run = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.125e-3)), SLIDING[0], MU_F, held=False)
+    run = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.125e-3)), SLIDING[0], MU_F, held=False)
     expected, new_load = [], run.solver.new_load
 
     def noted(*load, slipping, on_cone):
@@ -221,7 +211,7 @@ def test_points_that_slip_are_expected_to_slip_on():
 )
 def test_rejected_attempts_leave_no_trace(formulation):
     """After attempts that were given up in the middle of a sweep, anchors and multipliers are the accepted ones."""
-    run = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), formulation, MU_F, held=False)
+    run = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), formulation, MU_F, held=False)
     run.run(Target("press", bone_height=-2e-6))
     run.run(Target("slide", bone_x=0.5e-6))
     anchor, multiplier = run.problem.anchor.x.array.copy(), run.problem.multiplier.x.array.copy()
@@ -243,7 +233,7 @@ def test_rejected_attempts_leave_no_trace(formulation):
 
 def test_too_many_sweeps():
     """A loop that may not correct its multipliers says by how much the contact is off."""
-    run = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), AugmentedLagrangian(1e11, 1e10, 1e-15))
+    run = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), AugmentedLagrangian(1e11, 1e10, 1e-15))
     run.coupling.cap = 1
     with pytest.raises(StepFailed, match="COUPLING_CAP at a contact error of"):
         run.run(Target("press", bone_height=-0.1 * HEIGHT))

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from scipy.spatial import cKDTree
 
 from geometry import fingertip, tags
-from geometry.benchmarks import block
+from geometry.bodies import block
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError, Profiles
@@ -311,7 +311,7 @@ def test_refusal_reaches_every_rank(error):
     with pytest.raises(error, match="no such body"):
         load(MPI.COMM_WORLD, refuse)
     assert not gmsh.isInitialized()
-    assert load(MPI.COMM_WORLD, partial(block, MM, MM, MM)).mesh.topology.index_map(2).size_global == 2
+    assert load(MPI.COMM_WORLD, block(MM, MM, MM)).mesh.topology.index_map(2).size_global == 2
 
 
 @pytest.mark.mpi
@@ -327,7 +327,7 @@ def test_what_gmsh_refuses_is_one_sentence():
 
 @pytest.mark.mpi
 def test_missing_tag_is_refused():
-    build = partial(block, MM, MM, 0.5 * MM)
+    build = block(MM, MM, 0.5 * MM)
     load(MPI.COMM_WORLD, build, [tags.STRATUM_CORNEUM, tags.ridge(0), tags.BONE_RIM, tags.SIDES])
     with pytest.raises(GeometryError, match=f"no cell or facet with tag {tags.NAIL_SURFACE}"):
         load(MPI.COMM_WORLD, build, [tags.SIDES, tags.NAIL_SURFACE])

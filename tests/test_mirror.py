@@ -160,7 +160,7 @@ def test_half_block_has_half_the_unknowns(blocks):
 # -- mirrored numbers --------------------------------------------------------------------------------------
 def test_mirrored_ridges():
     ramp = np.array([1.0, 2.0, 3.0])
-    loads = mirror.loads(RidgeLoads(ramp, ramp, ramp, ramp, ramp))
+    loads = mirror.loads(RidgeLoads(ramp, ramp, ramp, ramp, ramp, ramp))
     assert mirror.names([0, 1, 2]) == [-2, -1, 0, 1, 2]
     assert loads.f_contact.tolist() == loads.length.tolist() == [3, 2, 2, 2, 3]
     assert loads.f_friction.tolist() == [-3, -2, 0, 2, 3]

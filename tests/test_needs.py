@@ -13,21 +13,19 @@ from fingerpad import needs
 from fingerpad.needs import plan
 from fingerpad.scene import Scene, from_data
 from geometry import fingertip, tags
-from geometry.benchmarks import ridge
+from geometry.bodies import ridge
 from geometry.mesh import load
 from geometry.parameters import Fingertip
 from tests.runs import run
 from variational.augmented import AugmentedLagrangian
-from variational.continuation import Continuation, Target
-from variational.coupling import Coupling
+from variational.body import Body
+from variational.continuation import Target
 from variational.electroadhesion import ELECTROSTATIC
 from variational.nitsche import Nitsche
 from variational.penalty import Penalty
-from variational.problem import Interface, Ogden, Problem
-from variational.quantities import Observer, RidgeLoads
+from variational.problem import Interface, Ogden
+from variational.quantities import RidgeLoads
 from variational.roughness.bam import BearingArea
-from variational.solver import Solver
-from variational.surface import Surface
 
 H_0, FORCE = 0.514e-6, 5.0
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
@@ -81,19 +79,17 @@ def test_wanted_output_is_no_new_name_for_old_runs():
 @pytest.fixture(scope="module")
 def body():
     """One papillary ridge."""
-    return load(MPI.COMM_WORLD, partial(ridge, 20e-6))
+    return load(MPI.COMM_WORLD, ridge(20e-6))
 
 
 class Path:
     """A ridge pressed and slid without voltage; what it ended in and what that took."""
 
     def __init__(self, body, interface: Interface) -> None:
-        surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
         skin = {tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53, 0.48)}
-        self.problem = Problem(body.mesh, body.cell_tags, surface, skin, interface)
-        self.solver = Solver(self.problem, body.facet_tags.find(tags.BONE_RIM), FORCE)
         closure = BearingArea(H_0) if interface.attraction else None
-        self.path = Continuation(Coupling(self.solver, Observer(self.problem), closure))
+        made = Body(body, skin, interface, closure, force_scale=FORCE)
+        self.problem, self.solver, self.path = made.problem, made.solver, made.continuation
         self.path.run(Target("press", f_ext=FORCE))
         self.path.run(Target("slide", bone_x=20e-6))
 

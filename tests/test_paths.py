@@ -1,7 +1,6 @@
 """Paths there and back: what returns, what friction keeps, where a flat ridge jumps, what a ridge does on leaving."""
 
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import pytest
@@ -10,18 +9,18 @@ from mpi4py import MPI
 from scipy.optimize import brentq, minimize_scalar
 
 from geometry import tags
-from geometry.benchmarks import block, ridge
+from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import MU_F, make
+from variational.body import Body
 from variational.continuation import Attempt, Continuation, Target
 from variational.coupling import Coupling
 from variational.energy import Balance, EnergyBook
 from variational.penalty import Penalty
-from variational.problem import Interface, Problem, SaintVenant
+from variational.problem import Interface, SaintVenant
 from variational.quantities import Observer, RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.solver import Solver
-from variational.surface import Surface
 
 H_0, EPS_0 = 0.514e-6, 8.854e-12
 
@@ -74,7 +73,7 @@ class Path:
 @pytest.fixture(scope="module", params=[0.0, MU_F], ids=["frictionless", "friction"])
 def released(request):
     """A ridge pressed to 10 N/m and lifted by displacement until it is 2 um above the screen."""
-    path = Path(make(load(MPI.COMM_WORLD, partial(ridge, 20e-6)), request.param, held=False), BearingArea(H_0))
+    path = Path(make(load(MPI.COMM_WORLD, ridge(20e-6)), request.param, held=False), BearingArea(H_0))
     path.to("press", f_ext=10.0)
     path.to("release", bone_height=2e-6)
     return path
@@ -115,11 +114,9 @@ WIDTH, HEIGHT, EPS_T, YOUNG = 1e-3, 0.25e-3, 1e10, 1e9
 @pytest.fixture(scope="module")
 def slid():
     """A stiff block slid by its bone at constant force: out, back, and forth again, 20 steps a way."""
-    body = load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.125e-3))
-    surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
-    law = Interface(Penalty(1e11, EPS_T), MU_F, H_0)
-    problem = Problem(body.mesh, body.cell_tags, surface, {tags.STRATUM_CORNEUM: SaintVenant(YOUNG, 0.0)}, law)
-    path = Path(Solver(problem, body.facet_tags.find(tags.BONE_RIM), FORCE), BearingArea(H_0), touch_depth=20e-9)
+    body = load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.125e-3))
+    solids, law = {tags.STRATUM_CORNEUM: SaintVenant(YOUNG, 0.0)}, Interface(Penalty(1e11, EPS_T), MU_F, H_0)
+    path = Path(Body(body, solids, law, force_scale=FORCE).solver, BearingArea(H_0), touch_depth=20e-9)
     path.to("press", f_ext=FORCE)
     path.to("out", bone_x=FAR)
     way = FAR * (1 - 2 * np.arange(1, STEPS + 1) / STEPS)
@@ -205,7 +202,7 @@ def charged(request):
     Held, it jumps on where its pressure reaches 1 kPa, at 180 V; otherwise at the fold of the smooth model, 270 V.
     """
     p_floor, most = request.param
-    body = load(MPI.COMM_WORLD, partial(block, SIDE, SIDE, SIDE))
+    body = load(MPI.COMM_WORLD, block(SIDE, SIDE, SIDE))
     solver = make(body)
     sides = fem.locate_dofs_topological(solver.problem.V, 1, body.facet_tags.find(tags.SIDES))
     rim = body.facet_tags.find(tags.BONE_RIM)
@@ -288,7 +285,7 @@ def test_flat_ridge_stays_in_contact(charged):
 @pytest.fixture(scope="module")
 def lifted():
     """A round ridge pressed, charged, and lifted by displacement far beyond the end of its contact."""
-    path = Path(make(load(MPI.COMM_WORLD, partial(ridge, 10e-6)), held=False), BearingArea(H_0))
+    path = Path(make(load(MPI.COMM_WORLD, ridge(10e-6)), held=False), BearingArea(H_0))
     path.to("press", f_ext=2.0)
     path.to("charge", voltage=150.0)
     path.to("lift", bone_height=40e-6)

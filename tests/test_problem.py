@@ -56,7 +56,7 @@ def anchor_apart(problem):
     s, p_n, t_t, gamma_t = problem.surface.evaluate(
         problem.surface.compile([c.new_anchor, c.p_n, c.t_t, c.springs.gamma_t])
     )
-    reach, slack = problem.interface.mu_f * p_n / gamma_t, s - t_t / gamma_t
+    reach, slack = problem.interface.friction.limit(p_n) / gamma_t, s - t_t / gamma_t
     pull = np.array([0.6, 1.7, -0.6, -1.7])
     problem.surface.set_history(problem.anchor, slack + np.where(reach > 0, pull * reach, 1e-7))
 
@@ -88,8 +88,9 @@ def distance_to_kinks(problem):
     y, p_n, u_x, anchor = problem.surface.evaluate(compiled)
     law = problem.interface
     apart = [np.abs(y), np.abs(y - D_EQ)]
-    if law.mu_f > 0:
-        cone = np.abs(np.abs(u_x - anchor) - law.mu_f * p_n / EPS_T) / (1 + law.mu_f * EPS_N / EPS_T)
+    if law.friction is not None:
+        mu_f = law.friction.mu_f
+        cone = np.abs(np.abs(u_x - anchor) - mu_f * p_n / EPS_T) / (1 + mu_f * EPS_N / EPS_T)
         apart.append(cone)
     return min(float(a.min()) for a in apart)
 
@@ -164,7 +165,7 @@ def states(problem):
     """Tell of each point whether it touches, is above d_eq, sticks or slips which way; shape (4, facets, points)."""
     c = problem.contact
     gap, y, p_n, t_t = problem.surface.evaluate(problem.surface.compile([c.gap, problem.y, c.p_n, c.t_t]))
-    cone = problem.interface.mu_f * p_n * (1 - 1e-8)
+    cone = problem.interface.friction.limit(p_n) * (1 - 1e-8)
     return np.array([gap < 0, y > D_EQ, (p_n > 0) & (t_t >= cone), (p_n > 0) & (-t_t >= cone)])
 
 

@@ -1,25 +1,19 @@
 """The ridge law: its ramps, its tables from one cell, and a block on it."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 from mpi4py import MPI
 
 from fingerpad import ridge_cell
 from fingerpad.scene import from_data
-from fingerpad.simulation import solids
 from geometry import tags
-from geometry.benchmarks import block
+from geometry.bodies import block
 from geometry.mesh import load
-from variational.continuation import Continuation, Target
-from variational.coupling import Coupling
-from variational.problem import Interface, Problem, SaintVenant
-from variational.quantities import Observer
+from variational.body import Body
+from variational.continuation import Target
+from variational.problem import Interface, SaintVenant
 from variational.ridge_law import RidgeLaw, RidgeTable, ramps
 from variational.roughness.bam import BearingArea
-from variational.solver import Solver
-from variational.surface import Surface
 
 COARSE = {"mesh": {"contact": 30e-6}, "f_ext": 10.0, "voltage": 0.0}
 PERIOD = 0.5e-3
@@ -54,7 +48,7 @@ def test_what_is_no_table_is_refused(change, sentence):
 @pytest.mark.parametrize(("exponent", "stretch"), [("printed", 0.60), ("abaqus", 0.70)])
 def test_confined_dermis(exponent, stretch):
     """Under 30 kPa it loses 40 % of its volume, 30 % with the other sign; half of the last digit."""
-    dermis = solids(from_data({"materials": {"exponent": exponent}}))[tags.DERMIS]
+    dermis = from_data({"materials": {"exponent": exponent}}).solids()[tags.DERMIS]
     assert ridge_cell.confined(dermis, 30e3) == pytest.approx(stretch, abs=0.005)
 
 
@@ -65,12 +59,10 @@ WIDTH, MU_F, FORCE = 1e-3, 0.3, 6.0
 @pytest.fixture(scope="module")
 def slid():
     """A stiff block two periods wide pressed on the law and slid to full slip."""
-    body = load(MPI.COMM_WORLD, partial(block, WIDTH, WIDTH / 4, WIDTH / 8))
-    surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
+    body = load(MPI.COMM_WORLD, block(WIDTH, WIDTH / 4, WIDTH / 8))
+    solids = {tags.STRATUM_CORNEUM: SaintVenant(1e10, 0.0)}
     law = Interface(RidgeLaw(TABLE, PERIOD, 1e10), MU_F, 0.514e-6)
-    problem = Problem(body.mesh, body.cell_tags, surface, {tags.STRATUM_CORNEUM: SaintVenant(1e10, 0.0)}, law)
-    solver, observer = Solver(problem, body.facet_tags.find(tags.BONE_RIM), FORCE), Observer(problem)
-    walk = Continuation(Coupling(solver, observer, BearingArea(0.514e-6)), touch_depth=2e-6)
+    walk = Body(body, solids, law, BearingArea(0.514e-6), force_scale=FORCE, touch_depth=2e-6).continuation
     walk.run(Target("press", f_ext=FORCE))
     height = walk.surface_state.y.copy()
     walk.run(Target("slide", bone_x=20e-6, until_full_slip=True))

@@ -1,11 +1,9 @@
 """Newton's method: which steps it takes, shortens and refuses, on any number of ranks."""
 
-from functools import partial
-
 import pytest
 from mpi4py import MPI
 
-from geometry.benchmarks import block, ridge
+from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, WIDTH, make
 from variational import solver as module
@@ -19,13 +17,13 @@ pytestmark = pytest.mark.mpi
 @pytest.fixture(scope="module")
 def body():
     """A ridge of some hundred cells."""
-    return load(MPI.COMM_WORLD, partial(ridge, 20e-6))
+    return load(MPI.COMM_WORLD, ridge(20e-6))
 
 
 @pytest.fixture(scope="module")
 def flat():
     """A block of 4 x 2 x 2 cells on the screen."""
-    return load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3))
+    return load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3))
 
 
 class Trace:

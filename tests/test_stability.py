@@ -1,12 +1,10 @@
 """Eigenvalues and inertia of states before and beyond pull-in, against a spring's closed form."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 from mpi4py import MPI
 
-from geometry.benchmarks import block
+from geometry.bodies import block
 from geometry.mesh import load
 from tests import spring
 from tests.test_contact import HEIGHT, MU_F, VOLTAGE, WIDTH, make
@@ -80,7 +78,7 @@ def test_leaves_the_state_alone(solver):
 @pytest.fixture(scope="module")
 def sliding():
     """A pressed, charged block that slips everywhere."""
-    solver = make(load(MPI.COMM_WORLD, partial(block, WIDTH, HEIGHT, 0.25e-3)), MU_F, 1e11, 1e10, held=False)
+    solver = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), MU_F, 1e11, 1e10, held=False)
     problem, observer = solver.problem, Observer(solver.problem)
     problem.voltage.value = VOLTAGE / 2
     for x in (0.0, 30e-6, 60e-6, 120e-6):

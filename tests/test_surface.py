@@ -1,6 +1,5 @@
 """History, integrals and contact patches of the surface, on any number of ranks."""
 
-from functools import partial
 from itertools import permutations
 
 import basix.ufl
@@ -12,7 +11,7 @@ from mpi4py import MPI
 from numpy.testing import assert_allclose
 
 from geometry import tags
-from geometry.benchmarks import block, ridge
+from geometry.bodies import block, ridge
 from geometry.mesh import TaggedMesh, load
 from variational.surface import Surface
 
@@ -124,7 +123,7 @@ def test_integrals_do_not_depend_on_the_ranks():
     """The sum over ranks is the sum on one. Tolerance: roundoff of another order of the terms."""
     values = []
     for comm in (MPI.COMM_WORLD, MPI.COMM_SELF):
-        surface = make(load(comm, partial(ridge, 20e-6)))
+        surface = make(load(comm, ridge(20e-6)))
         x, y = points(surface)
         lengths = surface.sum_over_facets(surface.closed_length(x, y, y - 9e-6))
         values.append([*surface.per_ridge(np.cos(2e4 * x) * y), *lengths])
@@ -170,7 +169,7 @@ def test_level_skin(square, level, length):
 
 def test_two_ends_in_a_facet():
     """A parabola that dips below inside one facet. Tolerance: roundoff of its roots."""
-    surface = make(load(MPI.COMM_WORLD, partial(block, 1e-3, 1e-3, 1e-3 / 3)))
+    surface = make(load(MPI.COMM_WORLD, block(1e-3, 1e-3, 1e-3 / 3)))
     x, _ = points(surface)
     half, curvature = 0.05e-3, 50.0
     y = curvature * ((x - 0.02e-3) ** 2 - half**2)
@@ -181,7 +180,7 @@ def test_two_ends_in_a_facet():
 
 def test_hump_in_a_facet():
     """A parabola that rises above inside one facet leaves the two sides. Tolerance: roundoff of a height of 1e-12 m."""
-    surface = make(load(MPI.COMM_WORLD, partial(block, 1e-3, 1e-3, 1e-3 / 3)))
+    surface = make(load(MPI.COMM_WORLD, block(1e-3, 1e-3, 1e-3 / 3)))
     x, _ = points(surface)
     half, curvature = 0.05e-3, 1e-3
     y = -curvature * (x**2 - half**2)
@@ -199,7 +198,7 @@ def test_order_of_the_contact_length():
     exact = 2 * radius * np.arccos(1 - depth / radius)
     sizes, errors = 0.5 ** np.arange(4) * 0.1e-3, []
     for size in sizes:
-        surface = make(load(MPI.COMM_WORLD, partial(block, 1.1e-3, 0.2e-3, size)))
+        surface = make(load(MPI.COMM_WORLD, block(1.1e-3, 0.2e-3, size)))
         u = fem.Function(fem.functionspace(surface.mesh, ("Lagrange", 2, (2,))))
         u.interpolate(lambda x: np.stack([0 * x[0], radius - depth - np.sqrt(radius**2 - x[0] ** 2)]))
         position = ufl.SpatialCoordinate(surface.mesh) + u

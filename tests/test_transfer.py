@@ -2,20 +2,16 @@
 
 from contextlib import nullcontext
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
 from mpi4py import MPI
 
-from geometry.benchmarks import block, ridge
+from geometry.bodies import block, ridge
 from geometry.mesh import load
-from tests.test_contact import MU_F, make
+from tests.test_contact import MU_F, over
 from variational.continuation import Continuation, StepFailed, Target
-from variational.coupling import Coupling
 from variational.failure import NotConverged
-from variational.quantities import Observer
-from variational.roughness.bam import BearingArea
 from variational.transfer import carry, give, interpolate
 
 pytestmark = pytest.mark.mpi
@@ -25,15 +21,12 @@ SLIDE = 0.2e-3
 
 
 def prepare(body, element="P2") -> Continuation:
-    coupling = Coupling(
-        solver := make(body, MU_F, held=False, element=element), Observer(solver.problem), BearingArea(H_0)
-    )
-    return Continuation(coupling, lambda *_: None)
+    return over(body, MU_F, held=False, element=element).continuation
 
 
 @pytest.fixture(scope="module")
 def bodies():
-    return {size: load(MPI.COMM_WORLD, partial(ridge, size)) for size in (COARSE, FINE)}
+    return {size: load(MPI.COMM_WORLD, ridge(size)) for size in (COARSE, FINE)}
 
 
 @pytest.fixture(scope="module")
@@ -304,7 +297,7 @@ def test_failure_names_the_state(bodies, reached):
 
 
 def test_another_body_is_refused(reached):
-    other = prepare(load(MPI.COMM_WORLD, partial(block, 2e-3, 2e-3, 0.25e-3)))
+    other = prepare(load(MPI.COMM_WORLD, block(2e-3, 2e-3, 0.25e-3)))
     with pytest.raises(ValueError, match="of another body"):
         give(reached[COARSE][1], other.coupling)
 

@@ -21,7 +21,7 @@ import numpy as np
 import ufl
 
 from variational.contact import Contact, Formulation, History, Skin, Springs
-from variational.friction import CONE_ROUNDOFF
+from variational.friction import CONE_ROUNDOFF, Friction
 
 if TYPE_CHECKING:
     from variational.quantities import SurfaceState
@@ -47,10 +47,11 @@ class AugmentedLagrangian(Formulation):
         """
         return ufl.conditional(ufl.lt(contact.gap, 0.0), -contact.p_n / skin.stiffness(), skin.y)
 
-    def error(self, state: "SurfaceState", history: History, mu_f: float) -> float:
+    def error(self, state: "SurfaceState", history: History, friction: Friction | None) -> float:
         """Return the largest depth, or opening under pressure, and elastic slip at this rank's points (m)."""
         depth = np.abs(state.p_n - history.pressure) / self.eps_n
-        sticking = (state.p_n > 0) & (np.abs(state.t_t) < mu_f * state.p_n * (1 - CONE_ROUNDOFF))
+        limit = np.zeros_like(state.p_n) if friction is None else friction.limit(state.p_n)
+        sticking = (state.p_n > 0) & (np.abs(state.t_t) < limit * (1 - CONE_ROUNDOFF))
         slip = np.where(sticking, np.abs(state.x - history.x), 0.0)
         return float(max(depth.max(initial=0.0), slip.max(initial=0.0)))
 

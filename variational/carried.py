@@ -20,7 +20,13 @@ class CarriedSolver(Solver):
         return super()._prescribed()
 
 
-def carried(problem: Problem, rim: NDArray[np.int32], sides: NDArray[np.int32], force_scale: float) -> CarriedSolver:
+def carried(
+    problem: Problem,
+    rim: NDArray[np.int32],
+    sides: NDArray[np.int32],
+    force_scale: float,
+    tolerance: float = 1e-9,
+) -> CarriedSolver:
     """Return the solver of a cell.
 
     Args:
@@ -28,6 +34,7 @@ def carried(problem: Problem, rim: NDArray[np.int32], sides: NDArray[np.int32], 
         rim: facets glued to the bone.
         sides: facets of the lateral faces.
         force_scale: force per length (N/m) in which residuals are measured.
+        tolerance: see :class:`variational.solver.Solver`.
     """
     on_rim, on_sides = (fem.locate_dofs_topological(problem.V, 1, facets) for facets in (rim, sides))
-    return CarriedSolver(problem, rim, force_scale, fixed=[(2 * np.setdiff1d(on_sides, on_rim), 0.0)])
+    return CarriedSolver(problem, rim, force_scale, tolerance, [(2 * np.setdiff1d(on_sides, on_rim), 0.0)])

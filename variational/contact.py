@@ -4,14 +4,15 @@ Per reference area of the skin, over the screen y = 0, a formulation gives tract
 stiffnesses :math:`\gamma_n, \gamma_t`, and
 
 .. math:: p_n = \langle \lambda_n - \gamma_n y \rangle_+, \qquad
-          t_t = \Pi_{|t| \le \mu_f p_n} \left( \lambda_t - \gamma_t (u_x - s) \right)
+          t_t = \Pi_{|t| \le t_{max}(p_n)} \left( \lambda_t - \gamma_t (u_x - s) \right)
 
-With the traction itself for :math:`\lambda` these are Signorini's conditions and Coulomb's law, for any positive
+With the traction itself for :math:`\lambda` these are Signorini's conditions and a law of friction with the limit
+:math:`t_{max}` (:mod:`~variational.friction`; Coulomb's is :math:`\mu_f p_n`), for any positive
 :math:`\gamma` (Alart and Curnier 1991, doi 10.1016/0045-7825(91)90022-X); with zero they are those of springs. The
 virtual work of the contact on the skin is :math:`\int p_n v_y + t_t v_x \,dS`. A point is in contact where the
 augmented gap :math:`\hat g = y - \lambda_n / \gamma_n` is negative.
 
-The history variable of friction is the anchor s, see :mod:`~variational.friction`.
+The history variable of friction is the anchor s, see :mod:`~variational.return_mapping`.
 """
 
 from abc import ABC, abstractmethod
@@ -23,7 +24,8 @@ import numpy as np
 import ufl
 from numpy.typing import NDArray
 
-from variational import friction
+from variational import return_mapping
+from variational.friction import Friction
 
 if TYPE_CHECKING:
     from variational.quantities import SurfaceState
@@ -82,24 +84,25 @@ class Contact:
         new_anchor: anchor that a step leaves when it is accepted (m).
     """
 
-    def __init__(self, skin: Skin, springs: Springs, mu_f, guess, ease=1.0) -> None:
+    def __init__(self, skin: Skin, springs: Springs, friction: Friction | None, guess, ease=1.0) -> None:
         """Project the trial tractions.
 
         Args:
             skin: what touches.
             springs: what the trial tractions are made of.
-            mu_f: friction coefficient.
-            guess: as in :func:`variational.friction.traction`.
+            friction: its law, with numbers that UFL can read; None without friction.
+            guess: as in :func:`variational.return_mapping.traction`.
             ease: part of the tangential stiffness that acts.
         """
         self.springs = s = springs
         self.gap = skin.y - s.lambda_n / s.gamma_n
         self.p_n = pressure(self.gap, s.gamma_n)
-        if skin.anchor is None:
+        if friction is None:
             self.t_t, self.new_anchor = ufl.zero(), skin.u[0]
         else:
-            self.t_t = friction.traction(skin.u[0], skin.anchor, mu_f * self.p_n, ease * s.gamma_t, guess, s.lambda_t)
-            self.new_anchor = friction.new_anchor(skin.u[0], self.t_t, s.gamma_t, s.lambda_t)
+            limit = friction.limit(self.p_n)
+            self.t_t = return_mapping.traction(skin.u[0], skin.anchor, limit, ease * s.gamma_t, guess, s.lambda_t)
+            self.new_anchor = return_mapping.new_anchor(skin.u[0], self.t_t, s.gamma_t, s.lambda_t)
         self.traction = ufl.as_vector([self.t_t, self.p_n])
 
 
@@ -133,7 +136,7 @@ class Formulation(ABC):
         """Return a length (m), smooth within a facet, that is negative where the augmented gap is."""
         return contact.gap
 
-    def error(self, state: "SurfaceState", history: History, mu_f: float) -> float:
+    def error(self, state: "SurfaceState", history: History, friction: Friction | None) -> float:
         """Return the largest error (m) at this rank's points that :meth:`corrected` can lower; mostly none."""
         return 0.0
 

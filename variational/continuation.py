@@ -71,6 +71,11 @@ class Attempt:
     leapt: bool = False
     """Whether the step went over loads at which the loop over the scales cycles: a ridge jumped."""
 
+    @property
+    def jump(self) -> bool:
+        """Whether skin or an air gap moved without the loads."""
+        return self.pseudo_transient > 0 or bool(self.jumped) or self.leapt
+
 
 @dataclass
 class _Accepted:

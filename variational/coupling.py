@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 
 from variational.failure import NotConverged
 from variational.quantities import Observer, SurfaceState
-from variational.roughness.closure import Closure
+from variational.roughness.closure import Closure, air_gaps, check
 from variational.secant import Secants
 from variational.solver import Solver
 
@@ -80,18 +80,23 @@ class Coupling:
             tolerance: relative error of d_eq, r / (1 - gain), at which the loop ends; gains count up to 0.99.
             cap: most sweeps.
             by_gap: take the length below d_eq, not the length under pressure, as L_R of Eq. 4.
+
+        Raises:
+            ValueError: what is no closure; in one sentence.
         """
+        if closure is not None:
+            check(closure)
         self.solver, self.observer, self.closure = solver, observer, closure
         self.tolerance, self.cap, self.by_gap = tolerance, cap, by_gap
         self.history = CouplingHistory()
         ridges = len(observer.surface.names)
-        self.d_eq = closure(np.zeros(ridges)).d_eq if closure else np.full(ridges, np.nan)
+        self.d_eq = np.full(ridges, np.nan) if closure is None else air_gaps(closure, np.zeros(ridges))
         self.gain = np.full_like(self.d_eq, np.nan)
 
     def set_air_gaps(self, d_eq: Array) -> None:
         """Impose air gaps (m), shape (ridges,)."""
         self.d_eq = d_eq
-        if self.closure:
+        if self.closure is not None:
             self.solver.problem.set_air_gaps(d_eq)
 
     def _sweep(self, creep: bool) -> tuple[Array, SurfaceState]:
@@ -101,7 +106,7 @@ class Coupling:
             state = self.observer.state()
             if self.closure is None:
                 return self.d_eq, state
-            d_eq = self.closure(self.observer.ridge_loads(state, self.by_gap).p_c).d_eq
+            d_eq = air_gaps(self.closure, self.observer.ridge_loads(state, self.by_gap).p_c)
         if not np.isfinite(d_eq).all():
             ridge = self.observer.surface.names[int(np.argmin(np.isfinite(d_eq)))]
             raise NotConverged(f"NOT_A_NUMBER in the air gap of ridge {ridge}", False)
@@ -114,6 +119,7 @@ class Coupling:
             creep: see :meth:`variational.solver.Solver.solve`.
 
         Raises:
+            ValueError: the closure returns another shape than the pressures'.
             NotConverged: the macroscale's, ``COUPLING_CAP`` with the ridge that moved most or the contact's error, or
                 ``NOT_A_NUMBER`` with the ridge of which the closure made one.
         """
@@ -128,7 +134,7 @@ class Coupling:
             d = self.d_eq
             found, state = self._sweep(creep or sweep > 0)
             r = found - d if charged else np.zeros_like(d)  # without attraction the air gaps do not act
-            error = formulation.error(state, contact_history, problem.interface.mu_f)
+            error = formulation.error(state, contact_history, problem.interface.friction)
             self.history.errors.append(problem.mesh.comm.allreduce(error, op=MPI.MAX))
             change = np.abs(r) / d if charged else np.zeros_like(d)
             worst = int(np.argmax(change))

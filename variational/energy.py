@@ -10,9 +10,9 @@ with E strain energy and the attraction's potential, R the force on the bone, s 
 is proportional to U^2; its derivative is the work of the voltage source less what the charged gap keeps. An air gap
 that follows the pressure (:mod:`~variational.coupling`) does work as well. Work is taken by the trapezoidal rule, that
 of the air gaps as the mean of the energy's changes at both shapes: an air gap may jump tenfold while the skin stays. A
-point slips only while it is on its cone, so its traction is the mean of the cone's radii at both ends, whatever it bore
-before it slipped: that is of second order along smooth paths, as the rest is, and right where a step spans sticking
-and slipping or a reversal. What is left over,
+point slips only while it is at the limit of the friction law, so its traction is the mean of the limits at both ends,
+whatever it bore before it slipped: that is of second order along smooth paths, as the rest is, and right where a step
+spans sticking and slipping or a reversal. What is left over,
 
 .. math:: \text{released} = \text{external} + \text{voltage} + \text{air gap} - \Delta \text{stored} - \text{dissipated}
 
@@ -23,7 +23,7 @@ took place. Each work then lies between that with the forces before and that wit
 
 .. math:: |\text{error}| \le \tfrac12 \Big( |\Delta R| \cdot |\Delta u^{bone}|
           + \Big|\Delta \frac{\partial E}{\partial U^2}\, \Delta U^2\Big| + |\Delta W^{gap}|
-          + \int \mu_f |\Delta p_n| |\Delta s| \,dS\Big)
+          + \int |\Delta t_{max}| |\Delta s| \,dS\Big)
 
 with :math:`\Delta W^{gap}` the difference of the air gaps' works at both shapes, and s the slip, of what slid on both
 sides of the jump. Where this error is larger than what is released even the sign is lost; smaller steps tell.
@@ -153,9 +153,11 @@ class EnergyBook:
 
     def _friction(self, a: SurfaceState, b: SurfaceState) -> tuple[float, float]:
         """Return what friction spends (J/m), and by how much that may be wrong in a step that jumps."""
+        law = self._problem.interface.friction
+        if law is None:
+            return 0.0, 0.0
         # A point that bears nothing is carried along: no slip.
         slip = np.where(b.p_n > 0, np.abs(self._problem.interface.formulation.slip(a, b)), 0.0)
-        cones = (a.p_n + b.p_n) / 2, np.abs(b.p_n - a.p_n) / 2
-        integrate, mu_f = self._problem.surface.per_ridge, self._problem.interface.mu_f
-        spent, unsure = (self._copies * mu_f * float(integrate(cone * slip).sum()) for cone in cones)
+        integrate = self._problem.surface.per_ridge
+        spent, unsure = (self._copies * float(integrate(d).sum()) for d in law.dissipated(a.p_n, b.p_n, slip))
         return spent, unsure

@@ -16,7 +16,13 @@ the sum of powers is :math:`\lambda_1^a + \lambda_2^a = 2 J^{a/2} \cosh(a \eta)`
 series is used below ``SERIES_BELOW`` and the closed form above.
 """
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import ufl
+
+from variational import kinematics
+from variational.material import Material
 
 SERIES_BELOW = 0.01
 SERIES_TERMS = 9  # leaves 3e-14 in the tangent at a = 14.53, y = 0.01; seven would leave 2e-8
@@ -74,3 +80,51 @@ def energy(F, shear_modulus, a, bulk):
         bulk: bulk modulus 2/D (Pa).
     """
     return isochoric_energy(F, shear_modulus, a) + bulk / 2 * (ufl.det(F) - 1) ** 2
+
+
+def isochoric_sigma_zz(F, shear_modulus, a):
+    r"""Return the out-of-plane Cauchy stress (Pa) of the isochoric part.
+
+    .. math:: \sigma_{zz} = \frac{2 G_0}{a J} \Big(\bar\lambda_3^a - \frac13 \sum_i \bar\lambda_i^a\Big),
+              \qquad \bar\lambda_3 = J^{-1/3}
+
+    Args:
+        F: deformation gradient, (2, 2).
+        shear_modulus: initial shear modulus G_0 (Pa).
+        a: power of the stretches.
+    """
+    J = ufl.det(F)
+    y = ((F[0, 0] - F[1, 1]) ** 2 + (F[0, 1] + F[1, 0]) ** 2) / (4 * J)
+    normal = ufl.exp(-a * ufl.ln(J) / 3)
+    in_plane = 2 * ufl.exp(a * ufl.ln(J) / 6) * cosh_of_asinh(a, y)
+    return 2 * shear_modulus / (3 * a * J) * (2 * normal - in_plane)
+
+
+@dataclass(frozen=True)
+class Ogden(Material):
+    """Ogden solid: initial shear modulus (Pa), exponent, Poisson's ratio, sign convention of the exponent."""
+
+    shear_modulus: float
+    alpha: float
+    poisson: float
+    convention: str = "printed"
+
+    coefficients = "shear_modulus", "bulk", "a"
+
+    @cached_property
+    def bulk(self) -> float:
+        """Bulk modulus 2/D (Pa)."""
+        return float(bulk_modulus(self.shear_modulus, self.poisson))
+
+    @cached_property
+    def a(self) -> float:
+        """Power of the stretches."""
+        return float(exponent(self.alpha, self.convention))
+
+    def distortion(self, H):
+        """Return :func:`isochoric_energy` of a displacement gradient."""
+        return isochoric_energy(kinematics.deformation_gradient(H), self.shear_modulus, self.a)
+
+    def distortion_zz(self, F):
+        """Return :func:`isochoric_sigma_zz`."""
+        return isochoric_sigma_zz(F, self.shear_modulus, self.a)

@@ -8,11 +8,11 @@ Find u, equal to the bone's translation on its rim, with for all v alike
 The unknown is :math:`w = u - u^{bone}`, the displacement relative to the bone, which is a constant of the forms. A
 rigid translation then adds no digits to the strains: at 10 mm of sliding they are as exact as at none.
 
-P = dW/dF: :mod:`~variational.ogden`, :mod:`~variational.saint_venant`, the volumetric part as the
-:mod:`~variational.element` has it, which may bring a pressure p and a second equation, p = K (J - 1) weakly; p_n and
-t_t: :mod:`~variational.contact` in one of the formulations :mod:`~variational.penalty`, :mod:`~variational.nitsche`
-(with terms of its own) and :mod:`~variational.augmented`; p_el: :mod:`~variational.electroadhesion`, written as the
-derivative of its potential. Without a voltage the attraction is left out, with a friction coefficient of zero t_t is.
+P = dW/dF of a :mod:`~variational.material`, the volumetric part as the :mod:`~variational.element` has it, which may
+bring a pressure p and a second equation, p = K (J - 1) weakly; p_n and t_t: a law of :mod:`~variational.friction` and
+:mod:`~variational.contact` in one of the formulations :mod:`~variational.penalty`, :mod:`~variational.nitsche` (with
+terms of its own) and :mod:`~variational.augmented`; p_el: :mod:`~variational.electroadhesion`, written as the
+derivative of its potential. Without a voltage the attraction is left out, without a law of friction t_t is.
 Friction makes the derivative unsymmetric. The derivative may carry a shift :math:`\int \eta\, du \cdot v \,dS`, which
 is no part of the equations but of pseudo-transient continuation (:mod:`~variational.solver`). This module adds up
 forms and never solves.
@@ -27,42 +27,17 @@ import numpy as np
 import ufl
 from dolfinx import fem
 
-from variational import electroadhesion, jit, kinematics, ogden, saint_venant, stress
+from variational import electroadhesion, jit, kinematics, stress
 from variational.contact import Contact, Formulation, History, Skin
 from variational.element import ELEMENTS, at_centroid
+from variational.friction import Friction, law_of
+from variational.material import Material
+from variational.ogden import Ogden as Ogden
 from variational.pressure import LayerwisePressure
+from variational.saint_venant import SaintVenant as SaintVenant
 from variational.surface import Surface
 
 STICKS, SLIPS = 1e-9, -1e-9  # first guesses for points on the friction cone
-
-
-@dataclass(frozen=True)
-class Ogden:
-    """Ogden solid: initial shear modulus (Pa), exponent, Poisson's ratio, sign convention of the exponent."""
-
-    shear_modulus: float
-    alpha: float
-    poisson: float
-    convention: str = "printed"
-
-    @property
-    def constrained_modulus(self) -> float:
-        """Stress over strain where the strain is confined to one direction, K + 4 G_0 / 3 (Pa), unloaded."""
-        return ogden.bulk_modulus(self.shear_modulus, self.poisson) + 4 * self.shear_modulus / 3
-
-
-@dataclass(frozen=True)
-class SaintVenant:
-    """Saint Venant-Kirchhoff solid: Young's modulus (Pa) and Poisson's ratio."""
-
-    young: float
-    poisson: float
-
-    @property
-    def constrained_modulus(self) -> float:
-        """Stress over strain where the strain is confined to one direction, lambda + 2 mu (Pa), unloaded."""
-        lame, shear = saint_venant.lame_constants(self.young, self.poisson)
-        return lame + 2 * shear
 
 
 @dataclass(frozen=True)
@@ -71,12 +46,29 @@ class Interface:
 
     formulation: Formulation
     """How contact and friction enter the weak form."""
-    mu_f: float
-    """Friction coefficient; zero leaves friction and its history out of the forms."""
+    friction: Friction | None
+    """Law of friction; given as a number it is the friction coefficient of Coulomb's law. None or zero leaves friction
+    and its history out of the forms."""
     h_0: float
     """Effective insulator thickness (m)."""
     attraction: electroadhesion.Attraction | None = electroadhesion.ELECTROSTATIC
     """What draws the skin to the screen; None leaves it out of the forms."""
+
+    def __init__(
+        self,
+        formulation: Formulation,
+        friction: Friction | float | None,
+        h_0: float,
+        attraction: electroadhesion.Attraction | None = electroadhesion.ELECTROSTATIC,
+    ) -> None:
+        """Take the laws as they are described above.
+
+        Raises:
+            ValueError: friction is no law; in one sentence.
+        """
+        law = law_of(friction)
+        for name, value in (("formulation", formulation), ("friction", law), ("h_0", h_0), ("attraction", attraction)):
+            object.__setattr__(self, name, value)
 
 
 class Problem:
@@ -96,8 +88,8 @@ class Problem:
         history: what the two were last accepted with, and where.
         contact: the projected tractions.
         opening: length (m) that is negative in contact.
-        laws, pressures, densities: each group of layers' law, volumetric pressure (Pa), positive in tension, and
-            strain energy density (J/m^3), UFL.
+        laws, pressures, densities: each group of layers' material with its numbers as fields, volumetric pressure (Pa),
+            positive in tension, and strain energy density (J/m^3), UFL.
         residual, jacobian: compiled forms in w and its test function.
         pressure_residual: the equation of the pressure; with one only.
         pressure_jacobian: compiled blocks of the Jacobian in (v, dp), (q, du), (q, dp); with a pressure only.
@@ -108,7 +100,7 @@ class Problem:
         mesh: dolfinx.mesh.Mesh,
         cell_tags: dolfinx.mesh.MeshTags,
         surface: Surface,
-        solids: Mapping[int, Ogden | SaintVenant],
+        solids: Mapping[int, Material],
         interface: Interface,
         element: str = "P2",
     ) -> None:
@@ -121,6 +113,9 @@ class Problem:
             solids: material of each layer's tag.
             interface: laws of the contact.
             element: a name of :data:`variational.element.ELEMENTS`.
+
+        Raises:
+            ValueError: a material that is none, or skin that Nitsche's method cannot take; in one sentence.
         """
         self.mesh, self.cell_tags, self.surface, self.interface = mesh, cell_tags, surface, interface
         kind = ELEMENTS[element]
@@ -131,36 +126,38 @@ class Problem:
         self.u = self.w + self.bone
         self.d_eq = fem.Function(cellwise)
         self.multiplier = fem.Function(surface.history_space)
-        self.anchor = fem.Function(surface.history_space) if interface.mu_f else None
+        self.anchor = fem.Function(surface.history_space) if interface.friction is not None else None
 
         def constant(value: float) -> fem.Constant:
             return fem.Constant(mesh, np.float64(value))
 
         self.voltage, self.eta, self.guess = constant(0.0), constant(0.0), constant(STICKS)
         self.ease = constant(1.0)
-        mu_f, h_0 = constant(interface.mu_f), constant(interface.h_0)
+        friction = None if interface.friction is None else interface.friction.with_constants(constant)
+        h_0 = constant(interface.h_0)
 
         w, v = self.w, ufl.TestFunction(self.V)
         H = ufl.grad(w)
         F = kinematics.deformation_gradient(H)
         energy = 0
         dx = ufl.Measure("dx", mesh, subdomain_data=cell_tags, metadata={"quadrature_degree": kind.quadrature_degree})
-        self.laws = dict(self._laws(solids, cellwise))
+        self.laws = self._laws(solids, cellwise)
         self.pressure = self._pressure(solids) if kind.mixed else None
         self.pressures = {tags: law.pressure(H) for tags, law in self.laws.items()}
         for tags, law in self.laws.items():
             energy += law.distortion(H) * dx(tags)
-            if law.bulk is None:
+            bulk = law.volumetric
+            if bulk is None:
                 continue
             if self.pressure:
                 p = self.pressures[tags] = self.pressure.p
-                energy += (p * kinematics.dilation(H) - p**2 / (2 * law.bulk)) * dx(tags)
+                energy += (p * kinematics.dilation(H) - p**2 / (2 * bulk)) * dx(tags)
             else:
                 rule = {"quadrature_degree": kind.volumetric_degree}
-                energy += law.pressure(H) ** 2 / (2 * law.bulk) * dx(tags, metadata=rule)
+                energy += law.pressure(H) ** 2 / (2 * bulk) * dx(tags, metadata=rule)
             if kind.reduced:
                 self.pressures[tags] = law.pressure(at_centroid(H, self._centroids()))
-        self.densities = {tags: law.energy(F, self.pressures[tags]) for tags, law in self.laws.items()}
+        self.densities = {tags: law.density(F, self.pressures[tags]) for tags, law in self.laws.items()}
 
         self.y = kinematics.current_height(mesh, self.u)
         attraction = interface.attraction
@@ -179,7 +176,7 @@ class Problem:
             constant,
         )
         formulation = interface.formulation
-        self.contact = Contact(skin, formulation.springs(skin), mu_f, self.guess, self.ease)
+        self.contact = Contact(skin, formulation.springs(skin), friction, self.guess, self.ease)
         self.opening = formulation.opening(skin, self.contact)
         dS = surface.measure
         if attraction:
@@ -200,8 +197,13 @@ class Problem:
         nothing = np.zeros((len(surface.pairs), len(surface.weights)))
         self.history = History(nothing, nothing, surface.evaluate(surface.compile([ufl.SpatialCoordinate(mesh)[0]]))[0])
 
-    def _laws(self, solids, cellwise):
-        """Yield (tags, law), one kernel a law: parameters are fields with one value a cell."""
+    def _laws(self, solids: Mapping[int, Material], cellwise: fem.FunctionSpace) -> dict[tuple[int, ...], Material]:
+        """Return the law of each group of layers, one kernel a law: numbers are fields with one value a cell."""
+        groups: list[list[int]] = []
+        for tag, solid in solids.items():
+            solid.check()
+            mine = next((g for g in groups if solids[g[0]].kind() == solid.kind()), None)
+            groups.append([tag]) if mine is None else mine.append(tag)
 
         def field(values: Mapping[int, float]) -> fem.Function:
             f = fem.Function(cellwise)
@@ -210,24 +212,16 @@ class Problem:
             f.x.scatter_forward()
             return f
 
-        skins = {tag: solid for tag, solid in solids.items() if isinstance(solid, Ogden)}
-        if skins:
-            shear = field({tag: s.shear_modulus for tag, s in skins.items()})
-            bulk = field({tag: ogden.bulk_modulus(s.shear_modulus, s.poisson) for tag, s in skins.items()})
-            a = field({tag: ogden.exponent(s.alpha, s.convention) for tag, s in skins.items()})
-            yield tuple(skins), stress.ogden_law(shear, a, bulk)
-        stiff = {
-            tag: saint_venant.lame_constants(s.young, s.poisson)
-            for tag, s in solids.items()
-            if isinstance(s, SaintVenant)
-        }
-        if stiff:
-            lame, shear = (field({tag: pair[k] for tag, pair in stiff.items()}) for k in (0, 1))
-            yield tuple(stiff), stress.saint_venant_law(lame, shear)
+        found: dict[tuple[int, ...], Material] = {}
+        for group in groups:
+            first = solids[group[0]]
+            fields = {name: field({tag: getattr(solids[tag], name) for tag in group}) for name in first.names()}
+            found[tuple(group)] = first.with_values(fields)
+        return found
 
-    def _pressure(self, solids) -> LayerwisePressure | None:
+    def _pressure(self, solids: Mapping[int, Material]) -> LayerwisePressure | None:
         """Return the pressure of the layers whose law has a volumetric part, None if there is none."""
-        skins = {tag: solid.shear_modulus for tag, solid in solids.items() if isinstance(solid, Ogden)}
+        skins = {tag: solid.shear_modulus for tag, solid in solids.items() if solid.volumetric is not None}
         return LayerwisePressure(self.mesh, self.cell_tags, tuple(skins), max(skins.values())) if skins else None
 
     def _centroids(self) -> fem.Function:
@@ -248,7 +242,7 @@ class Problem:
         behind_all = found.pop()
         return stress.first_piola_kirchhoff(self.laws[behind_all], F, self.pressures[behind_all])
 
-    def _skin_stiffness(self, solids: Mapping[int, Ogden | SaintVenant], cellwise: fem.FunctionSpace) -> fem.Function:
+    def _skin_stiffness(self, solids: Mapping[int, Material], cellwise: fem.FunctionSpace) -> fem.Function:
         """Return the constrained modulus behind the touching skin over the facets' lengths (Pa/m), cell by cell."""
         f = fem.Function(cellwise)
         for tag, solid in solids.items():

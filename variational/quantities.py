@@ -20,6 +20,8 @@ class RidgeLoads:
     """Contact force per length (N/m)."""
     f_friction: Array
     """Friction on the skin (N/m), positive towards x > 0."""
+    f_limit: Array
+    """Largest friction that the law allows under the contact pressure (N/m): at full slip that on the skin."""
     f_attraction: Array
     """Downward resultant of the attraction (N/m)."""
     f_attraction_x: Array
@@ -84,18 +86,23 @@ class Observer:
         return RidgeLoads(
             f_contact=integrate(s.p_n),
             f_friction=integrate(s.t_t),
+            f_limit=integrate(self.limit(s)),
             f_attraction=-integrate(s.p_el * s.area_y),
             f_attraction_x=integrate(s.p_el * s.area_x),
             length=self.surface.sum_over_facets(self.surface.closed_length(s.x, s.y, gap)),
         )
 
+    def limit(self, state: SurfaceState) -> Array:
+        """Return the largest friction that the law allows (Pa of reference area) at this rank's points."""
+        law = self.problem.interface.friction
+        return np.zeros_like(state.p_n) if law is None else np.asarray(law.limit(state.p_n))
+
     def slip(self, state: SurfaceState) -> tuple[float, bool]:
         """Return the part of the contact points at the friction cone, and whether all slip one way."""
-        mu_f = self.problem.interface.mu_f
-        loaded = state.p_n > 0
-        # The law gives plus or minus mu_f p_n where it slips; the factor covers roundoff alone.
-        forth = loaded & (state.t_t >= mu_f * state.p_n * (1 - CONE_ROUNDOFF))
-        back = loaded & (-state.t_t >= mu_f * state.p_n * (1 - CONE_ROUNDOFF))
+        loaded, limit = state.p_n > 0, self.limit(state)
+        # The law gives plus or minus the limit where it slips; the factor covers roundoff alone.
+        forth = loaded & (state.t_t >= limit * (1 - CONE_ROUNDOFF))
+        back = loaded & (-state.t_t >= limit * (1 - CONE_ROUNDOFF))
         count = np.array([loaded.sum(), forth.sum(), back.sum(), (forth | back).sum()])
         total = np.empty_like(count)
         self.problem.mesh.comm.Allreduce(count, total)

@@ -8,7 +8,12 @@ strain is written in the displacement gradient H = F - I: of a nail of 170 MPa w
 of F^T F and I would lose six digits, and nodal forces of 1e-11 N/m with them.
 """
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import ufl
+
+from variational.material import Material
 
 
 def energy(H, lame, shear_modulus):
@@ -20,3 +25,41 @@ def energy(H, lame, shear_modulus):
 def lame_constants(young: float, poisson: float) -> tuple[float, float]:
     """Return (lambda, mu) in Pa for Young's modulus (Pa) and Poisson's ratio."""
     return young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))
+
+
+def sigma_zz(F, lame):
+    r"""Return the out-of-plane Cauchy stress (Pa), :math:`\lambda \operatorname{tr} E / J`, for Lamé's lambda (Pa)."""
+    return lame / 2 * (ufl.inner(F, F) - 2) / ufl.det(F)
+
+
+@dataclass(frozen=True)
+class SaintVenant(Material):
+    """Saint Venant-Kirchhoff solid: Young's modulus (Pa) and Poisson's ratio."""
+
+    young: float
+    poisson: float
+
+    coefficients = "lame", "shear_modulus"
+
+    @cached_property
+    def lame(self) -> float:
+        """Lamé's lambda (Pa)."""
+        return lame_constants(self.young, self.poisson)[0]
+
+    @cached_property
+    def shear_modulus(self) -> float:
+        """Lamé's mu (Pa)."""
+        return lame_constants(self.young, self.poisson)[1]
+
+    @property
+    def constrained_modulus(self) -> float:
+        """Stress over strain where the strain is confined to one direction, lambda + 2 mu (Pa), unloaded."""
+        return self.lame + 2 * self.shear_modulus
+
+    def distortion(self, H):
+        """Return :func:`energy` of a displacement gradient."""
+        return energy(H, self.lame, self.shear_modulus)
+
+    def distortion_zz(self, F):
+        """Return :func:`sigma_zz`."""
+        return sigma_zz(F, self.lame)

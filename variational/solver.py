@@ -443,7 +443,7 @@ class Solver:
     def _ease(self, start: Array) -> int:
         """Solve with softened tangential springs and stiffen them step by step; return SNES's reason.
 
-        A point sticks while its elastic slip is below mu_f p_n / gamma_t: 0.1 nm at a friction coefficient of 0.002.
+        A point sticks while its elastic slip is below t_max / gamma_t: 0.1 nm at a friction coefficient of 0.002.
         Where that is far less than a facet moves in an iteration, Newton's method throws the point from slipping one
         way to slipping the other way and back. With softer springs the point comes to stick, and it stays so while the
         springs are stiffened. The last solve is that of the unchanged equations.

@@ -13,15 +13,15 @@ not, and comes back point by point. So a node on a ridge is put down to where th
 the ridge's chord, and not up.
 
 **History.** What friction keeps is the elastic slip :math:`s - u_x = t_t / \gamma_t` at Gauss points of the skin
-(:mod:`~variational.friction`). It is interpolated linearly along each ridge, over the place on the ridge's chord, so
-is the contact pressure, and :math:`s = u_x + (s - u_x)` is made anew with the new :math:`u_x`.
+(:mod:`~variational.return_mapping`). It is interpolated linearly along each ridge, over the place on the ridge's
+chord, so is the contact pressure, and :math:`s = u_x + (s - u_x)` is made anew with the new :math:`u_x`.
 
-**Full slip.** There the traction is :math:`\mp \mu_f p_n` wherever there is pressure. The state depends on the path
-only by where it is, since the screen looks the same everywhere: :math:`u + \delta e_x` is as good a solution as u. So
-the body is moved on by :math:`\delta` and the anchors are not. Every point is then far beyond its cone, none can
-stick while Newton's method moves the skin by less than :math:`\delta`, and what is solved for is the state of full
-slip itself, of which the old mesh's history is no part. In a state with sticking points the history does remain the
-old mesh's, interpolated, with the error that its path made.
+**Full slip.** There the traction is the limit of friction, :math:`\mp t_{max}(p_n)`, wherever there is pressure. The
+state depends on the path only by where it is, since the screen looks the same everywhere: :math:`u + \delta e_x` is as
+good a solution as u. So the body is moved on by :math:`\delta` and the anchors are not. Every point is then far beyond
+its cone, none can stick while Newton's method moves the skin by less than :math:`\delta`, and what is solved for is the
+state of full slip itself, of which the old mesh's history is no part. In a state with sticking points the history does
+remain the old mesh's, interpolated, with the error that its path made.
 """
 
 from dataclasses import dataclass, replace

@@ -1,7 +1,6 @@
 """The ridge by this package, and its mesh for the others."""
 
 import importlib.metadata
-from functools import partial
 
 import dolfinx
 import numpy as np
@@ -10,7 +9,7 @@ from mpi4py import MPI
 
 from benchmarks.peers.exchange import Answer, Case, Ridge, State, plain, steps
 from geometry import tags
-from geometry.benchmarks import ridge
+from geometry.bodies import ridge
 from geometry.mesh import TaggedMesh, load
 from variational.compat import cell_geometry
 from variational.contact import History
@@ -28,7 +27,7 @@ _IMBALANCE = 1e-9  # N/m
 
 def make(size: float) -> TaggedMesh:
     """Return the ridge with facets of a given length (mm)."""
-    return load(MPI.COMM_SELF, partial(ridge, size * _MM))
+    return load(MPI.COMM_SELF, ridge(size * _MM))
 
 
 def for_peers(body: TaggedMesh) -> Ridge:

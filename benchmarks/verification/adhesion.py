@@ -24,7 +24,7 @@ from scipy.optimize import brentq, minimize_scalar
 from benchmarks.verification import dugdale
 from benchmarks.verification.case import Case, Outcome, Row
 from benchmarks.verification.over_screen import formulations, over_screen, plane_strain_modulus
-from geometry.benchmarks import block, pad
+from geometry.bodies import block, pad
 from variational.continuation import Target
 from variational.electroadhesion import ELECTROSTATIC
 from variational.insulator import VACUUM_PERMITTIVITY
@@ -49,7 +49,7 @@ def total_attraction(small: bool) -> Outcome:
         exact = float(VACUUM_PERMITTIVITY * voltage**2 / (2 * s**2) * extent)
         found = []
         for part in parts:
-            build = partial(pad, k / part, int(0.75 * end / k * part), radius, span)
+            build = pad(k / part, int(0.75 * end / k * part), radius, span)
             run = over_screen(build, SaintVenant(1e7, 0.3), Interface(_CONTACT, 0.0, _H_0), 0.1, d_eq=1e-7)
             run.run(Target("lift", bone_height=gap))
             run.run(Target("charge", voltage=voltage))
@@ -70,7 +70,7 @@ def potential(small: bool) -> Outcome:
     for name, law in (("Eq. 3", ELECTROSTATIC), ("constant", dugdale.constant_attraction(0.2))):
         h_0 = _H_0 if law is ELECTROSTATIC else 3e-6
         interface = Interface(_CONTACT, 0.0, h_0, law)
-        run = over_screen(partial(block, 1e-3, 0.5e-3, 0.125e-3), SaintVenant(1e6, 0.3), interface, 1.0)
+        run = over_screen(block(1e-3, 0.5e-3, 0.125e-3), SaintVenant(1e6, 0.3), interface, 1.0)
         problem = run.problem
         problem.set_air_gaps(np.array([2e-6]))
         problem.w.interpolate(lambda x: np.stack([1e-2 * x[0], 3.3e-6 + 3e-6 * np.sin(7e3 * x[0] + 0.4) - 1e-3 * x[1]]))
@@ -117,7 +117,7 @@ def actuator(small: bool) -> Outcome:
     rest = _H_0 + gap
     exact = float(np.sqrt(8 * young * rest**3 / (27 * VACUUM_PERMITTIVITY * height)))
     interface = Interface(_CONTACT, 0.0, _H_0)
-    build = partial(block, width, height, width / 2, gap=gap)
+    build = block(width, height, width / 2, gap=gap)
     run = over_screen(build, SaintVenant(young, 0.0), interface, 1e-2, held=True, d_eq=1e-7)
     check = StabilityCheck(run.solver)
     square, least, y = [], [], []
@@ -169,7 +169,7 @@ def maugis(small: bool) -> Outcome:
     formulation = formulations(young / (unit / part), 1e-11)["penalty"]
     interface = Interface(formulation, 0.0, h_0, dugdale.constant_attraction(0.2))
     scale = e_star * unit**2 / radius
-    build = partial(pad, unit / part, 4 * part, radius, 200 * unit)
+    build = pad(unit / part, 4 * part, radius, 200 * unit)
     run = over_screen(build, SaintVenant(young, nu), interface, scale, touch_depth=0.5e-6, step_scale=4.0)
     run.run(Target("press", bone_height=-0.5e-6))
     run.run(Target("charge", voltage=voltage))

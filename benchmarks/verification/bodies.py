@@ -13,13 +13,14 @@ from petsc4py import PETSc
 from geometry import tags
 from geometry.mesh import TaggedMesh, load
 from variational import jit
+from variational.material import Material
 from variational.penalty import Penalty
-from variational.problem import Interface, Ogden, Problem, SaintVenant
+from variational.problem import Interface, Problem
 from variational.solver import Solver
 from variational.surface import Surface
 
 Array = NDArray[np.float64]
-Solid = Ogden | SaintVenant
+Solid = Material
 Held = tuple[NDArray[np.int32], float]
 NOTHING = np.empty(0, dtype=np.int32)  # facets of the bone's rim
 

@@ -16,7 +16,6 @@ asked of a point's displacement.
 """
 
 from collections.abc import Sequence
-from functools import partial
 
 import numpy as np
 import ufl
@@ -26,7 +25,7 @@ from petsc4py import PETSc
 from benchmarks.verification.bodies import FreeSolver, body, free_problem
 from benchmarks.verification.case import Case, Outcome, Row
 from geometry import tags
-from geometry.benchmarks import cooks_membrane
+from geometry.bodies import cooks_membrane
 from variational.element import ELEMENTS
 from variational.problem import Ogden
 
@@ -44,7 +43,7 @@ class Membrane:
 
     def __init__(self, element: str, divisions: int, poisson: float) -> None:
         """Clamp and load it."""
-        made = body(partial(cooks_membrane, divisions, GAP))
+        made = body(cooks_membrane(divisions, GAP))
         # With a = 2 either sign of the exponent would do, were the solid incompressible.
         solid = Ogden(YOUNG / 2 / (1 + poisson), 2.0, poisson, "abaqus")
         self.problem = problem = free_problem(made, {tags.STRATUM_CORNEUM: solid}, element)

@@ -13,8 +13,6 @@ dead loads on the interface of the order of the moduli make it wrinkle, the more
 reach from 0.78 to 1.28.
 """
 
-from functools import partial
-
 import dolfinx
 import numpy as np
 import ufl
@@ -25,7 +23,7 @@ from benchmarks.verification import orders
 from benchmarks.verification.bodies import FreeSolver, body, free_problem
 from benchmarks.verification.case import Case, Outcome, Row
 from geometry import tags
-from geometry.benchmarks import block
+from geometry.bodies import block
 from variational import compat, jit, kinematics, stress
 from variational.problem import Ogden, Problem
 
@@ -76,7 +74,7 @@ def loads(problem: Problem):
 
 def solve(element: str, divisions: int) -> Problem:
     """Solve on a grid of squares halved into triangles, from the exact solution interpolated."""
-    build = partial(block, SIZE, SIZE, SIZE / divisions, gap=SIZE)
+    build = block(SIZE, SIZE, SIZE / divisions, gap=SIZE)
     made = body(build, lambda x: np.where(x[:, 1] < INTERFACE, SC, DERMIS))
     problem = free_problem(made, SOLIDS, element)
     boundary = [made.facet_tags.find(tag) for tag in (tags.ridge(0), tags.BONE_RIM, tags.SIDES)]

@@ -6,8 +6,6 @@ the trapezoidal rule, whose error falls with the square of the step, but for poi
 somewhere inside a step.
 """
 
-from functools import partial
-
 import numpy as np
 from matplotlib.figure import Figure
 from mpi4py import MPI
@@ -15,7 +13,7 @@ from mpi4py import MPI
 from benchmarks.verification.case import Case, Outcome, Row
 from benchmarks.verification.microscale import H_0, MU_F
 from geometry import tags
-from geometry.benchmarks import ridge
+from geometry.bodies import ridge
 from geometry.mesh import load
 from variational.energy import Balance, EnergyBook
 from variational.penalty import Penalty
@@ -79,7 +77,7 @@ def cycle(solver: Solver, depth: float, far: float, steps: int) -> dict[str, lis
 
 
 def _ridge() -> Solver:
-    body = load(MPI.COMM_WORLD, partial(ridge, _SIZE))
+    body = load(MPI.COMM_WORLD, ridge(_SIZE))
     surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
     skin = {tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53, 0.48)}
     law = Interface(Penalty(1e11, 1e10), MU_F, H_0)

@@ -20,14 +20,13 @@ its Q found; Coulomb's law knows no scale, so N may be any. Formula and tan alph
 """
 
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from benchmarks.verification.case import Case, Outcome, Row
 from benchmarks.verification.over_screen import Array, formulations, over_screen, profile
-from geometry.benchmarks import block, pad, ridge
+from geometry.bodies import block, pad, ridge
 from variational.augmented import AugmentedLagrangian
 from variational.contact import Formulation
 from variational.continuation import Continuation, Target
@@ -59,7 +58,7 @@ def full_slip(small: bool) -> Outcome:
             path.append((run.solver.control.x, -run.solver.reaction[0], float(load.f_contact[0])))  # noqa: B023
 
         interface = Interface(formulation, mu_f, _H_0)
-        run = over_screen(partial(ridge, 20e-6), _SKIN, interface, force, d_eq=2e-6, on_accept=accept)
+        run = over_screen(ridge(20e-6), _SKIN, interface, force, d_eq=2e-6, on_accept=accept)
         run.run(Target("press", f_ext=force))
         run.run(Target("charge", voltage=100.0))
         for x in (10e-6, 20e-6, 30e-6, 45e-6, 0.4e-3):
@@ -132,7 +131,7 @@ def partial_slip(small: bool) -> Outcome:
     size = HALF_WIDTH / (facets + 0.5)
     formulation = formulations(3 * SHEAR_MODULUS / size, 1e-11)["penalty"]
     # At alpha = -2 Ogden's law has squares of the stretches.
-    build = partial(pad, size, int(np.ceil(1.3 * facets)), RADIUS, 300 * HALF_WIDTH)
+    build = pad(size, int(np.ceil(1.3 * facets)), RADIUS, 300 * HALF_WIDTH)
     solid, interface = Ogden(SHEAR_MODULUS, -2.0, NU), Interface(formulation, MU_F, _H_0)
     # Pressing moves the surface sideways so little that one step will do.
     run = over_screen(build, solid, interface, FORCE, "P2-P1", tolerance=1e-6, touch_depth=0.5e-6, step_scale=15.0)
@@ -173,7 +172,7 @@ def incline(small: bool) -> Outcome:
     rows = []
     for mu_f in (0.0, 0.1, 0.2, 0.3):
         interface = Interface(Nitsche(10.0), mu_f, _H_0)
-        run = over_screen(partial(block, 1e-3, 0.5e-3, 0.25e-3), SaintVenant(1e6, 0.3), interface, normal)
+        run = over_screen(block(1e-3, 0.5e-3, 0.25e-3), SaintVenant(1e6, 0.3), interface, normal)
         run.run(Target("press", f_ext=normal))
         run.run(Target("slide", bone_x=20e-6))
         along = -float(run.solver.reaction[0])

@@ -9,7 +9,7 @@ Non-linear Elastic Deformations, 1984, chapters 4 and 6). The same is asked of t
 tangents of a body of two layers of skin and one of nail.
 """
 
-from functools import cache, partial
+from functools import cache
 
 import numpy as np
 import ufl
@@ -23,8 +23,8 @@ from benchmarks.verification.constitutive import LAYERS, in_package
 from benchmarks.verification.points import Points
 from benchmarks.verification.principal import moduli
 from geometry import tags
-from geometry.benchmarks import block
-from variational import saint_venant, stress
+from geometry.bodies import block
+from variational import saint_venant
 from variational.element import ELEMENTS
 from variational.problem import Ogden, Problem, SaintVenant
 from variational.solver import Solver
@@ -44,7 +44,7 @@ _ROUNDOFF = 1e-13
 @cache
 def nail() -> Points:
     """Return the package's Saint Venant-Kirchhoff law."""
-    return Points(stress.saint_venant_law, 2)
+    return Points(SaintVenant(1.0, 0.3))
 
 
 def states(count: int) -> Array:
@@ -82,7 +82,7 @@ def layered(element: str) -> Problem:
     def layer(x: Array) -> Array:
         return np.select([x[:, 1] < 0.5 * SIZE, x[:, 1] < 0.75 * SIZE], layers[:2], layers[2])
 
-    return free_problem(body(partial(block, SIZE, SIZE, SIZE / 4), layer), SOLIDS, element)
+    return free_problem(body(block(SIZE, SIZE, SIZE / 4), layer), SOLIDS, element)
 
 
 def deform(problem: Problem) -> None:

@@ -32,7 +32,7 @@ from scipy.optimize import brentq
 
 from benchmarks.verification.case import Case, Outcome, Row
 from benchmarks.verification.over_screen import Array, formulations, over_screen, plane_strain_modulus, profile
-from geometry.benchmarks import block, foot, pad
+from geometry.bodies import block, foot, pad
 from variational.augmented import AugmentedLagrangian
 from variational.continuation import Target
 from variational.penalty import Penalty
@@ -60,7 +60,7 @@ def patch(small: bool) -> Outcome:
     for name, formulation in formulations(YOUNG / 0.25e-3, 1e-14).items():
         if isinstance(formulation, AugmentedLagrangian):  # of a stiffness with which a correction gains five digits
             formulation = AugmentedLagrangian(1e4 * formulation.eps_n, formulation.eps_t, formulation.tolerance)
-        build = partial(block, width, height, 0.25e-3)
+        build = block(width, height, 0.25e-3)
         run = over_screen(build, solid, Interface(formulation, 0.0, _H_0), 1.0, held=True)
         run.run(Target("press", bone_height=-depth))
         sink = 1 / formulation.eps_n if isinstance(formulation, Penalty) else 0.0
@@ -92,7 +92,7 @@ def _press(name: str, facets: int) -> _Pressed:
     """Press the cylinder with Hertz's edge in the middle of a facet, the one after ``facets`` on either side."""
     size = HALF_WIDTH / (facets + 0.5)
     formulation = formulations(YOUNG / size, 1e-11)[name]
-    build = partial(pad, size, int(np.ceil(1.3 * facets)), RADIUS, SPAN)
+    build = pad(size, int(np.ceil(1.3 * facets)), RADIUS, SPAN)
     # Without friction the path does not matter: one step.
     run = over_screen(
         build, SaintVenant(YOUNG, NU), Interface(formulation, 0.0, _H_0), FORCE, touch_depth=0.5e-6, step_scale=15.0
@@ -181,7 +181,7 @@ def flat_punch(small: bool) -> Outcome:
         for part in meshes:
             size = HALF_WIDTH / part
             formulation = formulations(YOUNG / size, 1e-11)[name]
-            build = partial(foot, size, HALF_WIDTH, step, 200 * HALF_WIDTH)
+            build = foot(size, HALF_WIDTH, step, 200 * HALF_WIDTH)
             solid, interface = SaintVenant(YOUNG, NU), Interface(formulation, 0.0, _H_0)
             run = over_screen(build, solid, interface, force, tolerance=1e-7, touch_depth=0.05e-6, step_scale=15.0)
             run.run(Target("press", f_ext=force))

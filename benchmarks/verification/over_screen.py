@@ -5,46 +5,38 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from dolfinx import fem
 from mpi4py import MPI
 from numpy.typing import ArrayLike, NDArray
 
 from geometry import tags
 from geometry.mesh import load
 from variational.augmented import AugmentedLagrangian
+from variational.body import Body
 from variational.contact import Formulation
 from variational.continuation import Continuation
-from variational.coupling import Coupling
+from variational.material import Material
 from variational.nitsche import Nitsche
 from variational.penalty import Penalty
-from variational.problem import Interface, Ogden, Problem, SaintVenant
-from variational.quantities import Observer
-from variational.roughness.closure import AirGap
-from variational.solver import Solver
-from variational.surface import Surface
+from variational.problem import Interface
+from variational.roughness.closure import AirGap, Closure
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Smooth:
+class Smooth(Closure):
     """A screen and skin without roughness: one air gap (m) at any pressure."""
 
     d_eq: float
 
     def __call__(self, p_c: ArrayLike) -> AirGap:
         """Return the air gap, which does not follow the pressure."""
-        none = np.zeros_like(np.asarray(p_c, dtype=np.float64))
-        return AirGap(none + self.d_eq, none)
-
-    def state(self, p_c: float, voltage: float) -> str:
-        """Have nothing to say."""
-        return ""
+        return AirGap(self.d_eq + 0 * np.asarray(p_c, dtype=np.float64))
 
 
 def over_screen(
     build: Callable[[], float],
-    solid: Ogden | SaintVenant,
+    solid: Material,
     interface: Interface,
     force: float,
     element: str = "P2",
@@ -64,15 +56,14 @@ def over_screen(
         held: whether the sides may not move sideways.
         d_eq: air gap (m).
         tolerance: part of ``force`` at which solves end.
-        steps: further arguments of :class:`variational.continuation.Continuation`.
+        steps: further arguments of :class:`variational.body.Body`.
     """
     body = load(MPI.COMM_SELF, build)
-    surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
-    problem = Problem(body.mesh, body.cell_tags, surface, {tags.STRATUM_CORNEUM: solid}, interface, element)
-    sides = fem.locate_dofs_topological(problem.V, 1, body.facet_tags.find(tags.SIDES))
-    fixed = [(2 * sides, 0.0)] if held else []
-    solver = Solver(problem, body.facet_tags.find(tags.BONE_RIM), force, tolerance, fixed)
-    return Continuation(Coupling(solver, Observer(problem), Smooth(d_eq)), **steps)
+    sides = body.facets(tags.SIDES) if held else None
+    return Body(
+        body, {tags.STRATUM_CORNEUM: solid}, interface, Smooth(d_eq), element=element, force_scale=force,
+        tolerance=tolerance, held=sides, **steps,
+    ).continuation  # fmt: skip
 
 
 def formulations(stiffness: float, depth: float) -> dict[str, Formulation]:

@@ -1,6 +1,5 @@
 """The package's laws at any number of given deformation gradients: one to a cell of a mesh that is only a list."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,6 +9,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from variational import compat, jit, stress
+from variational.material import Material
 
 Array = NDArray[np.float64]
 
@@ -20,12 +20,11 @@ class Points:
     Each rank evaluates all points by itself.
     """
 
-    def __init__(self, law: Callable[..., stress.Law], parameters: int) -> None:
+    def __init__(self, solid: Material) -> None:
         """Compile.
 
         Args:
-            law: gives the law for its parameters.
-            parameters: how many those are.
+            solid: the law; its numbers are replaced at each evaluation.
         """
         self._mesh = mesh.create_unit_square(MPI.COMM_SELF, 8, 8)
         self._cells = np.arange(128, dtype=np.int32)
@@ -33,12 +32,12 @@ class Points:
         def field(*shape: int) -> fem.Function:
             return fem.Function(fem.functionspace(self._mesh, ("Discontinuous Lagrange", 0, shape)))
 
-        self._F, self._parameters = field(2, 2), [field() for _ in range(parameters)]
-        made = law(*self._parameters)
+        self._F, self._parameters = field(2, 2), [field() for _ in solid.names()]
+        made = solid.with_values(dict(zip(solid.names(), self._parameters, strict=True)))
         F = ufl.variable(self._F)
         P = stress.first_piola_kirchhoff(made, F)
         tangent = ufl.diff(stress.first_piola_kirchhoff(made, F), F)
-        parts: list[Any] = [made.energy(F), P, stress.cauchy(made, F), tangent]
+        parts: list[Any] = [made.density(F), P, stress.cauchy(made, F), tangent]
         entries = [part[index] if index else part for part in parts for index in np.ndindex(part.ufl_shape)]
         centre = np.array([[1 / 3, 1 / 3]])
         self._compiled = fem.Expression(ufl.as_vector(entries), centre, jit_options=jit.OPTIONS)
@@ -48,7 +47,7 @@ class Points:
 
         Args:
             F: deformation gradients, (n, 2, 2).
-            parameters: of the law, each a number or of shape (n,).
+            parameters: its numbers in the order of the law's names, each a number or of shape (n,).
         """
         results = []
         for start in range(0, len(F), len(self._cells)):

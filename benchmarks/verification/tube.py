@@ -7,7 +7,6 @@ pressure is the resultant of the forces at the inner nodes. Exact solutions: :mo
 """
 
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -18,7 +17,7 @@ from benchmarks.verification.bodies import NOTHING, FreeSolver, Held, body, free
 from benchmarks.verification.case import Case, Outcome, Row, worst
 from benchmarks.verification.shooting import ALPHA, AXIS, SHEAR, A, B, Exact, exact_tube, pressure_of_incompressible
 from geometry import tags
-from geometry.benchmarks import quarter_tube
+from geometry.bodies import quarter_tube
 from variational.problem import Ogden, Problem
 
 Array = NDArray[np.float64]
@@ -54,7 +53,7 @@ class Tube:
 
 def widen(element: str, divisions: int, poisson: float, widened: float, exact: Exact | None = None) -> Tube:
     """Solve for a quarter of the tube, its outer surface free or, with ``exact``, both surfaces displaced by it."""
-    made = body(partial(quarter_tube, A, B, divisions))
+    made = body(quarter_tube(A, B, divisions))
     problem = free_problem(made, {tags.STRATUM_CORNEUM: Ogden(SHEAR, ALPHA, poisson)}, element)
     X = problem.V.tabulate_dof_coordinates()[:, :2] - [0.0, AXIS]
     R = np.linalg.norm(X, axis=1)

@@ -8,8 +8,6 @@ length L is the block's width. With f = p_ext L prescribed the mean contact pres
 which is solved by bracketing in the mean separation.
 """
 
-from functools import partial
-
 import numpy as np
 from matplotlib.figure import Figure
 from mpi4py import MPI
@@ -17,16 +15,13 @@ from mpi4py import MPI
 from benchmarks.verification.case import Case, Outcome, Row, worst
 from benchmarks.verification.microscale import CLOSURE, EPS_0, H_0, MU_F, VOLTAGES
 from geometry import tags
-from geometry.benchmarks import block
+from geometry.bodies import block
 from geometry.mesh import load
-from variational.continuation import Continuation, Target
-from variational.coupling import Coupling
+from variational.body import Body
+from variational.continuation import Target
 from variational.penalty import Penalty
-from variational.problem import Interface, Problem, SaintVenant
-from variational.quantities import Observer
+from variational.problem import Interface, SaintVenant
 from variational.roughness.bam import BearingArea
-from variational.solver import Solver
-from variational.surface import Surface
 
 _SIDE = 0.25e-3  # m, width and height
 _YOUNG = 1e10  # Pa
@@ -46,15 +41,11 @@ def charged(p_ext: float, voltage: float) -> tuple[float, float, float]:
     Returns:
         d_eq before it slides (m), mean contact pressure then (Pa), and mu_app at full slip.
     """
-    body = load(MPI.COMM_WORLD, partial(block, _SIDE, _SIDE, _SIDE / 4))
-    surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
-    law = Interface(_PENALTY, MU_F, H_0)
-    problem = Problem(body.mesh, body.cell_tags, surface, {tags.STRATUM_CORNEUM: SaintVenant(_YOUNG, 0.0)}, law)
-    force = p_ext * _SIDE
-    coupling = Coupling(
-        Solver(problem, body.facet_tags.find(tags.BONE_RIM), force), Observer(problem), BearingArea(H_0)
-    )
-    run = Continuation(coupling, touch_depth=5e-9)
+    body = load(MPI.COMM_WORLD, block(_SIDE, _SIDE, _SIDE / 4))
+    law, force = Interface(_PENALTY, MU_F, H_0), p_ext * _SIDE
+    solids = {tags.STRATUM_CORNEUM: SaintVenant(_YOUNG, 0.0)}
+    made = Body(body, solids, law, BearingArea(H_0), force_scale=force, touch_depth=5e-9)
+    run, coupling = made.continuation, made.coupling
     run.run(Target("press", f_ext=force))
     if voltage:
         run.run(Target("charge", voltage=voltage))

@@ -17,14 +17,14 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 from scipy.special import erfc
 
-from variational.roughness.closure import AirGap
+from variational.roughness.closure import AirGap, Closure
 
 Array = NDArray[np.float64]
 _EPS_0 = 8.854e-12  # F/m, Table 3
 
 
 @dataclass(frozen=True)
-class BearingArea:
+class BearingArea(Closure):
     """A self-affine Gaussian roughness on stratum corneum (Table 3); SI units."""
 
     h_0: float

@@ -1,27 +1,90 @@
-"""What the macroscale asks of a microscale model."""
+"""What the macroscale asks of a microscale model: the equivalent air gap of a ridge under its mean contact pressure.
 
+Your own closure is one class, here a gap that no pressure changes::
+
+    @dataclass(frozen=True)
+    class Held(Closure):
+        gap: float  # m
+
+        def __call__(self, p_c):
+            return AirGap(self.gap + 0 * np.asarray(p_c, dtype=float))
+"""
+
+from abc import abstractmethod
 from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+Array = NDArray[np.float64]
+_PRESSURES = np.array([0.0, 1.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7])  # Pa, at which a closure is examined
+
 
 class AirGap(NamedTuple):
     """Equivalent air gap of each ridge and its derivative."""
 
-    d_eq: NDArray[np.float64]
-    """Equivalent air gap (m)."""
-    derivative: NDArray[np.float64]
-    """d d_eq / d p_c (m/Pa)."""
+    d_eq: Array
+    """Equivalent air gap (m), of the shape of the pressures."""
+    derivative: Array | None = None
+    """d d_eq / d p_c (m/Pa), likewise; None where it is not known. No solver reads it."""
 
 
 class Closure(Protocol):
     """A microscale model: mean contact pressure in, equivalent air gap out."""
 
+    @abstractmethod
     def __call__(self, p_c: ArrayLike) -> AirGap:
-        """Return the air gap at mean contact pressures ``p_c`` >= 0 (Pa); zero means no contact."""
+        """Return the air gap at mean contact pressures ``p_c`` >= 0 (Pa); zero means no contact.
+
+        The pressures are a number or an array of any shape, the air gaps have the same shape and are greater than zero.
+        """
         ...
 
     def state(self, p_c: float, voltage: float) -> str:
         """Return ``""`` or what a reader should know of a ridge at this pressure (Pa) and voltage (V)."""
-        ...
+        return ""
+
+
+def air_gaps(closure: Closure, p_c: ArrayLike) -> Array:
+    """Return a closure's air gaps (m) at mean contact pressures (Pa), of their shape.
+
+    Raises:
+        ValueError: not an air gap for each pressure; in one sentence. Its values are not examined.
+    """
+    name, shape = type(closure).__name__, np.shape(p_c)
+    found = closure(p_c)
+    if not isinstance(found, AirGap):
+        raise ValueError(f"closure {name} returns {type(found).__name__}; it must return an AirGap")
+    d_eq = np.asarray(found.d_eq, dtype=float)
+    if d_eq.shape != shape:
+        raise ValueError(f"closure {name} returns air gaps of shape {d_eq.shape} for pressures of shape {shape}")
+    return d_eq
+
+
+def check(closure: Closure) -> None:
+    """Refuse what is no closure.
+
+    Raises:
+        ValueError: it fails, or returns another shape than that of the pressures, or air gaps that are not finite and
+            greater than zero; in one sentence.
+    """
+    name = type(closure).__name__
+    if not (callable(closure) and callable(getattr(closure, "state", None))):
+        raise ValueError(f"closure is {closure!r}; it must be a Closure, with p_c in and an AirGap out")
+    try:
+        with np.errstate(all="ignore"):
+            found = air_gaps(closure, _PRESSURES)
+            air_gaps(closure, float(_PRESSURES[-1]))
+        said = closure.state(float(_PRESSURES[-1]), 100.0)
+    except Exception as error:
+        own = isinstance(error, ValueError) and str(error).startswith(f"closure {name} returns")
+        raise error if own else ValueError(f"closure {name} cannot be evaluated: {error}") from error
+    bad = ~(np.isfinite(found) & (found > 0))
+    if bad.any():
+        k = int(np.argmax(bad))
+        raise ValueError(
+            f"closure {name} returns an air gap of {found[k]:g} m at a pressure of {_PRESSURES[k]:g} Pa; it must be "
+            "finite and greater than 0"
+        )
+    if not isinstance(said, str):
+        raise ValueError(f"closure {name} returns {said!r} as a ridge's state; it must be text")

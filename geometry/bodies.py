@@ -1,4 +1,8 @@
-"""Small verification bodies as gmsh models: block, ridge, round pad, stepped foot, quarter tube, Cook's membrane."""
+"""Small bodies: block, ridge, round pad, stepped foot, quarter tube, Cook's membrane.
+
+Each function returns a :class:`geometry.shape.Shape`. What it refuses, it refuses with a
+:class:`geometry.profiles.GeometryError` when the shape is meshed.
+"""
 
 from collections.abc import Sequence
 
@@ -7,15 +11,18 @@ import numpy as np
 
 from geometry import tags
 from geometry.profiles import GeometryError
+from geometry.shape import shape
 
 _MM = 1e3  # gmsh's tolerances suit models in mm
 _SAMPLES = 128  # spline points of a curved bottom
 _GROWTH = 0.25  # increase of the element size per distance from what can touch
+_NEEDED = (tags.BONE_RIM, tags.ridge(0))
 _TOUCHING = 0.6  # part of the ridge's width, about its tip, that is meshed finely
 
 
+@shape(_NEEDED)
 def block(width: float, height: float, size: float, gap: float = 0.0) -> float:
-    """Mesh a rectangle, centred on x = 0, in the current gmsh session.
+    """Return a rectangle, centred on x = 0.
 
     The mesh is a regular grid of rectangles no larger than ``size``, halved into triangles. The bottom is
     ridge 0, the top the bone's rim, the left and right faces are sides.
@@ -25,9 +32,6 @@ def block(width: float, height: float, size: float, gap: float = 0.0) -> float:
         height: (m).
         size: largest edge of a grid cell (m).
         gap: height of the bottom above the screen (m).
-
-    Returns:
-        The length of gmsh's unit in m.
 
     Raises:
         GeometryError: a length is not positive.
@@ -44,8 +48,9 @@ def block(width: float, height: float, size: float, gap: float = 0.0) -> float:
     return 1 / _MM
 
 
+@shape(_NEEDED)
 def ridge(size: float, width: float = 483e-6, height: float = 600e-6, amplitude: float = 100e-6) -> float:
-    r"""Mesh one papillary ridge in the current gmsh session.
+    r"""Return one papillary ridge.
 
     The bottom is :math:`y = \tfrac12 A (1 - \cos 2 \pi x / w)`, lowest at x = 0; groups are those of :func:`block`.
 
@@ -54,9 +59,6 @@ def ridge(size: float, width: float = 483e-6, height: float = 600e-6, amplitude:
         width: w, one period (m).
         height: of the flat top above the screen (m).
         amplitude: A, height of the grooves above the tip (m).
-
-    Returns:
-        The length of gmsh's unit in m.
 
     Raises:
         GeometryError: a length is not positive, or the top is not above the grooves.
@@ -74,8 +76,9 @@ def ridge(size: float, width: float = 483e-6, height: float = 600e-6, amplitude:
     return _graded([(curve, 0)], height, size, tip, _GROWTH)
 
 
+@shape(_NEEDED)
 def pad(size: float, facets: int, radius: float, span: float) -> float:
-    r"""Mesh a square block with a cylinder's bottom, :math:`y = x^2 / (2R)`, in the current gmsh session.
+    r"""Return a square block with a cylinder's bottom, :math:`y = x^2 / (2R)`.
 
     The tip is a node. Groups are those of :func:`block`.
 
@@ -84,9 +87,6 @@ def pad(size: float, facets: int, radius: float, span: float) -> float:
         facets: how many of these are on either side of the tip.
         radius: R (m).
         span: width and height of the block (m).
-
-    Returns:
-        The length of gmsh's unit in m.
 
     Raises:
         GeometryError: a length is not positive, or the facets leave no flank.
@@ -102,8 +102,9 @@ def pad(size: float, facets: int, radius: float, span: float) -> float:
     return _graded(list(zip(curves, (0, 2 * facets, 0), strict=True)), span, size, tip, _GROWTH)
 
 
+@shape(_NEEDED)
 def foot(size: float, half_width: float, step: float, span: float) -> float:
-    """Mesh a square block with a flat foot on the screen, the rest of its bottom recessed.
+    """Return a square block with a flat foot on the screen, the rest of its bottom recessed.
 
     Groups are those of :func:`block`. The step is one facet long.
 
@@ -112,9 +113,6 @@ def foot(size: float, half_width: float, step: float, span: float) -> float:
         half_width: of the foot (m).
         step: height of the recess (m).
         span: width and height of the block (m).
-
-    Returns:
-        The length of gmsh's unit in m.
 
     Raises:
         GeometryError: a length is not positive, or the foot leaves no recess.
@@ -173,8 +171,9 @@ def _graded(
     return 1 / _MM
 
 
+@shape(_NEEDED)
 def quarter_tube(inner: float, outer: float, divisions: int) -> float:
-    """Mesh a quarter of a tube's cross-section in the current gmsh session.
+    """Return a quarter of a tube's cross-section.
 
     It lies right of x = 0 and above the tube's axis, which is at twice the outer radius above the screen. The mesh is
     a regular grid in polar coordinates, halved into triangles, with as many divisions of the wall as of the quarter
@@ -184,9 +183,6 @@ def quarter_tube(inner: float, outer: float, divisions: int) -> float:
         inner: inner radius (m).
         outer: outer radius (m).
         divisions: of the wall and of the quarter turn.
-
-    Returns:
-        The length of gmsh's unit in m.
 
     Raises:
         GeometryError: a length is not positive, or the wall has no thickness.
@@ -210,8 +206,9 @@ def quarter_tube(inner: float, outer: float, divisions: int) -> float:
     return 1 / _MM
 
 
+@shape(_NEEDED)
 def cooks_membrane(divisions: int, gap: float = 10e-3) -> float:
-    """Mesh Cook's tapered and swept panel, 48 mm long, in the current gmsh session.
+    """Return Cook's tapered and swept panel, 48 mm long.
 
     The mesh is a regular grid, halved into triangles. The lower edge is ridge 0, the left one, which is clamped, the
     bone's rim, the right one, which is loaded, and the upper one are sides.
@@ -219,9 +216,6 @@ def cooks_membrane(divisions: int, gap: float = 10e-3) -> float:
     Args:
         divisions: of each edge.
         gap: height of the lowest corner above the screen (m).
-
-    Returns:
-        The length of gmsh's unit in m.
 
     Raises:
         GeometryError: a length is not positive.

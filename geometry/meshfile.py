@@ -1,0 +1,207 @@
+"""A body from a gmsh file: its physical groups say, by their names, what each part is.
+
+The file holds a plane mesh of triangles in metres, ``.msh`` of version 2.2 or 4.1. The screen is the line y = 0, and
+the body lies above it or on it; nothing is moved. Groups of cells are the layers of :data:`geometry.tags.LAYERS`
+(*stratum corneum*, *viable epidermis*, *dermis*, *subcutis*, *nail*, *nail bed*), and every triangle is in one. Groups
+of facets are
+
+- *bone rim*: glued to the rigid bone. It must be there.
+- *ridge 0*, *ridge 1*, *ridge -1*, ...: skin that can touch, by ridges, numbered from the centre to x > 0. At least one
+  must be there; a body without ridges has *ridge 0*. Air gaps and pressures are those of ridges.
+- *outer skin*: skin that is not expected to touch. A run of a whole finger watches it.
+- *nail surface*, *sides*: free surfaces, of which nothing depends.
+
+The rest of the outline is free. ``docs/mesh.md`` has an example.
+"""
+
+import re
+from difflib import get_close_matches
+from pathlib import Path
+
+import gmsh
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from geometry import tags
+from geometry.profiles import GeometryError
+from geometry.shape import shape
+
+FACETS = {
+    "bone rim": tags.BONE_RIM,
+    "outer skin": tags.OUTER_SKIN,
+    "nail surface": tags.NAIL_SURFACE,
+    "sides": tags.SIDES,
+}
+_RIDGE = re.compile(r"ridge (0|-?[1-9][0-9]{0,2})")
+_LARGEST, _LEAST = 0.2, 1e-6  # m, of the longer side of a body
+_FLAT = 1e-9  # out of the plane or below the screen, over the body's size
+_TRIANGLE, _LINE = 2, 1  # gmsh's numbers of linear elements
+_START = b"$MeshFormat"
+
+Array = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+
+
+@shape((tags.BONE_RIM,))
+def file(path: str | Path) -> float:
+    """Return the body of a gmsh file.
+
+    Args:
+        path: of a ``.msh`` file, see :mod:`geometry.meshfile`; read on rank 0, when the shape is meshed.
+
+    Raises:
+        GeometryError: the file is none, or holds no such body.
+    """
+    path = Path(path)
+    _open(path)
+    try:
+        _rename()
+        _check_mesh()
+    except GeometryError as error:
+        raise GeometryError(f"{path}: {error}") from error
+    return 1.0
+
+
+def _open(path: Path) -> None:
+    """Read a file into the current gmsh session."""
+    try:
+        with path.open("rb") as stream:
+            start = stream.read(len(_START))
+    except OSError as error:
+        raise GeometryError(f"{path}: the mesh file cannot be read: {error.strerror}") from error
+    if start != _START or path.suffix != ".msh":
+        # gmsh tells kinds of files by their ends, and takes an unknown one for a script of its own, which it runs.
+        raise GeometryError(f"{path} is no mesh of gmsh; it must be a .msh file of version 2.2 or 4.1")
+    try:
+        gmsh.merge(str(path))
+    except Exception as error:  # gmsh's own are of no other kind
+        raise GeometryError(f"{path}: gmsh cannot read the mesh: {error}") from error
+
+
+def _rename() -> None:
+    """Give the groups the tags of :mod:`geometry.tags`, by their names."""
+    groups = []
+    for dim, tag in gmsh.model.getPhysicalGroups():
+        name = gmsh.model.getPhysicalName(dim, tag)
+        gmsh.model.removePhysicalName(name)  # else it stays with its old tag
+        if dim == 0:
+            continue
+        if dim == 3:
+            raise GeometryError(f"group {name!r} is of volumes; the mesh must be plane")
+        groups.append((dim, _tag(dim, tag, name), name, gmsh.model.getEntitiesForPhysicalGroup(dim, tag)))
+    gmsh.model.removePhysicalGroups()
+    found = {tag for _, tag, _, _ in groups}
+    if not found & set(tags.LAYERS.values()):
+        raise GeometryError(f"no group of cells is a layer; give at least one of {_listed(tags.LAYERS)}")
+    if not any(map(tags.is_ridge, found)):
+        raise GeometryError("no skin can touch; give the facets that can a group 'ridge 0', 'ridge 1', 'ridge -1', ...")
+    if tags.BONE_RIM not in found:
+        raise GeometryError("the group 'bone rim' is missing: the facets that are glued to the bone")
+    taken: dict[tuple[int, int], str] = {}
+    for dim, tag, name, entities in groups:
+        for entity in entities:
+            if (dim, entity) in taken:
+                raise GeometryError(f"groups {taken[dim, entity]!r} and {name!r} overlap")
+            taken[dim, entity] = name
+        gmsh.model.addPhysicalGroup(dim, entities, tag, name)
+
+
+def _tag(dim: int, number: int, name: str) -> int:
+    """Return the tag that a group's name stands for."""
+    known = tags.LAYERS if dim == 2 else FACETS
+    if name in known:
+        return known[name]
+    ridge = _RIDGE.fullmatch(name)
+    if dim == 1 and ridge and abs(int(ridge[1])) < 500:
+        return tags.ridge(int(ridge[1]))
+    what = "cells" if dim == 2 else "facets"
+    if not name:
+        raise GeometryError(f"group {number} of {what} has no name")
+    allowed = [*known, "ridge 0", "ridge 1", "ridge -1"] if dim == 1 else [*known]
+    near = get_close_matches(name.lower(), allowed, n=1)
+    if near:
+        raise GeometryError(f"group {name!r} of {what} is unknown; did you mean {near[0]!r}?")
+    raise GeometryError(f"group {name!r} of {what} is unknown; it must be one of {_listed(allowed)}")
+
+
+def _listed(names: list[str] | dict[str, int]) -> str:
+    return ", ".join(map(repr, names))
+
+
+def _check_mesh() -> None:
+    """Refuse what is no plane mesh of linear triangles on its screen."""
+    nodes, coordinates, _ = gmsh.model.mesh.getNodes()
+    xyz = np.asarray(coordinates, dtype=np.float64).reshape(-1, 3)
+    triangles = _elements(2, _TRIANGLE, "triangles with 3 nodes")
+    _check_places(xyz[np.isin(nodes, triangles)])
+    grouped = sum(len(_of_group(2, tag)) for tag in tags.LAYERS.values())
+    if grouped < len(triangles):
+        raise GeometryError(f"{len(triangles) - grouped} of {len(triangles)} triangles are in no group of cells")
+    _, corners = np.unique(triangles, return_inverse=True)
+    corners = corners.reshape(-1, 3)
+    edges = corners[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    links = coo_array((np.ones(len(edges)), edges.T), shape=(corners.max() + 1,) * 2)
+    parts = connected_components(links, directed=False)[0]
+    if parts > 1:
+        raise GeometryError(f"the mesh is in {parts} parts that share no node; layers must share nodes where they meet")
+    _check_facets(triangles)
+
+
+def _check_places(xyz: Array) -> None:
+    """Refuse a body of the wrong size or in the wrong place; ``xyz`` (m) are its nodes."""
+    size = float(np.ptp(xyz[:, :2], axis=0).max())
+    if size > _LARGEST:
+        raise GeometryError(f"the body is {size:g} m large, which is no finger; lengths are in m: did you mean mm?")
+    if size < _LEAST:
+        raise GeometryError(f"the body is {size:g} m large; it must be at least {_LEAST:g} m, and lengths are in m")
+    if np.abs(xyz[:, 2]).max() > _FLAT * size:
+        raise GeometryError("nodes lie out of the plane z = 0; the mesh must be plane")
+    lowest = float(xyz[:, 1].min())
+    if lowest < -_FLAT * size:
+        raise GeometryError(
+            f"the lowest point is at y = {lowest:g} m, below the screen at y = 0; move the body up by {-lowest:g} m"
+        )
+
+
+def _check_facets(triangles: Numbers) -> None:
+    """Refuse ridges inside the body, and groups of facets that are no edges of triangles; of nodes, shape (n, 3)."""
+    known, counts = np.unique(_keys(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)), return_counts=True)
+    for dim, tag in gmsh.model.getPhysicalGroups(1):
+        name, mine = gmsh.model.getPhysicalName(dim, tag), _keys(_of_group(1, tag))
+        if not len(mine) or not np.isin(mine, known).all():
+            raise GeometryError(f"group {name!r} has edges that no triangle has, or none at all")
+        if (counts[np.isin(known, mine)] > 1).any() and (tags.is_ridge(tag) or tag in (tags.BONE_RIM, tags.OUTER_SKIN)):
+            raise GeometryError(f"group {name!r} has edges inside the body; it must be of the outline alone")
+
+
+def _keys(edges: Numbers) -> Numbers:
+    """Return a number for each edge, whichever of its nodes is the first; of nodes, shape (n, 2)."""
+    low, high = np.sort(edges, axis=1).T
+    return np.asarray(low * 2**31 + high)
+
+
+def _elements(dim: int, kind: int, what: str) -> Numbers:
+    """Return the nodes of all elements of a dimension, shape (elements, nodes), if they are of one kind."""
+    if len(gmsh.model.mesh.getElements(3)[0]):
+        raise GeometryError("the mesh has volumes; it must be plane")
+    kinds, _, nodes = gmsh.model.mesh.getElements(dim)
+    others = [gmsh.model.mesh.getElementProperties(k)[0] for k in kinds if k != kind]
+    if others:
+        raise GeometryError(f"the mesh has elements {others[0]!r}; cells must be {what}, straight and linear")
+    return np.asarray(nodes[0], dtype=np.int64).reshape(-1, dim + 1)
+
+
+def _of_group(dim: int, tag: int) -> Numbers:
+    """Return the nodes of the elements of a group, shape (elements, nodes)."""
+    kind = _TRIANGLE if dim == 2 else _LINE
+    found = [
+        gmsh.model.mesh.getElementsByType(kind, entity)[1]
+        for entity in (gmsh.model.getEntitiesForPhysicalGroup(dim, tag) if (dim, tag) in _groups() else ())
+    ]
+    return np.concatenate([np.empty(0, dtype=np.int64), *found]).astype(np.int64).reshape(-1, dim + 1)
+
+
+def _groups() -> set[tuple[int, int]]:
+    return set(gmsh.model.getPhysicalGroups())

@@ -1,0 +1,222 @@
+"""A body from a gmsh file: what is read, on any number of ranks, and what is refused in one sentence."""
+
+import os
+import re
+from functools import partial
+from pathlib import Path
+
+import gmsh
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+import geometry
+from fingerpad.body import Body
+from geometry import tags
+from geometry.mesh import load
+from geometry.profiles import GeometryError
+from variational.ogden import Ogden
+from variational.penalty import Penalty
+
+MM = 1e-3
+SKIN, SPRINGS = Ogden(86.76e3, -14.53, 0.48), Penalty(1.5e12, 5e10)
+RIDGE = geometry.ridge(size=40e-6)
+
+
+def model(shape=RIDGE) -> None:
+    """Mesh a shape and bring it from gmsh's mm to metres."""
+    shape()
+    scale(MM)
+
+
+def scale(factor: float, up: float = 0.0, out: float = 0.0) -> None:
+    gmsh.model.mesh.affineTransform([factor, 0, 0, 0, 0, factor, 0, up, 0, 0, factor, out])
+
+
+def write(path: Path, build=model, version: float = 4.1) -> Path:
+    """Write what a function makes of the current gmsh session into a file; on rank 0."""
+    if MPI.COMM_WORLD.rank == 0:
+        gmsh.initialize(interruptible=False)
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("Mesh.MshFileVersion", version)
+        try:
+            build()
+            gmsh.write(str(path))
+        finally:
+            gmsh.finalize()
+    MPI.COMM_WORLD.barrier()
+    return path
+
+
+@pytest.fixture
+def place(tmp_path) -> Path:
+    """A path of a file, the same on every rank."""
+    return Path(MPI.COMM_WORLD.bcast(str(tmp_path / "mine.msh")))
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("version", [2.2, 4.1])
+def test_body_from_a_file_is_the_body(place, version):
+    """The ridge by a file and by itself: the file's decimals are good for 1e-15 of a coordinate."""
+    body = Body(write(place, version=version), SKIN, contact=SPRINGS, friction=0.25).press(1.0).slide(1e-6)
+    itself = Body(RIDGE, SKIN, contact=SPRINGS, friction=0.25).press(1.0).slide(1e-6)
+    assert body.state.f_t == pytest.approx(itself.state.f_t, rel=1e-8)
+    assert body.state.bone_height == pytest.approx(itself.state.bone_height, rel=1e-8)
+
+
+def test_numbers_of_groups_do_not_matter(place):
+    def renumbered():
+        model()
+        for dim, tag in gmsh.model.getPhysicalGroups():
+            name, entities = gmsh.model.getPhysicalName(dim, tag), gmsh.model.getEntitiesForPhysicalGroup(dim, tag)
+            gmsh.model.removePhysicalGroups([(dim, tag)])
+            gmsh.model.addPhysicalGroup(dim, entities, tag % 7 + 50, name)
+
+    made = load(MPI.COMM_WORLD, geometry.file(write(place, renumbered)))
+    assert made.ridge_tags() == {0: tags.ridge(0)}
+    assert len(made.rim) > 0
+    assert set(made.cell_tags.values) == {tags.STRATUM_CORNEUM}
+
+
+# -- refusals ------------------------------------------------------------------------------------------
+def named(dim: int, tag: int, name: str | None):
+    """Return what meshes the ridge with a group renamed or, without a name, removed."""
+
+    def build():
+        model()
+        entities = gmsh.model.getEntitiesForPhysicalGroup(dim, tag)
+        gmsh.model.removePhysicalName(gmsh.model.getPhysicalName(dim, tag))
+        gmsh.model.removePhysicalGroups([(dim, tag)])
+        if name is not None:
+            gmsh.model.addPhysicalGroup(dim, entities, 77, name)
+
+    return build
+
+
+def changed(change):
+    """Return what meshes the ridge and changes it."""
+
+    def build():
+        model()
+        change()
+
+    return build
+
+
+def two_parts():
+    """Two squares of two layers that touch and share no node."""
+    geo, lines, surfaces = gmsh.model.geo, [], []
+    for k in range(2):
+        corners = [geo.addPoint(x * MM, (y + k) * MM, 0, 0.5 * MM) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        lines.append([geo.addLine(corners[i], corners[(i + 1) % 4]) for i in range(4)])
+        surfaces.append(geo.addPlaneSurface([geo.addCurveLoop(lines[-1])]))
+    geo.synchronize()
+    gmsh.model.addPhysicalGroup(2, surfaces[:1], name="stratum corneum")
+    gmsh.model.addPhysicalGroup(2, surfaces[1:], name="dermis")
+    gmsh.model.addPhysicalGroup(1, lines[0][:1], name="ridge 0")
+    gmsh.model.addPhysicalGroup(1, lines[1][2:3], name="bone rim")
+    gmsh.model.mesh.generate(2)
+
+
+def solid():
+    gmsh.model.occ.addBox(0, 0, 0, MM, MM, MM)
+    gmsh.model.occ.synchronize()
+    gmsh.model.addPhysicalGroup(3, [1], name="dermis")
+    gmsh.model.mesh.generate(3)
+
+
+def squares():
+    model()
+    gmsh.model.mesh.recombine()
+
+
+def rim_elsewhere(inside: bool):
+    """Two layers, and a rim that is the line between them or one beside them."""
+    geo = gmsh.model.geo
+    corners = [[geo.addPoint(x * MM, y * MM, 0, 0.5 * MM) for x in (0, 1)] for y in range(4)]
+    across = [geo.addLine(*pair) for pair in corners]
+    up = [[geo.addLine(a[x], b[x]) for a, b in zip(corners, corners[1:], strict=False)] for x in (0, 1)]
+    loops = [[across[k], up[1][k], -across[k + 1], -up[0][k]] for k in range(2)]
+    surfaces = [geo.addPlaneSurface([geo.addCurveLoop(loop)]) for loop in loops]
+    geo.synchronize()
+    gmsh.model.addPhysicalGroup(2, surfaces, name="dermis")
+    gmsh.model.addPhysicalGroup(1, across[:1], name="ridge 0")
+    gmsh.model.addPhysicalGroup(1, [across[1 if inside else 3]], name="bone rim")
+    gmsh.model.mesh.generate(2)
+
+
+REFUSED = {
+    "no rim": (named(1, tags.BONE_RIM, None), "the group 'bone rim' is missing"),
+    "no skin": (named(1, tags.ridge(0), None), "no skin can touch; give the facets that can a group 'ridge 0'"),
+    "no layer": (named(2, tags.STRATUM_CORNEUM, None), "no group of cells is a layer; give at least one of 'stratum"),
+    "unknown rim": (named(1, tags.BONE_RIM, "bone rimm"), "group 'bone rimm' of facets is unknown; did you mean 'bone"),
+    "unknown layer": (named(2, 1, "Stratum Corneum"), "'Stratum Corneum' of cells is unknown; did you mean 'stratum"),
+    "far from any": (named(2, 1, "gel"), "group 'gel' of cells is unknown; it must be one of 'stratum corneum', 'via"),
+    "no name": (named(2, 1, ""), "group 77 of cells has no name"),
+    "no such ridge": (named(1, tags.ridge(0), "ridge 01"), "group 'ridge 01' of facets is unknown"),
+    "mm": (lambda: RIDGE(), "the body is 0.6 m large, which is no finger; lengths are in m: did you mean mm?"),
+    "small": (changed(lambda: scale(1e-4)), "large; it must be at least 1e-06 m"),
+    "below": (changed(lambda: scale(1, up=-1e-5)), "the lowest point is at y = -1e-05 m, below the screen at y = 0"),
+    "out of the plane": (changed(lambda: scale(1, out=1e-4)), "nodes lie out of the plane z = 0"),
+    "second order": (
+        changed(lambda: gmsh.model.mesh.setOrder(2)),
+        "'Triangle 6'; cells must be triangles with 3 nodes",
+    ),
+    "quadrilaterals": (squares, "the mesh has elements 'Quadrilateral 4'"),
+    "volumes": (solid, "group 'dermis' is of volumes; the mesh must be plane"),
+    "rim inside": (partial(rim_elsewhere, True), "group 'bone rim' has edges inside the body"),
+    "rim outside": (partial(rim_elsewhere, False), "group 'bone rim' has edges that no triangle has"),
+    "two parts": (two_parts, "the mesh is in 2 parts that share no node"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_file_is_refused(place, case):
+    build, message = REFUSED[case]
+    with pytest.raises(GeometryError, match=f"mine.msh: .*{re.escape(message)}") as error:
+        load(MPI.COMM_WORLD, geometry.file(write(place, build)))
+    assert "\n" not in str(error.value)
+
+
+def test_triangles_outside_the_layers_are_refused(place):
+    def partly():
+        two_parts()
+        gmsh.model.removePhysicalGroups([(2, 2)])
+        gmsh.option.setNumber("Mesh.SaveAll", 1)
+
+    with pytest.raises(GeometryError, match=r"\d+ of \d+ triangles are in no group of cells"):
+        load(MPI.COMM_WORLD, geometry.file(write(place, partly)))
+
+
+@pytest.mark.mpi
+def test_no_file_is_refused_on_every_rank(place):
+    with pytest.raises(GeometryError, match="mine.msh: the mesh file cannot be read: No such file or directory"):
+        Body(place, SKIN)
+
+
+@pytest.mark.parametrize("text", ["", "Point(1) = {0, 0, 0};", "SystemCall 'touch run';", "$MeshFormat\n4.1 0 8\n"])
+def test_other_file_is_refused_and_not_run(place, text):
+    """gmsh takes any other file for a script, which may call programs."""
+    place.write_text(text, encoding="utf-8")
+    with pytest.raises(GeometryError, match=r"mine\.msh"):
+        load(MPI.COMM_SELF, geometry.file(place))
+    assert os.listdir(place.parent) == ["mine.msh"]
+
+
+def test_mesh_by_another_name_is_refused(place):
+    """By its end gmsh would take it for a script."""
+    script = write(place).rename(place.with_suffix(".geo"))
+    with pytest.raises(GeometryError, match=r"mine\.geo is no mesh of gmsh; it must be a \.msh file"):
+        load(MPI.COMM_SELF, geometry.file(script))
+
+
+def test_page_runs(tmp_path, monkeypatch):
+    """The example of the documentation runs as written."""
+    page = Path(__file__).parents[1] / "docs" / "mesh.md"
+    blocks = re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    space: dict = {}
+    for block in blocks:
+        exec(block, space)
+    skin = space["pad"].skin
+    assert (np.diff(skin.x.ravel()) > 0).all()

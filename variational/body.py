@@ -1,0 +1,121 @@
+"""A body over the screen, set up once: surface, weak form, solver, loop over the scales and path of loads.
+
+Models of fingers, of ridges and of verification bodies share this set-up. The mesh comes from outside, with its tags.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Protocol
+
+import dolfinx
+import numpy as np
+from dolfinx import fem
+from numpy.typing import NDArray
+
+from variational.carried import carried
+from variational.continuation import Attempt, Continuation, Target
+from variational.coupling import Coupling
+from variational.material import Material
+from variational.problem import Interface, Problem
+from variational.quantities import Observer
+from variational.roughness.closure import Closure
+from variational.solver import Solver
+from variational.surface import Surface
+
+Facets = NDArray[np.int32]
+
+
+class Tagged(Protocol):
+    """A mesh (m) with tags of its layers and facets."""
+
+    @property
+    def mesh(self) -> dolfinx.mesh.Mesh:
+        """Straight-sided triangles."""
+        ...
+
+    @property
+    def cell_tags(self) -> dolfinx.mesh.MeshTags:
+        """Tags of layers."""
+        ...
+
+    @property
+    def facet_tags(self) -> dolfinx.mesh.MeshTags:
+        """Tags of facets."""
+        ...
+
+    @property
+    def rim(self) -> Facets:
+        """Facets of this rank that are glued to the bone."""
+        ...
+
+    def ridge_tags(self) -> Mapping[int, int]:
+        """Return the facet tag of each ridge's number, in order, the same on every rank."""
+        ...
+
+
+class Body:
+    """A layered body pressed and dragged over the screen.
+
+    Attributes:
+        surface: the skin that can touch.
+        problem: the weak form.
+        solver: solves it for given loads.
+        observer: evaluates its surface.
+        coupling: joins it to the microscale.
+        continuation: leads it along targets.
+    """
+
+    def __init__(
+        self,
+        tagged: Tagged,
+        solids: Mapping[int, Material],
+        interface: Interface,
+        closure: Closure | None = None,
+        *,
+        element: str = "P2",
+        points: int = 4,
+        force_scale: float = 1.0,
+        tolerance: float = 1e-9,
+        held: Facets | None = None,
+        carried_sides: Facets | None = None,
+        mirror: Facets | None = None,
+        coupling_tolerance: float = 1e-6,
+        coupling_cap: int = 30,
+        by_gap: bool = False,
+        on_accept: Callable[[Target, float, Attempt], None] = lambda target, part, attempt: None,
+        touch_depth: float = 5e-6,
+        step_scale: float = 1.0,
+    ) -> None:
+        """Set up the unloaded body; collective.
+
+        Args:
+            tagged: its mesh.
+            solids: material of each layer's tag.
+            interface: laws of the contact.
+            closure: the microscale; None where there is never a voltage.
+            element: a name of :data:`variational.element.ELEMENTS`.
+            points: Gauss points on a facet.
+            force_scale: force per length (N/m) in which residuals are measured.
+            tolerance: see :class:`variational.solver.Solver`.
+            held: facets that do not move sideways.
+            carried_sides: facets that move sideways with the bone (:mod:`variational.carried`), in place of ``held``.
+            mirror: facets at x = 0 of the half of a body that is its own mirror image.
+            coupling_tolerance: relative error of air gaps at which the loop over the scales ends.
+            coupling_cap: most sweeps of that loop.
+            by_gap: see :class:`variational.coupling.Coupling`.
+            on_accept: called after each accepted step, see :class:`variational.continuation.Continuation`.
+            touch_depth: how far the bone is lowered by displacement before force takes over (m).
+            step_scale: factor on the largest steps of force, voltage and displacement.
+
+        Raises:
+            ValueError: a cell has two facets on the surface.
+        """
+        self.surface = Surface(tagged.mesh, tagged.facet_tags, tagged.ridge_tags(), points)
+        self.problem = Problem(tagged.mesh, tagged.cell_tags, self.surface, solids, interface, element)
+        if carried_sides is not None:
+            self.solver: Solver = carried(self.problem, tagged.rim, carried_sides, force_scale, tolerance)
+        else:
+            fixed = [] if held is None else [(2 * fem.locate_dofs_topological(self.problem.V, 1, held), 0.0)]
+            self.solver = Solver(self.problem, tagged.rim, force_scale, tolerance, fixed, mirror)
+        self.observer = Observer(self.problem, mirror is not None)
+        self.coupling = Coupling(self.solver, self.observer, closure, coupling_tolerance, coupling_cap, by_gap)
+        self.continuation = Continuation(self.coupling, on_accept, touch_depth, step_scale)

@@ -1,0 +1,66 @@
+"""A law's numbers as fields or constants of a compiled form, which then stays as it is when they change.
+
+A law is a frozen dataclass that computes with its own numbers. A form is written with a copy of the law that carries
+UFL coefficients in the place of the numbers.
+"""
+
+import copy
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+
+def said(error: Exception) -> str:
+    """Return what an error of a user's law says, in one line."""
+    return " ".join(str(error).split()) or type(error).__name__
+
+
+class Law:
+    """A law with numbers; derive a frozen dataclass from one of the laws' bases."""
+
+    coefficients: ClassVar[tuple[str, ...] | None] = None
+    """Names of the numbers that a form reads; None for all fields that are annotated as ``float``.
+
+    A law that names its own may name attributes made by ``functools.cached_property`` from its fields. A form reads
+    these alone: no other number may stand in what the law writes.
+    """
+
+    def names(self) -> tuple[str, ...]:
+        """Return the names of the numbers that a form reads."""
+        return self._numbers() if self.coefficients is None else self.coefficients
+
+    def with_values(self, values: Mapping[str, Any]) -> Self:
+        """Return a copy that carries ``values`` in the place of its numbers; other numbers it has no longer."""
+        found = copy.copy(self)
+        mine = {field.name for field in fields(self)}  # type: ignore[arg-type]
+        for name in [name for name in vars(found) if name not in mine]:
+            del vars(found)[name]  # made from the numbers of the original
+        for name in self._numbers():
+            object.__setattr__(found, name, None)
+        for name, value in values.items():
+            object.__setattr__(found, name, value)
+        return found
+
+    def kind(self) -> tuple[Any, ...]:
+        """Return what two laws must share to be written as one form: the type, and all that is no number."""
+        left = set(self._numbers()) | set(self.names())
+        return (type(self), *(getattr(self, f.name) for f in fields(self) if f.name not in left))  # type: ignore[arg-type]
+
+    def refuse_numbers(self) -> None:
+        """Refuse a law that is no frozen dataclass of finite numbers.
+
+        Raises:
+            ValueError: in one sentence.
+        """
+        kind = type(self)
+        if not (is_dataclass(self) and kind.__dataclass_params__.frozen and hasattr(self, "__dict__")):  # type: ignore[attr-defined]
+            raise ValueError(f"{kind.__name__} is a law; it must be a @dataclass(frozen=True) without slots")
+        for name in self._numbers():
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not np.isfinite(value):
+                raise ValueError(f"{self}: {name} is {value!r}; it must be a finite number")
+
+    def _numbers(self) -> tuple[str, ...]:
+        return tuple(f.name for f in fields(self) if f.type in (float, "float"))  # type: ignore[arg-type]
