@@ -6,17 +6,16 @@ and the skin, at height y, is in equilibrium where k (gap - y) = p_el(y).
 """
 
 import numpy as np
-from dolfinx import fem
 from mpi4py import MPI
 from scipy.optimize import brentq
 
 from geometry import tags
 from geometry.bodies import block
 from geometry.mesh import load
+from variational.body import Body
 from variational.penalty import Penalty
-from variational.problem import Interface, Problem, SaintVenant
+from variational.problem import Interface, SaintVenant
 from variational.solver import Control, Solver
-from variational.surface import Surface
 
 WIDTH, HEIGHT, GAP = 0.125e-3, 0.5e-3, 6e-6
 YOUNG, VOLTAGE, H_0, D_EQ = 4e6, 200.0, 0.514e-6, 2e-6
@@ -28,13 +27,11 @@ FOLD = (2 * HALF / STIFFNESS) ** (1 / 3) - H_0  # height of the skin (m) where t
 def charged() -> Solver:
     """Return the solver of a charged block, its bone unmoved."""
     body = load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, WIDTH / 2, gap=GAP))
-    surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
     solid, law = {tags.STRATUM_CORNEUM: SaintVenant(YOUNG, 0.0)}, Interface(Penalty(1e12, 1e11), 0.0, H_0)
-    problem = Problem(body.mesh, body.cell_tags, surface, solid, law)
-    problem.set_air_gaps(np.array([D_EQ]))
-    problem.voltage.value = VOLTAGE
-    sides = fem.locate_dofs_topological(problem.V, 1, body.facet_tags.find(tags.SIDES))
-    return Solver(problem, body.facet_tags.find(tags.BONE_RIM), 1.0, 1e-9, [(2 * sides, 0.0)])
+    made = Body(body, solid, law, held=body.facets(tags.SIDES))
+    made.problem.set_air_gaps(np.array([D_EQ]))
+    made.problem.voltage.value = VOLTAGE
+    return made.solver
 
 
 def stress(stretch: float) -> float:

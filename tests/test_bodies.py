@@ -1,11 +1,16 @@
 """Bodies of the verification: their sizes, their groups and what they refuse."""
 
+import subprocess
+import sys
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import ufl
 from dolfinx import fem
 from mpi4py import MPI
 
+import geometry
 from geometry import tags
 from geometry.bodies import block, cooks_membrane, foot, pad, quarter_tube, ridge
 from geometry.mesh import load
@@ -131,3 +136,31 @@ def test_ridge_without_a_top_is_refused():
 def test_tube_without_a_wall_is_refused():
     with pytest.raises(GeometryError, match="inner is 0.001 m; it must be below the outer radius, 0.001 m"):
         quarter_tube(MM, MM, 4)()
+
+
+# -- shapes --------------------------------------------------------------------------------------------
+def test_shape_is_a_value():
+    assert geometry.ridge(size=10e-6) == geometry.ridge(10e-6) != geometry.ridge(size=20e-6)
+    with pytest.raises(TypeError, match="missing a required argument: 'size'"):
+        geometry.ridge()
+    with pytest.raises(AttributeError, match="no attribute 'rigde'; its shapes are block, ridge, pad"):
+        _ = geometry.rigde
+
+
+def test_geometry_imports_no_gmsh():
+    code = "import sys, geometry; assert 'gmsh' not in sys.modules; geometry.ridge; assert 'gmsh' in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_finger_has_its_layers_and_ridges():
+    sizes = {"contact": 100e-6, "interface": 200e-6, "growth": 0.5}
+    body = load(MPI.COMM_SELF, geometry.finger(touching_half_arc=1e-3, **sizes))
+    assert body.layers() == tags.LAYERS
+    assert list(body.ridge_tags()) == [-2, -1, 0, 1, 2]
+
+
+def test_shape_without_what_it_needs_is_refused():
+    """A shape that forgets a group it promises: the message of :func:`geometry.mesh.load`."""
+    bare = replace(geometry.block(MM, MM, MM), needed=(tags.NAIL,))
+    with pytest.raises(GeometryError, match=f"the mesh has no cell or facet with tag {tags.NAIL}"):
+        load(MPI.COMM_SELF, bare)

@@ -14,22 +14,22 @@ from fingerpad import full as run_module
 from fingerpad import mirror, needs
 from fingerpad.needs import plan
 from fingerpad.scene import Scene, from_data
+from geometry import tags
+from geometry.mesh import TaggedMesh
 from tests.runs import run
-from variational.continuation import Continuation, Target
-from variational.coupling import Coupling
+from variational.body import Body
+from variational.continuation import Target
 from variational.energy import EnergyBook
 from variational.output import Snapshot
 from variational.penalty import Penalty
-from variational.problem import Interface, Ogden, Problem
-from variational.quantities import Observer, RidgeLoads
+from variational.problem import Interface, Ogden
+from variational.quantities import RidgeLoads
 from variational.roughness.bam import BearingArea
-from variational.solver import Solver
 from variational.stability import StabilityCheck
-from variational.surface import Surface
 
 H_0, WIDTH, HEIGHT, FORCE = 0.514e-6, 0.5e-3, 0.5e-3, 3.0
 MU_F = 0.02  # so little that some points slip
-SKIN, BOTTOM, TOP, LINE = 1, 2, 3, 4
+SKIN, BOTTOM, TOP, LINE = tags.STRATUM_CORNEUM, tags.ridge(0), tags.BONE_RIM, tags.SYMMETRY
 
 
 # -- the plan ----------------------------------------------------------------------------------------------
@@ -88,14 +88,14 @@ class Block:
         values = np.repeat(np.array(list(found), dtype=np.int32), [len(f) for f in found.values()])
         order = np.argsort(facets)
         facet_tags = dolfinx.mesh.meshtags(mesh, 1, facets[order], values[order])
-        surface = Surface(mesh, facet_tags, {0: BOTTOM})
+        body = TaggedMesh(mesh, cell_tags, facet_tags)
         interface = Interface(Penalty(1.5e12, 5e10), MU_F, H_0)
-        problem = Problem(mesh, cell_tags, surface, {SKIN: Ogden(86.76e3, -14.53, 0.48)}, interface)
-        line = facet_tags.find(LINE) if half else None
-        self.solver = Solver(problem, facet_tags.find(TOP), FORCE, 1e-11, mirror=line)
-        coupling = Coupling(self.solver, Observer(problem, half), BearingArea(H_0), tolerance=1e-10)
-        self.path = path = Continuation(coupling)
-        copies = 2 if half else 1
+        made = Body(
+            body, {SKIN: Ogden(86.76e3, -14.53, 0.48)}, interface, BearingArea(H_0), force_scale=FORCE, tolerance=1e-11,
+            mirror=body.facets(LINE) if half else None, coupling_tolerance=1e-10,
+        )  # fmt: skip
+        problem, self.solver, coupling, self.path = made.problem, made.solver, made.coupling, made.continuation
+        path, copies = self.path, 2 if half else 1
         book = EnergyBook(problem, path.surface_state, self.solver.bone, self.solver.reaction, coupling.d_eq, copies)
         path.run(Target("press", f_ext=FORCE))
         path.run(Target("charge", voltage=100.0))

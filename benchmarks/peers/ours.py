@@ -4,20 +4,18 @@ import importlib.metadata
 
 import dolfinx
 import numpy as np
-from dolfinx import fem
 from mpi4py import MPI
 
 from benchmarks.peers.exchange import Answer, Case, Ridge, State, plain, steps
 from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import TaggedMesh, load
+from variational.body import Body
 from variational.compat import cell_geometry
 from variational.contact import History
 from variational.penalty import Penalty
-from variational.problem import Interface, Ogden, Problem
-from variational.quantities import Observer
-from variational.solver import Control, Solver
-from variational.surface import Surface
+from variational.problem import Interface, Ogden
+from variational.solver import Control
 
 _MM = 1e-3  # m
 _STIFFNESS = 1e9  # Pa/m in a N/mm^3
@@ -67,13 +65,11 @@ def solve(case: Case, body: TaggedMesh, skin: np.ndarray) -> Answer:
         body: made by :func:`make`.
         skin: places (mm) of the skin's nodes to be reported.
     """
-    surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
     skins = {tags.STRATUM_CORNEUM: Ogden(case.shear_modulus * 1e6, -case.exponent, case.poisson)}
     formulation = Penalty(case.eps_n * _STIFFNESS, case.eps_t * _STIFFNESS)
-    problem = Problem(body.mesh, body.cell_tags, surface, skins, Interface(formulation, case.mu_f, _H_0))
-    sides = fem.locate_dofs_topological(problem.V, 1, body.facet_tags.find(tags.SIDES))
-    solver = Solver(problem, body.facet_tags.find(tags.BONE_RIM), 1.0, _IMBALANCE, [(2 * sides, 0.0)])
-    observer = Observer(problem)
+    law = Interface(formulation, case.mu_f, _H_0)
+    made = Body(body, skins, law, tolerance=_IMBALANCE, held=body.facets(tags.SIDES))
+    problem, solver, observer = made.problem, made.solver, made.observer
     places = problem.V.tabulate_dof_coordinates()[:, :2] / _MM
     nodes = [int(np.argmin(np.linalg.norm(places - place, axis=1))) for place in skin]
     answer = Answer("fingerpad", f"{importlib.metadata.version('fenics-dolfinx')} (dolfinx)", "this project")

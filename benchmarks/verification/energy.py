@@ -15,12 +15,12 @@ from benchmarks.verification.microscale import H_0, MU_F
 from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import load
+from variational.body import Body
 from variational.energy import Balance, EnergyBook
 from variational.penalty import Penalty
-from variational.problem import Interface, Ogden, Problem
+from variational.problem import Interface, Ogden
 from variational.quantities import Observer
 from variational.solver import Control, Solver
-from variational.surface import Surface
 
 D_EQ, VOLTAGE = 2e-6, 100.0
 PHASES = ("press", "charge", "slide", "back", "discharge", "lift")
@@ -78,10 +78,9 @@ def cycle(solver: Solver, depth: float, far: float, steps: int) -> dict[str, lis
 
 def _ridge() -> Solver:
     body = load(MPI.COMM_WORLD, ridge(_SIZE))
-    surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
     skin = {tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53, 0.48)}
     law = Interface(Penalty(1e11, 1e10), MU_F, H_0)
-    return Solver(Problem(body.mesh, body.cell_tags, surface, skin, law), body.facet_tags.find(tags.BONE_RIM), 1.0)
+    return Body(body, skin, law).solver
 
 
 def closed_cycle(small: bool) -> Outcome:
