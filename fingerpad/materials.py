@@ -12,7 +12,7 @@ from pydantic import BaseModel, model_validator
 from fingerpad.sentences import show
 from fingerpad.table import Finite, Part
 from geometry.bounds import within
-from variational.electroadhesion import insulator_thickness
+from variational.insulator import insulator_thickness
 from variational.roughness.bam import BearingArea
 
 Poisson = Annotated[Finite, within(-0.9, 0.4999)]

@@ -3,7 +3,7 @@
 :mod:`fingerpad.materials` has the others. The docstring of each parameter has the reason of its range.
 """
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
@@ -11,10 +11,9 @@ from fingerpad.names import load_name
 from fingerpad.sentences import show
 from fingerpad.table import Finite, Part, Switch
 from geometry.bounds import within
-from variational.augmented import AugmentedLagrangian
-from variational.contact import Formulation
-from variational.nitsche import Nitsche
-from variational.penalty import Penalty
+
+if TYPE_CHECKING:
+    from variational.contact import Formulation
 
 Rest = Annotated[Finite, within(1e-12, 1e-3)]
 Asked = Annotated[Finite, within(1e-6, 0.5)]
@@ -137,8 +136,12 @@ class Contact(Part):
         """Return the keys that the formulation does not read."""
         return set().union(*_FORMULATION_KEYS.values()) - _FORMULATION_KEYS[self.formulation]
 
-    def law(self) -> Formulation:
+    def law(self) -> "Formulation":
         """Return the formulation with its parameters."""
+        from variational.augmented import AugmentedLagrangian  # UFL: not for those who only read scenes
+        from variational.nitsche import Nitsche
+        from variational.penalty import Penalty
+
         if self.formulation == "nitsche":
             return Nitsche(self.gamma_0, self.theta)
         if self.formulation == "augmented":

@@ -13,12 +13,13 @@ import fcntl
 import json
 import shutil
 from pathlib import Path
-from typing import Any, TextIO
-
-from mpi4py import MPI
+from typing import TYPE_CHECKING, Any, TextIO
 
 from fingerpad.files import replace_json
 from fingerpad.scene import Scene, SceneError
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
 
 # All that a run leaves, for the next run of the same scene to delete; what else is in the folder is not touched.
 LEFT = (
@@ -49,7 +50,7 @@ class Place:
         folder: where results go.
     """
 
-    def __init__(self, folder: Path, scene: Scene, comm: MPI.Comm) -> None:
+    def __init__(self, folder: Path, scene: Scene, comm: "MPI.Comm") -> None:
         """Choose a folder for a scene; nothing is touched before :meth:`take`, except that the folder is made."""
         self.folder, self._comm = folder, comm
         self._parameters = json.loads(json.dumps(scene.parameters()))  # as they are read back

@@ -7,12 +7,14 @@ Where the coarse finger finds no equilibrium there is a rule of thumb, from full
 """
 
 from dataclasses import dataclass
-from typing import Any
-
-from mpi4py import MPI
+from typing import TYPE_CHECKING, Any
 
 from fingerpad.needs import Plan
 from fingerpad.scene import Scene
+from geometry.sizing import touching_ridges
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
 
 MARGIN = 2
 # What the rule of thumb knows: 5 mm are enough for this force (N/m) and friction. Ridges in contact grow as the force
@@ -35,15 +37,13 @@ class Decision:
 
     def plan(self, needed: Plan, scene: Scene) -> Plan:
         """Return a plan that says which ridges are left out of the decision's scene, or of a wider one."""
-        from geometry import fingertip  # gmsh: not for those who only read scenes
-
-        last = fingertip.touching_ridges(scene.geometry, scene.mesh)[-1]
+        last = touching_ridges(scene.geometry, scene.mesh)[-1]
         if not self.reason or last == (scene.geometry.ridge_count - 1) // 2:
             return needed
         return needed.with_ridges(last, self.reason)
 
 
-def decide(scene: Scene, comm: MPI.Comm) -> Decision:
+def decide(scene: Scene, comm: "MPI.Comm") -> Decision:
     """Decide how many ridges can touch; collective."""
     from fingerpad import coarse  # dolfinx: not for those who want the rule alone
 

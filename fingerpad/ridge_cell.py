@@ -34,7 +34,7 @@ from variational import ogden
 from variational.carried import carried
 from variational.continuation import Attempt, Continuation, StepFailed, Target
 from variational.coupling import Coupling
-from variational.electroadhesion import VACUUM_PERMITTIVITY
+from variational.insulator import VACUUM_PERMITTIVITY
 from variational.problem import Interface, Ogden, Problem
 from variational.quantities import Observer
 from variational.ridge_law import RidgeTable

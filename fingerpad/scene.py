@@ -14,6 +14,7 @@ from fingerpad.parameters import Accuracy, Contact, Load, Numerics, Output, Volt
 from fingerpad.reading import plain, read
 from fingerpad.sentences import SceneError, first_error, key_of, qualify, show
 from fingerpad.table import Finite, Part
+from geometry import sizing
 from geometry.bounds import within
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
@@ -205,10 +206,9 @@ def check(scene: Scene) -> None:
             many that they need more memory than the scene allows.
     """
     from fingerpad.budget import refuse_beyond
-    from geometry import fingertip  # gmsh: not for those who only read scenes
 
     try:
-        fingertip.check(scene.geometry, scene.mesh)
+        sizing.check(scene.geometry, scene.mesh)
         refuse_beyond(scene)
     except GeometryError as error:
         message = re.sub(r"\bcontact size (\S+) m is", r"mesh.contact is \1 m,", str(error))

@@ -10,8 +10,9 @@ from dolfinx import fem
 
 from fingerpad.needs import Plan
 from fingerpad.scene import Scene
-from geometry import fingertip, tags
+from geometry import tags
 from geometry.mesh import TaggedMesh
+from geometry.sizing import touching_ridges
 from variational.quantities import Observer, RidgeLoads
 
 _NEAR = 10e-6  # m, height of the skin at which an attraction of 200 V comes to 1 kPa
@@ -76,7 +77,7 @@ class Zone:
     def _wider(self) -> Scene | None:
         """Return the scene with more ridges that can touch, None if all can."""
         finger, size = self._scene.geometry, self._scene.mesh
-        last = fingertip.touching_ridges(finger, size)[-1]
+        last = touching_ridges(finger, size)[-1]
         if last == (finger.ridge_count - 1) // 2:
             return None
         half_arc = (last + max(_MORE, round(_PART * last))) * finger.ridge_wavelength

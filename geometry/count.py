@@ -17,9 +17,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.fingertip import touching_ridges
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
+from geometry.sizing import touching_ridges
 
 Array = NDArray[np.float64]
 _EQUILATERAL = 4 / np.sqrt(3)  # triangles with edges of length 1 in an area of 1

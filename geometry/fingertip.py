@@ -6,40 +6,12 @@ from numpy.typing import NDArray
 
 from geometry import tags
 from geometry.parameters import Fingertip, MeshSize
-from geometry.profiles import GeometryError, Profiles
+from geometry.profiles import Profiles
+from geometry.sizing import check, touching_ridges
 
 _MM = 1e3  # gmsh's tolerances suit models in mm
 _SAMPLES = 32  # spline points a ridge
 _SHARP_SAMPLES = 128  # of the VE-D junction, whose tips have a radius of some um
-
-
-def touching_ridges(finger: Fingertip, size: MeshSize) -> range:
-    """Return the numbers of the ridges that are meshed finely enough to touch the screen.
-
-    Raises:
-        GeometryError: it was not decided how many.
-    """
-    if size.touching_half_arc is None:
-        raise GeometryError("touching_half_arc is not given; it must be a length, or be decided by a run")
-    last = int(size.touching_half_arc / finger.ridge_wavelength + 0.5)
-    last = min(last, (finger.ridge_count - 1) // 2)
-    return range(-last, last + 1)
-
-
-def check(finger: Fingertip, size: MeshSize) -> Profiles:
-    """Return the fingertip's curves if they and the sizes can be meshed.
-
-    Raises:
-        GeometryError: see :meth:`geometry.profiles.Profiles.check`; or elements too large for a ridge.
-    """
-    profiles = Profiles(finger)
-    profiles.check()
-    if size.contact > finger.ridge_wavelength / 4:
-        raise GeometryError(
-            f"contact size {size.contact:g} m is too large for a ridge of {finger.ridge_wavelength:g} m: "
-            f"at most a quarter of it, {finger.ridge_wavelength / 4:g} m"
-        )
-    return profiles
 
 
 def build(finger: Fingertip, size: MeshSize, receptors: bool = True, half: bool = False) -> float:
@@ -55,7 +27,7 @@ def build(finger: Fingertip, size: MeshSize, receptors: bool = True, half: bool 
         The length of gmsh's unit in m.
 
     Raises:
-        GeometryError: see :func:`check` and :func:`touching_ridges`.
+        GeometryError: see :mod:`geometry.sizing`.
     """
     profiles = check(finger, size)
     touching = [j for j in touching_ridges(finger, size) if j >= 0 or not half]

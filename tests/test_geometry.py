@@ -17,6 +17,7 @@ from geometry.benchmarks import block
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError, Profiles
+from geometry.sizing import check, touching_ridges
 from tests.measures import integral, vertices
 from tests.test_profiles import MM, UM, WAVE, dense
 
@@ -78,7 +79,7 @@ def test_no_cell_is_without_layer(finger_mesh):
 @pytest.mark.mpi
 def test_ridges_that_can_touch(finger_mesh, coarse):
     """Those with a tip within 2 mm of the centre, and half of one."""
-    assert finger_mesh.ridges() == list(range(-4, 5)) == list(fingertip.touching_ridges(Fingertip(), coarse))
+    assert finger_mesh.ridges() == list(range(-4, 5)) == list(touching_ridges(Fingertip(), coarse))
 
 
 def away_from(curve, points) -> float:
@@ -296,7 +297,7 @@ def test_most_ridges_that_are_named_fit(wavelength):
 
 def test_contact_size_is_refused():
     with pytest.raises(GeometryError, match="contact size 0.00013 m is too large for a ridge of 0.000483 m"):
-        fingertip.check(Fingertip(), MeshSize(contact=130e-6))
+        check(Fingertip(), MeshSize(contact=130e-6))
 
 
 @pytest.mark.mpi

@@ -9,8 +9,8 @@ from fingerpad.reach import by_rule, decide
 from fingerpad.run import run
 from fingerpad.scene import Scene, from_data
 from fingerpad.simulation import Simulation
-from geometry import fingertip
 from geometry.profiles import GeometryError
+from geometry.sizing import touching_ridges
 
 COMM = MPI.COMM_WORLD
 PRESS = {"name": "press", "bone_height": -50e-6}
@@ -18,7 +18,7 @@ MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8}
 
 
 def ridges(scene: Scene) -> int:
-    return fingertip.touching_ridges(scene.geometry, scene.mesh)[-1]
+    return touching_ridges(scene.geometry, scene.mesh)[-1]
 
 
 # -- what the coarse finger says -------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ from fingerpad.run import run
 from fingerpad.scene import from_data
 from fingerpad.simulation import Simulation
 from fingerpad.zone import Woken, Zone, ZoneExceeded
-from geometry import fingertip
+from geometry.sizing import touching_ridges
 from variational.stability import Stability, StabilityCheck
 
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8}
@@ -76,7 +76,7 @@ def test_how_many_are_woken(half_arc, more):
     if more is None:
         assert wider is None
         return
-    before, after = (fingertip.touching_ridges(s.geometry, s.mesh)[-1] for s in (scene, wider))
+    before, after = (touching_ridges(s.geometry, s.mesh)[-1] for s in (scene, wider))
     assert after - before == more
 
 
@@ -104,7 +104,7 @@ def test_skin_that_comes_near_is_woken():
         Woken, match="skin beyond the ridges that are meshed to touch is at a height of 8e-06 m"
     ) as wake:
         look(simulation)
-    assert fingertip.touching_ridges(wake.value.scene.geometry, wake.value.scene.mesh)[-1] == 6
+    assert touching_ridges(wake.value.scene.geometry, wake.value.scene.mesh)[-1] == 6
 
 
 def test_skin_that_stays_clear_is_not_woken():

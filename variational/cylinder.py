@@ -33,7 +33,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from variational.electroadhesion import VACUUM_PERMITTIVITY
+from variational.insulator import VACUUM_PERMITTIVITY
 from variational.roughness.closure import Closure
 
 Array = NDArray[np.float64]

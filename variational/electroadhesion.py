@@ -21,12 +21,7 @@ from typing import Any
 
 import ufl
 
-VACUUM_PERMITTIVITY = 8.854e-12  # F/m, Table 3
-
-
-def insulator_thickness(d_sc: float, eps_sc: float, d_i: float, eps_i: float) -> float:
-    """Return h_0 (m), the effective insulator thickness of stratum corneum and screen coating."""
-    return d_sc / eps_sc + d_i / eps_i
+from variational.insulator import VACUUM_PERMITTIVITY
 
 
 def attraction(y, d_eq, voltage, h_0):

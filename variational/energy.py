@@ -36,7 +36,8 @@ from dolfinx import fem
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from variational.electroadhesion import ELECTROSTATIC, VACUUM_PERMITTIVITY
+from variational.electroadhesion import ELECTROSTATIC
+from variational.insulator import VACUUM_PERMITTIVITY
 from variational.problem import Problem
 from variational.quantities import SurfaceState
 

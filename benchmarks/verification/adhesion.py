@@ -26,7 +26,8 @@ from benchmarks.verification.case import Case, Outcome, Row
 from benchmarks.verification.over_screen import formulations, over_screen, plane_strain_modulus
 from geometry.benchmarks import block, pad
 from variational.continuation import Target
-from variational.electroadhesion import ELECTROSTATIC, VACUUM_PERMITTIVITY
+from variational.electroadhesion import ELECTROSTATIC
+from variational.insulator import VACUUM_PERMITTIVITY
 from variational.penalty import Penalty
 from variational.problem import Interface, SaintVenant
 from variational.stability import StabilityCheck
