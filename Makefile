@@ -17,7 +17,7 @@ help:
 	@sed -n 's/^# make/make/p' Makefile
 
 demo:
-	$(run) python3 demos/demo_fingerpad.py --out results/demo
+	$(run) python3 -m fingerpad run --out results/demo
 
 test:
 	$(run) python3 -m pytest -q --color=no -n auto tests

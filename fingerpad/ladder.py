@@ -1,27 +1,21 @@
 """A ladder of models of one scene, the cheapest first: the same keys, side by side, with what each of them cost.
 
-    environment/run python3 -m fingerpad.ladder [--scene scene.toml] [--rung 1 2 3] [--from-rung 2]
-        [--contact-length M --ridges N | --run DIR] [--f-ext 75] [--voltage 200] [--out results]
-
     rung 1   ridges as charged cylinders, for a contact length that is known (:mod:`fingerpad.closed_form`)
     rung 2   a smooth finger with one ridge's law as its contact (:mod:`fingerpad.smooth`); tables in DIR/ridge_tables
-    rung 3   the whole cross-section with every ridge (:mod:`fingerpad.run`), left in DIR/full; with --from-rung 2 its
+    rung 3   the whole cross-section with every ridge (:mod:`fingerpad.run`), left in DIR/full; or its
              full slip alone, from rung 2's (:mod:`fingerpad.start`), nothing left, or else the run as without
 
 Where each rung is good enough: ``docs/ladder.md``.
 """
 
-import argparse
-import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from fingerpad import closed_form, entry
-from fingerpad.command import add_arguments, command_line, positive
+from fingerpad import entry
 from fingerpad.rungs import NAMES, STATES, Answer, Cost, Stopwatch
-from fingerpad.scene import Scene, SceneError
+from fingerpad.scene import Scene
 
 _UNITS = {"f_t": "N/m", "f_electrostatic": "N/m", "f_contact": "N/m", "bone_height": "m", "contact_length": "m"}
 
@@ -90,40 +84,3 @@ def _cell(answer: Answer, key: str) -> str:
     if isinstance(value, int):
         return str(value)
     return f"{value:.5g}" + (f" ± {error:.2g}" if error else "")
-
-
-def main(argv: Sequence[str] | None = None) -> int:
-    """Climb the rungs asked for; return the exit code."""
-    parser = argparse.ArgumentParser(prog="python3 -m fingerpad.ladder", description="Compare models of a scene.")
-    add_arguments(parser)
-    parser.add_argument("--rung", type=int, nargs="+", choices=(1, 2, 3), default=[1, 2], help="rungs to climb")
-    parser.add_argument("--from-rung", type=int, choices=(2,), help="start rung 3 from this one's full slip")
-    parser.add_argument("--contact-length", type=positive(float), metavar="M", help="for rung 1, at the voltage given")
-    parser.add_argument("--ridges", type=positive(int), metavar="N", help="on so many ridges")
-    parser.add_argument("--run", type=Path, metavar="DIR", help="for rung 1: contact lengths of this full run")
-    scene, args, petsc = command_line(parser, argv)
-    entry.start(petsc)
-    climb: dict[int, Callable[[], Answer]] = {
-        1: lambda: closed_form.solve(scene, _footprint(scene, args)),
-        2: lambda: smooth(scene, args.out / "ridge_tables"),
-        3: lambda: started(scene, args.out) if args.from_rung else full(scene, args.out / "full"),
-    }
-    try:
-        answers = [climb[rung]() for rung in sorted(set(args.rung))]
-    except SceneError as error:
-        print(f"fingerpad: {error}", file=sys.stderr)
-        return 2
-    print(table(answers))
-    return 0
-
-
-def _footprint(scene: Scene, args: argparse.Namespace) -> closed_form.Footprint | None:
-    if args.run is not None:
-        return closed_form.from_run(scene, args.run)
-    if (args.contact_length is None) != (args.ridges is None):
-        raise SceneError("one of --contact-length and --ridges is given without the other; give both or none")
-    return None if args.contact_length is None else closed_form.given(args.contact_length, args.ridges)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

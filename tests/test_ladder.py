@@ -155,14 +155,7 @@ def test_closed_form_has_no_discretisation_error(default):
     assert any("no discretisation error" in note for note in default.notes)
 
 
-# -- the command -------------------------------------------------------------------------------------------
-def test_command_prints_keys_and_notes(capsys):
-    assert ladder.main(["--rung", "1", "--f-ext", "50", "--voltage", "0"]) == 0
-    printed = capsys.readouterr().out
-    assert ["slip", "mu_app", "0.25"] in [line.split() for line in printed.splitlines()]
-    assert "rung 1: uncharged contact length interpolated" in printed
-
-
+# -- a start from rung 2 -------------------------------------------------------------------------------------------
 def test_full_model_without_a_start_follows_the_path(monkeypatch, tmp_path):
     """Rung 2's state does not serve: the answer is the path's, and a note says why."""
 
@@ -174,11 +167,6 @@ def test_full_model_without_a_start_follows_the_path(monkeypatch, tmp_path):
     answer = ladder.started(scene(), tmp_path)
     assert answer.missing() == []
     assert answer.notes == ("full slip was not found; the path was followed instead",)
-
-
-def test_command_refuses_half_a_footprint(capsys):
-    assert ladder.main(["--rung", "1", "--ridges", "3"]) == 2
-    assert "give both or none" in capsys.readouterr().err
 
 
 # -- the benchmark -----------------------------------------------------------------------------------------

@@ -243,9 +243,10 @@ def test_plain_files(tmp_path, name):
 
 def test_bad_files(tmp_path):
     (tmp_path / "words.txt").write_text("no numbers")
+    (tmp_path / "heights.txt").write_text("1 2 3 4\n" * 4)
     np.save(tmp_path / "line.npy", np.zeros(9))
     with pytest.raises(ValueError, match="give the lengths"):
-        read(tmp_path / "words.txt")
+        read(tmp_path / "heights.txt")
     with pytest.raises(ValueError, match="no matrix of numbers"):
         read(tmp_path / "words.txt", (1.0, 1.0))
     with pytest.raises(ValueError, match="line.npy: heights have shape"):

@@ -45,10 +45,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         missing = (error.name or "").partition(".")[0]
         if missing not in _OPTIONAL:
             raise
-        return refuse(
-            f"{words[0]} needs {missing}, which is not installed; a folder with the sources has it in environment/run, "
-            "and INSTALL in the README says how else"
-        )
+        return refuse(f"{words[0]} needs {missing}, which is not installed; the README says how to install it")
     except BrokenPipeError:  # of `fingerpad params | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1

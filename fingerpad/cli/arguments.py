@@ -22,17 +22,17 @@ _NEAR = 0.6  # likeness, from 0 to 1, at which an option may have been meant
 class Parser(argparse.ArgumentParser):
     """A parser that refuses by :class:`SceneError` and prints on rank 0 alone."""
 
-    def __init__(self, name: str, description: str, examples: str) -> None:
+    def __init__(self, program: str, description: str, examples: str) -> None:
         """Start with the options that all subcommands have.
 
         Args:
-            name: of the subcommand.
+            program: what is typed before the options.
             description: a line or two on what it does.
             examples: command lines, one a line.
         """
         lines = "\n".join(f"  {line.strip()}" for line in examples.strip().splitlines())
         super().__init__(
-            prog=f"fingerpad {name}",
+            prog=program,
             description=description,
             epilog=f"examples:\n{lines}",
             formatter_class=argparse.RawDescriptionHelpFormatter,

@@ -6,7 +6,7 @@ from typing import Any
 
 from fingerpad import closed_form
 from fingerpad.cli import ranges, tables
-from fingerpad.cli.arguments import Parser, path, scene_of, say, writable
+from fingerpad.cli.arguments import Parser, path, say, scene_of, writable
 from fingerpad.scene import Scene, from_data
 from fingerpad.sentences import SceneError
 
@@ -31,7 +31,9 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Estimate friction over a grid; return the exit code."""
-    parser = Parser("estimate", "Friction at full slip, every ridge taken for the same charged cylinder.", _EXAMPLES)
+    parser = Parser(
+        "fingerpad estimate", "Friction at full slip, every ridge taken for the same charged cylinder.", _EXAMPLES
+    )
     parser.add_scene()
     parser.add_argument("--f-ext", metavar="RANGE", help="forces (N/m): 75, or 20,50,75, or first:last:count")
     parser.add_argument("--voltage", metavar="RANGE", help="voltages (V), written likewise")

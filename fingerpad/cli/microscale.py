@@ -29,7 +29,9 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Print the microscale over pressure; return the exit code."""
-    parser = Parser("microscale", "Bearing area model of a rough ridge over its mean contact pressure.", _EXAMPLES)
+    parser = Parser(
+        "fingerpad microscale", "Bearing area model of a rough ridge over its mean contact pressure.", _EXAMPLES
+    )
     parser.add_scene()
     parser.add_argument("--voltage", metavar="RANGE", help="voltages (V): 200, or 0,100, or first:last:count")
     parser.add_argument("--p", metavar="RANGE", default=_PRESSURES, help=f"pressures (Pa); default {_PRESSURES}")
@@ -44,7 +46,7 @@ def main(argv: Sequence[str]) -> int:
     closure = scene.roughness.bearing_area(scene.h_0)
     say(
         f"A ridge of rms roughness {scene.roughness.h_rms * 1e6:.3g} µm, largest wavelength "
-        f"{scene.roughness.wavelength * 1e6:.3g} µm; insulators of {scene.h_0 * 1e6:.3g} µm (effective thickness h_0).\n"
+        f"{scene.roughness.wavelength * 1e6:.3g} µm; insulators: h_0 = {scene.h_0 * 1e6:.3g} µm.\n"
     )
     say(tables.text(_COLUMNS, rows))
     say("\npressure: mean contact pressure of the ridge; external: that less the attraction, what the finger presses")

@@ -18,7 +18,7 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Print keys; return the exit code."""
-    parser = Parser("params", "Every key of a scene: unit, default, range and meaning.", _EXAMPLES)
+    parser = Parser("fingerpad params", "Every key of a scene: unit, default, range and meaning.", _EXAMPLES)
     parser.add_argument("filter", nargs="?", default="", metavar="FILTER", help="keys with this in their name")
     parser.add_argument("--toml", action="store_true", help="as a complete scene file of the defaults, with comments")
     args = parser.read(argv)

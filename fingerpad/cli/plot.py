@@ -10,6 +10,7 @@ with contextlib.chdir("/"):  # matplotlibrc of the current folder is not obeyed,
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")  # Okabe and Ito's
 _LINES = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (8, 3)), (0, (1, 3)))
@@ -33,3 +34,8 @@ def curve(ax: Axes, k: int, x: Sequence[float], y: Sequence[float], label: str) 
 def save(made: Figure, file: Path) -> None:
     """Write a picture, in the format that the name ends with."""
     made.savefig(file, dpi=150)
+
+
+def patch(colour: str, label: str) -> Patch:
+    """Return an entry of a legend for an area."""
+    return Patch(facecolor=colour, edgecolor="k", lw=0.5, label=label)
