@@ -19,7 +19,7 @@ from benchmarks.effectivity import HIGH, LOW, cell, hertz_table, knob_tables, ta
 from benchmarks.errors import DEFAULT, LEVELS, folder_of_limits
 from fingerpad.files import replace
 from fingerpad.scene import Scene
-from fingerpad.sweep import result, sweep
+from fingerpad.study import result, sweep
 
 _STATES = {"press": "uncharged", "normal": "normal contact", "slip": "full slip"}
 _SHORT = {"mu_app": "µ_app", "contact_length": "contact length", "sed": "SED"}

@@ -36,7 +36,7 @@ from benchmarks.points import (
     scenes,
 )
 from fingerpad.files import replace, replace_json
-from fingerpad.sweep import sweep
+from fingerpad.study import sweep
 
 _LIMIT = 10800.0  # s of processor time for one run
 _TICKS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0)

@@ -18,7 +18,7 @@ from benchmarks.errors import QUANTITIES, STUDIES, study, values
 from benchmarks.runs import Run
 from fingerpad.estimate import Knob
 from fingerpad.scene import Scene
-from fingerpad.sweep import progress
+from fingerpad.study import progress
 
 Array = NDArray[np.float64]
 LOW, HIGH = 0.5, 3.0  # effectivities that are good enough

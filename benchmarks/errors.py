@@ -23,7 +23,7 @@ from fingerpad.estimate import plus_minus
 from fingerpad.files import replace, replace_json
 from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, from_data
-from fingerpad.sweep import sweep
+from fingerpad.study import sweep
 
 _LIMIT = 10800.0  # s of processor time for one run; the finest mesh takes far longer than a trace
 CONTACT = (20e-6, 10e-6, 5e-6, 2.5e-6)

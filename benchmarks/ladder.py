@@ -24,9 +24,9 @@ from benchmarks.rung import ask, kept
 from benchmarks.traces import FORCES, VOLTAGES
 from fingerpad import closed_form, ridge_cell
 from fingerpad.files import replace, replace_json
-from fingerpad.ladder import from_summary
 from fingerpad.processes import End, Pool
-from fingerpad.sweep import progress, result
+from fingerpad.result import Result
+from fingerpad.study import progress, result
 
 SIZE = 10e-6  # m
 NAMES = {
@@ -47,7 +47,7 @@ Made by `environment/run python3 benchmarks/ladder.py`; do not edit. Numbers unr
 |---|---|---|---|
 | 1 | every ridge the same charged cylinder (`fingerpad/closed_form.py`, `variational/cylinder.py`) | forces, friction and contact length, for a finger whose uncharged contact length is known | {one} |
 | 2 | smooth layered finger, one ridge's law as its contact (`fingerpad/smooth.py`, `variational/ridge_law.py`) | the same and the bone's height, for any finger | {two} |
-| 3 | every ridge (`fingerpad/run.py`) | all, receptors too | {three} |
+| 3 | every ridge (`fingerpad/full.py`) | all, receptors too | {three} |
 
 Errors are against the full model at a contact size of 10 µm, whose own are in [errors.md](errors.md). What rung 3 takes is wall time of runs that shared the machine; the
 tables of rung 2's ridge take some seconds more, once a voltage and friction coefficient.
@@ -86,7 +86,7 @@ def collect(known: dict[str, Any], out: Path, rungs: Sequence[str], jobs: int, f
         mine = known.setdefault(key, {})
         summary = result(scene, out)
         if summary is not None and summary.get("full_slip"):
-            mine["3"] = kept(from_summary(summary))
+            mine["3"] = kept(Result.from_dict(summary))
         if "1" in rungs:
             mine["1"] = kept(closed_form.solve(scene))
     tables = out.parent / "ridge_tables"

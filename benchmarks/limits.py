@@ -21,14 +21,15 @@ from typing import Any
 from mpi4py import MPI
 
 from benchmarks.convergence import Limit, limit
-from fingerpad.accuracy import Keeper, Solve, solve_again
+from fingerpad.again import Keeper, Solve, solve_again
 from fingerpad.files import replace
 from fingerpad.needs import plan
 from fingerpad.processes import Pool, limit_processor_time, run
 from fingerpad.scene import Scene, from_data, start
 from fingerpad.simulation import Simulation
+from fingerpad.states import PREFIXES
 from fingerpad.steps import Step
-from fingerpad.sweep import key, progress
+from fingerpad.study import key, progress
 from geometry.parameters import MeshSize
 from variational.continuation import StepFailed
 
@@ -133,7 +134,10 @@ def _solve(scene: Scene, levels: int, uncharged: bool) -> dict[str, Any]:
     own = solve_again(scene, plan(scene), solves[1].states, comm)
 
     def told(solve: Solve) -> dict[str, Any]:
-        ridges = {f"{name}_ridges_in_contact": s.row["ridges_in_contact"] for name, s in solve.states.items()}
+        ridges = {
+            f"{PREFIXES.get(name, name)}_ridges_in_contact": s.state.ridges_in_contact
+            for name, s in solve.states.items()
+        }
         return {
             "mesh": solve.mesh.model_dump(),
             "unknowns": solve.unknowns,

@@ -21,7 +21,7 @@ from benchmarks.ladder import name as ladder_name
 from benchmarks.runs import Run
 from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, from_data
-from fingerpad.sweep import result
+from fingerpad.study import result
 
 DEFAULT = "default"
 ASKED, AGAIN, LADDER = "accuracy asked for", "solved again", "ladder"

@@ -21,7 +21,7 @@ from fingerpad import coarse
 from fingerpad.files import replace, replace_json
 from fingerpad.reach import MARGIN
 from fingerpad.scene import Scene
-from fingerpad.sweep import progress
+from fingerpad.study import progress
 
 _SIZE = 10e-6  # m
 _HEADER = f"""# Which ridges touch

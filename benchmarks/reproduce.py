@@ -20,7 +20,7 @@ from benchmarks.paper.style import draw
 from benchmarks.runs import Run
 from fingerpad.cli.arguments import positive
 from fingerpad.scene import Scene, check
-from fingerpad.sweep import sweep
+from fingerpad.study import sweep
 
 _LIMIT = 3600.0  # s of processor time for one run; the sine takes longest
 

@@ -10,16 +10,24 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.processes import End, limit_processor_time, run
-from fingerpad.rungs import Answer
+from fingerpad.result import Result
+from fingerpad.rungs import STATES
 from fingerpad.scene import Scene, from_data
-from fingerpad.sweep import key
+from fingerpad.states import PREFIXES
+from fingerpad.study import key
+from variational.state import RESULTS
 
 LIMIT = 900.0  # s of processor time; mostly it takes half a minute, a start another one
 
 
-def kept(answer: Answer) -> dict[str, Any]:
+def kept(result: Result) -> dict[str, Any]:
     """Return what ladder.json holds of an answer."""
-    return {"summary": answer.summary, "cost": vars(answer.cost), "more": answer.more}
+    keys = [f"{PREFIXES[name]}_{key}" for name in STATES for key in RESULTS]
+    values = result.values()
+    summary = {"full_slip": result.full_slip is not None} | {k: values[k] for k in keys if values[k] is not None}
+    cost, more = result.cost, result.record if result.model != "full" or "table_version" in result.record else {}
+    spent = {"seconds": cost.processor_seconds, "factorisations": cost.factorisations, "unknowns": cost.unknowns}
+    return {"summary": summary, "cost": spent, "more": more}
 
 
 def ask(kind: str, scene: Scene, folder: Path) -> End:

@@ -4,6 +4,7 @@ import csv
 from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from fingerpad import states
 from fingerpad.scene import Scene
-from fingerpad.sweep import key, result
+from fingerpad.study import key, result
 
 Array = NDArray[np.float64]
 
@@ -77,7 +78,7 @@ class Run:
     def normal(self) -> int:
         """Row of normal contact, see :mod:`fingerpad.states`."""
         columns = [self.steps[name] for name in ("bone_x", "ridges_in_contact")]
-        rows = [{"bone_x": x, "ridges_in_contact": ridges} for x, ridges in zip(*columns, strict=True)]
+        rows: list[Any] = [SimpleNamespace(bone_x=x, ridges_in_contact=n) for x, n in zip(*columns, strict=True)]
         return self._row("normal", lambda: len(states.before_sliding(rows)) - 1)
 
     @property

@@ -21,7 +21,7 @@ from fingerpad.cli.arguments import positive
 from fingerpad.files import replace
 from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, SceneError, check, from_data
-from fingerpad.sweep import result, sweep
+from fingerpad.study import result, sweep
 
 _LAYERS = ("subcutis", "dermis", "viable_epidermis", "stratum_corneum")
 _DEFAULTS = Scene()

@@ -32,9 +32,10 @@ def main(comm: MPI.Comm) -> int:
     except SceneError as error:
         return refuse(str(error))
     start(petsc)
-    from fingerpad.run import exit_code, run
+    from fingerpad.full import exit_code, run
 
-    s = run(scene, args.out, comm)
+    result = run(scene, args.out, comm)
+    s = result.to_dict()
     if comm.rank == 0:
         seconds = {phase: s.get(f"seconds_{phase}", 0.0) for phase in _PHASES}
         seconds["other"] = s["wall_seconds"] - sum(seconds.values())
@@ -45,7 +46,7 @@ def main(comm: MPI.Comm) -> int:
         for name in _COUNTS:
             print(f"{name.replace('_', ' '):40s} {s[name]:7d}")
         print(f"{'peak memory, all ranks (MB)':40s} {s['memory_mb']:7.0f}")
-    return exit_code(s)
+    return exit_code(result)
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from fingerpad.files import replace
 from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene import load as load_scene
-from fingerpad.sweep import Summary, result, sweep
+from fingerpad.study import Summary, result, sweep
 
 _ROOT = Path(__file__).resolve().parents[1]
 VOLTAGES = (0.0, 50.0, 100.0, 150.0, 200.0)

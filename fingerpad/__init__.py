@@ -1,1 +1,91 @@
-"""The main job: press, charge and slide a fingerpad, from a scene to tables and pictures."""
+"""fingerpad: how a fingertip sticks, slides and feels on a touchscreen under electroadhesion.
+
+    import fingerpad as fp
+
+    result = fp.run(fp.Scene(f_ext=75.0, voltage=200.0, friction=0.25))
+    print(result)
+
+Importing this package imports nothing heavy; what needs finite elements is imported when it is used.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from variational.material import Material as Material
+    from variational.neo_hooke import NeoHooke as NeoHooke
+
+    import geometry as geometry
+    from fingerpad.api import run as run
+    from fingerpad.body import Body as Body
+    from fingerpad.grid import Sweep as Sweep
+    from fingerpad.grid import sweep as sweep
+    from fingerpad.result import Result as Result
+    from fingerpad.scene import Scene as Scene
+    from fingerpad.scene import SceneError as SceneError
+    from variational.augmented import AugmentedLagrangian as AugmentedLagrangian
+    from variational.friction import Coulomb as Coulomb
+    from variational.friction import Derjaguin as Derjaguin
+    from variational.friction import Friction as Friction
+    from variational.nitsche import Nitsche as Nitsche
+    from variational.ogden import Ogden as Ogden
+    from variational.penalty import Penalty as Penalty
+    from variational.roughness.bam import BearingArea as BearingArea
+    from variational.roughness.closure import AirGap as AirGap
+    from variational.roughness.closure import Closure as Closure
+    from variational.saint_venant import SaintVenant as SaintVenant
+    from variational.state import ContactState as ContactState
+
+_HOMES = {
+    "Scene": "fingerpad.scene",
+    "SceneError": "fingerpad.scene",
+    "run": "fingerpad.api",
+    "sweep": "fingerpad.grid",
+    "Sweep": "fingerpad.grid",
+    "Result": "fingerpad.result",
+    "ContactState": "variational.state",
+    "Body": "fingerpad.body",
+    "Material": "variational.material",
+    "Ogden": "variational.ogden",
+    "NeoHooke": "variational.neo_hooke",
+    "SaintVenant": "variational.saint_venant",
+    "Penalty": "variational.penalty",
+    "Nitsche": "variational.nitsche",
+    "AugmentedLagrangian": "variational.augmented",
+    "Friction": "variational.friction",
+    "Coulomb": "variational.friction",
+    "Derjaguin": "variational.friction",
+    "Closure": "variational.roughness.closure",
+    "AirGap": "variational.roughness.closure",
+    "BearingArea": "variational.roughness.bam",
+}
+_FINITE_ELEMENTS = [
+    name
+    for name, home in _HOMES.items()
+    if home.startswith("variational") and not home.startswith(("variational.roughness", "variational.state"))
+] + ["Body"]
+_LIBRARIES = ("dolfinx", "ufl", "basix", "ffcx", "petsc4py", "mpi4py", "gmsh")
+__all__ = [*_HOMES, "geometry"]
+
+
+def __getattr__(name: str) -> Any:
+    """Import what is asked for."""
+    if name == "geometry":
+        return import_module("geometry")
+    if name not in _HOMES:
+        raise AttributeError(f"module 'fingerpad' has no attribute {name!r}; it has {', '.join(__all__)}")
+    try:
+        if name in _FINITE_ELEMENTS:  # with the configuration of the user alone, before any other import
+            import_module("fingerpad.started")
+        return getattr(import_module(_HOMES[name]), name)
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.partition(".")[0] not in _LIBRARIES:
+            raise
+        raise ImportError(
+            f"fingerpad.{name} needs {error.name}; install finite elements by conda env create -f environment.yml, "
+            "by pip install 'fingerpad[fem]', or use environment/run"
+        ) from error
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -23,15 +23,15 @@ told beside it (:mod:`fingerpad.screen`).
 Not estimated: what a state of normal contact owes to its friction history having been that of the first mesh.
 """
 
-import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 from mpi4py import MPI
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from fingerpad.again import Keeper, Solve, State, quantities, solve_again, words
 from fingerpad.budget import refuse_beyond
 from fingerpad.estimate import Knob, errors, plus_minus, to_halve
 from fingerpad.interrupt import Interrupted
@@ -39,132 +39,17 @@ from fingerpad.needs import Plan
 from fingerpad.scene import Load, Scene
 from fingerpad.screen import over_stiffer, rigid, stiffened
 from fingerpad.simulation import Simulation
-from fingerpad.states import WORDS, before_sliding
+from fingerpad.states import PREFIXES
 from fingerpad.steps import Step
+from fingerpad.words import in_words, scaled
 from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError
 from variational.continuation import StepFailed
-from variational.receptors import Receptors
-from variational.transfer import Carried, carry
+from variational.state import RESULTS, ContactState, Errors
 
 Array = NDArray[np.float64]
 _SIZES = {"contact": ("contact",), "bulk": ("growth", "interface", "coarsest"), "receptor": ("receptor",)}
 _ROUNDS = 6  # of refinement
-_WORDS = {"press": "uncharged contact", **WORDS}
-
-
-@dataclass(frozen=True)
-class State:
-    """A state that can be solved again, the same on every rank."""
-
-    carried: Carried
-    direction: int
-    """The way the bone slides at full slip, zero in normal contact."""
-    row: dict[str, float]
-    """Its resultants, by the names of a run's steps."""
-    lengths: Array
-    """Length in contact (m) of every ridge of the finger, shape (ridges,)."""
-    sed: dict[int, float]
-    """Strain energy density (J/m^3) at the Merkel sites of the ridges that can touch."""
-
-
-@dataclass(frozen=True)
-class Solve:
-    """States on one mesh, and what they cost."""
-
-    states: dict[str, State]
-    """By ``normal`` and ``slip``."""
-    mesh: MeshSize
-    unknowns: int
-    factorisations: int
-    processor_seconds: float
-    """Of this rank."""
-    views: dict[str, Any] = field(default_factory=dict)
-    """What is to be shown of states that were solved again, by name."""
-
-    def values(self) -> dict[str, float]:
-        """Return the quantities of interest, by state and name."""
-        found: dict[str, float] = {}
-        for name, state in self.states.items():
-            wanted = ("f_t", "mu_app", "contact_length") if name == "slip" else ("contact_length",)
-            found |= {f"{name}_{quantity}": state.row[quantity] for quantity in wanted}
-            found |= {f"{name}_sed_{j}": value for j, value in state.sed.items()}
-        return found
-
-    def parts(self) -> dict[str, ArrayLike]:
-        """Return the same, contact lengths by ridge, shape (ridges,)."""
-        return {**self.values(), **{f"{name}_contact_length": state.lengths for name, state in self.states.items()}}
-
-
-class Keeper:
-    """Keeps the two states of a path as it goes: normal contact, and the last full slip that was held."""
-
-    def __init__(self, simulation: Simulation) -> None:
-        """Find the Merkel sites of the ridges that can touch."""
-        self._simulation = simulation
-        self._start = time.process_time()
-        ridges, profiles = simulation.problem.surface.names, simulation.profiles
-        sites = profiles.merkel_sites()[[profiles.ridges.index(j) for j in ridges]]
-        self._sites = Receptors(simulation.problem, sites)
-        self._begun: State | None = None  # the last full slip, held or not
-        self.states: dict[str, State] = {}
-        self.views: dict[str, Any] = {}
-
-    def see(self, step: Step) -> None:
-        """Take note of an accepted step; collective."""
-        rows, row = self._simulation.rows, step.row
-        if row["ridges_in_contact"] > 0 and len(before_sliding(rows)) == len(rows):
-            self.keep("normal")
-        if row["slip_began"] == row["step"]:
-            self._begun = self._state(1 if row["f_t"] >= 0 else -1)
-        if row["slip_held"] and self._begun is not None:
-            self.states["slip"] = self._begun
-
-    def keep(self, name: str) -> None:
-        """Keep the present state; collective."""
-        self.states[name] = self._state((1 if self._simulation.solver.reaction[0] <= 0 else -1) * (name == "slip"))
-
-    def _state(self, direction: int) -> State:
-        s = self._simulation
-        loads = s.ridge_loads()
-        lengths = np.zeros(s.scene.geometry.ridge_count)
-        lengths[np.array(s.ridges) + len(lengths) // 2] = loads.length
-        sed = {j: float(density) for j, density in zip(s.problem.surface.names, self._sites.sed(), strict=True)}
-        return State(carry(s.coupling, s.continuation.surface_state), direction, s.resultants(loads), lengths, sed)
-
-    def solve(self) -> Solve:
-        """Return what was kept."""
-        s, seconds = self._simulation, time.process_time() - self._start
-        return Solve(self.states, s.scene.mesh, s.unknowns, s.solver.counts.factorisations, seconds, self.views)
-
-
-def solve_again(
-    scene: Scene,
-    needed: Plan,
-    states: Mapping[str, State],
-    comm: MPI.Comm,
-    look: Callable[[Simulation], Any] | None = None,
-) -> Solve:
-    """Solve for states of a scene's finger on the scene's mesh; collective.
-
-    Args:
-        scene: with the mesh.
-        needed: the parts of the model that the states have.
-        states: as they were found on another mesh.
-        comm: communicator of the mesh.
-        look: returns what is to be shown of the state that a simulation is in, for :attr:`Solve.views`.
-
-    Raises:
-        StepFailed: see :meth:`fingerpad.simulation.Simulation.adopt`.
-    """
-    simulation = Simulation(scene, needed, comm, lambda step, done: None, lambda: None)
-    keeper = Keeper(simulation)
-    for name, state in states.items():
-        simulation.adopt(state.carried, _WORDS[name], state.direction)
-        keeper.keep(name)
-        if look is not None:
-            keeper.views[name] = look(simulation)
-    return keeper.solve()
 
 
 class Search:
@@ -211,14 +96,14 @@ class Search:
         self.solves, self.failure = [path], ""
         self.notes: list[str] = []
         self.penalty: dict[str, float] = {}
-        for name in {"mu_app", "f_t"} & set(self.asked) if "slip" not in path.states else ():
+        for name in {"mu_app", "f_t"} & set(self.asked) if "full_slip" not in path.states else ():
             raise StepFailed(
                 f"accuracy.{name} is {self.asked[name]:g}, which full slip decides, and that was not reached"
             )
         if self.asked and not path.states:
             raise StepFailed("accuracy is given and the history has neither normal contact nor full slip")
         self.knobs = {key: Knob() for key in _SIZES if key != "receptor" or "sed" in self.asked or self._looks()}
-        if scene.friction > 0 and "normal" in path.states and {"contact_length", "sed"} & set(self.asked):
+        if scene.friction > 0 and "charged" in path.states and {"contact_length", "sed"} & set(self.asked):
             self.knobs["steps"] = Knob()
         self.halved = dict.fromkeys(self.knobs, 0)
 
@@ -261,7 +146,8 @@ class Search:
             self.say(self.notes[-1])
             return
         self.penalty = rigid(self.base.values(), found.values())
-        told = [f"{name} by {value:.2g}" for name, value in self.penalty.items() if "_sed_" not in name]
+        changes = {name: scaled(name, value) for name, value in self.penalty.items() if "_sed_" not in name}
+        told = [f"{in_words(name)} by {value:.2g} {unit}".rstrip() for name, (value, unit) in changes.items()]
         self.say(f"penalty: a rigid screen would change {', '.join(told)}")
 
     def _refine(self) -> None:
@@ -278,13 +164,13 @@ class Search:
     def allowed(self) -> dict[str, float]:
         """Return the largest error allowed of each quantity that is asked for, in its unit."""
         found = {}
-        for name, value in self.base.values().items():
-            state, _, quantity = name.partition("_")
-            largest = max(self.base.states[state].sed.values(), default=0.0)
-            if "sed" in self.asked and quantity.startswith("sed_"):
-                found[name] = self.asked["sed"] * largest
-            elif quantity in self.asked:
-                found[name] = self.asked[quantity] * abs(value)
+        for name, state in self.base.states.items():
+            for quantity, value in quantities(name, state).items():
+                key = f"{PREFIXES.get(name, name)}_{quantity}"
+                if "sed" in self.asked and quantity.startswith("sed_"):
+                    found[key] = self.asked["sed"] * max(state.sed.values(), default=0.0)
+                elif quantity in self.asked:
+                    found[key] = self.asked[quantity] * abs(value)
         return found
 
     def estimates(self) -> dict[str, float]:
@@ -312,9 +198,9 @@ class Search:
     def _see(self, key: str, coarse: Solve, finer: Solve) -> None:
         self.knobs[key].see(coarse.parts(), finer.parts())
         for name in sorted(coarse.states.keys() & finer.states.keys()):
-            before, now = (s.states[name].row["ridges_in_contact"] for s in (coarse, finer))
+            before, now = (s.states[name].state.ridges_in_contact for s in (coarse, finer))
             if before != now:
-                self.notes.append(f"halving {key}: {now} ridges in contact at {_WORDS[name]} instead of {before}")
+                self.notes.append(f"halving {key}: {now} ridges in contact at {words(name)} instead of {before}")
 
     def _mesh(self, halved: Mapping[str, int]) -> MeshSize:
         first = self.scene.mesh
@@ -367,14 +253,16 @@ class Search:
         values, found = self.base.values(), self.estimates()
         allowed = self.allowed()
         for name, error in found.items():
-            limit = f", {allowed[name]:.2g} allowed" if name in allowed else ""
-            if "_sed_" not in name:
-                self.say(f"{name} {plus_minus(values[name], error)} (estimated discretisation error){limit}")
+            if "_sed_" in name:
+                continue
+            (value, unit), (spread, _) = scaled(name, values[name]), scaled(name, error)
+            limit = f", {scaled(name, allowed[name])[0]:.2g} allowed" if name in allowed else ""
+            self.say(f"{in_words(name)}: {plus_minus(value, spread)} {unit} (estimated discretisation error){limit}")
 
     def summary(self) -> dict[str, Any]:
-        """Return what is to be said of it in a run's summary; collective."""
+        """Return how errors were found, ready for JSON; collective."""
         values, found, allowed = self.base.values(), self.estimates(), self.allowed()
-        quantities = {
+        quantities_ = {
             name: {
                 "value": values[name],
                 "error": error,
@@ -386,33 +274,46 @@ class Search:
             for name, error in found.items()
         }
         seconds = [float(np.sum(self.comm.allgather(solve.processor_seconds))) for solve in self.solves]
-        rows = {f"{s}_{name}": value for s, state in self.base.states.items() for name, value in state.row.items()}
-        return (
-            rows
-            | {f"{name}_error": q["error"] for name, q in quantities.items() if "_sed_" not in name}
-            | {f"{name}_penalty": value for name, value in self.penalty.items() if "_sed_" not in name}
-            | {
-                "accuracy": {
-                    "reached": not self.failure,
-                    "mesh": self.base.mesh.model_dump(),
-                    "step_scale": self._scale(self.halved.get("steps", 0)),
-                    "quantities": quantities,
-                    "notes": self.notes,
-                    "solves": [
-                        {
-                            "mesh": solve.mesh.model_dump(),
-                            "unknowns": solve.unknowns,
-                            "factorisations": solve.factorisations,
-                            "processor_seconds": spent,
-                        }
-                        for solve, spent in zip(self.solves, seconds, strict=True)
-                    ],
-                    "factorisations": sum(solve.factorisations for solve in self.solves),
-                    "unknowns_times_factorisations": sum(s.unknowns * s.factorisations for s in self.solves),
-                    "processor_seconds": sum(seconds),
+        return {
+            "reached": not self.failure,
+            "mesh": self.base.mesh.model_dump(),
+            "step_scale": self._scale(self.halved.get("steps", 0)),
+            "quantities": quantities_,
+            "notes": self.notes,
+            "solves": [
+                {
+                    "mesh": solve.mesh.model_dump(),
+                    "unknowns": solve.unknowns,
+                    "factorisations": solve.factorisations,
+                    "processor_seconds": spent,
                 }
-            }
-        )
+                for solve, spent in zip(self.solves, seconds, strict=True)
+            ],
+            "factorisations": sum(solve.factorisations for solve in self.solves),
+            "unknowns_times_factorisations": sum(s.unknowns * s.factorisations for s in self.solves),
+            "processor_seconds": sum(seconds),
+        }
+
+    def states(self, path: Mapping[str, ContactState]) -> dict[str, ContactState]:
+        """Return the named states of a path with their results on the final mesh, their errors and the penalty's share.
+
+        Args:
+            path: the states by name, as the path has them.
+        """
+        estimates, found = self.estimates(), dict(path)
+        for name, kept in self.base.states.items():
+            if name in found:
+                final = {key: getattr(kept.state, key) for key in (*RESULTS, "f_ext", "ridges", "mesh_contact")}
+                parts = (errors_of(name, estimates), errors_of(name, self.penalty))
+                found[name] = replace(found[name], **final, error=parts[0], penalty=parts[1])
+        return found
+
+
+def errors_of(name: str, changes: Mapping[str, float]) -> Errors:
+    """Return the changes of a named state's quantities, of those by key; densities at receptors are left out."""
+    prefix = f"{PREFIXES[name]}_"
+    known = {field.name for field in fields(Errors)}
+    return Errors(**{k: v for key, v in changes.items() if (k := key.removeprefix(prefix)) in known and k != key})
 
 
 def loads_to_normal_contact(scene: Scene) -> tuple[Load, ...]:

@@ -1,5 +1,6 @@
 """What to try when a run stops, in the words of a scene's keys."""
 
+from fingerpad.interrupt import Interrupted
 from variational.continuation import StepFailed
 from variational.failure import NotConverged
 
@@ -24,3 +25,15 @@ def advice(error: StepFailed) -> str:
     if cause.inverted:
         return _INVERTED
     return next((words for name, words in _ADVICE.items() if cause.reason.startswith(name)), _OTHERWISE)
+
+
+def finer_mesh_may_help(error: StepFailed, coarse_start: bool) -> bool:
+    """Return whether a load that could not be reached may be with a smaller ``mesh.contact``.
+
+    Args:
+        error: of the load.
+        coarse_start: the mesh was chosen as one to start from, and not by a person.
+    """
+    if coarse_start:
+        return not isinstance(error, Interrupted)
+    return "smaller mesh.contact" in advice(error)

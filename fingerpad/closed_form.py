@@ -1,4 +1,4 @@
-r"""Rung 1: every ridge in contact the same charged cylinder, an answer in a fraction of a second.
+r"""The model "cylinders": every ridge in contact the same charged cylinder, an answer in a fraction of a second.
 
 n ridges bear :math:`f = f_{ext} / n` each; :mod:`variational.cylinder` says what contact force, attraction and air gap
 that makes, and friction at full slip is :math:`f_T = \mu_0 (f_{ext} + f_{el})`. What it cannot say by itself is how
@@ -18,31 +18,33 @@ voltage; how much that is: ``docs/ladder.md``.
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from fingerpad.rungs import STATES, Answer, Cost, Stopwatch, at_rest, at_slip, refuse_history
+from fingerpad.result import Cost, Result
+from fingerpad.rungs import STATES, Stopwatch, at_rest, at_slip, refuse_history
 from fingerpad.scene import Scene, SceneError
 from fingerpad.sentences import show
+from fingerpad.states import PREFIXES, WORDS
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
 from variational.cylinder import Cylinder, NoEquilibriumError, RidgeState, hertz_modulus
+from variational.state import ContactState
 
 # The default finger's full runs without voltage, contact size 10 um: f_ext (N/m), then contact length (m) and ridges in
 # contact in each state. benchmarks/ladder.py keeps the same numbers in docs/ladder.json.
 _FORCES = (5.0, 10.0, 25.0, 50.0, 75.0, 100.0, 120.0, 150.0)
 _LENGTHS = {
-    "normal": (0.2313e-3, 0.3577e-3, 0.6504e-3, 1.0116e-3, 1.3028e-3, 1.4998e-3, 1.7017e-3, 1.8910e-3),
-    "slip": (0.2373e-3, 0.3500e-3, 0.6535e-3, 0.9843e-3, 1.2377e-3, 1.4615e-3, 1.6060e-3, 1.7901e-3),
+    "charged": (0.2313e-3, 0.3577e-3, 0.6504e-3, 1.0116e-3, 1.3028e-3, 1.4998e-3, 1.7017e-3, 1.8910e-3),
+    "full_slip": (0.2373e-3, 0.3500e-3, 0.6535e-3, 0.9843e-3, 1.2377e-3, 1.4615e-3, 1.6060e-3, 1.7901e-3),
 }
-_RIDGES = {"normal": (7, 9, 11, 15, 17, 17, 19, 19), "slip": (7, 9, 12, 14, 16, 17, 18, 18)}
+_RIDGES = {"charged": (7, 9, 11, 15, 17, 17, 19, 19), "full_slip": (7, 9, 12, 14, 16, 17, 18, 18)}
 _SHAPING = ("geometry", "materials", "contact")  # tables of a scene of which these lengths are a matter
 
 
 @dataclass(frozen=True)
 class Footprint:
-    """How long the contact is, and on how many ridges, by state."""
+    """How long the contact is, and on how many ridges, by state: ``charged`` and ``full_slip``."""
 
     length: dict[str, float]
     """Contact length (m)."""
@@ -64,7 +66,7 @@ def fitted(scene: Scene) -> Footprint:
         if getattr(scene, name) != getattr(default, name):
             raise SceneError(
                 f"{name} is not that of the default finger, whose contact length is known; give a contact length and "
-                "a number of ridges, a folder of a run, or use rung 2"
+                "a number of ridges, a folder of a run, or use the model 'smooth'"
             )
     source = "uncharged contact length interpolated between full runs of the default finger"
     if not _FORCES[0] <= scene.f_ext <= _FORCES[-1]:
@@ -112,30 +114,30 @@ def from_run(scene: Scene, folder: Path) -> Footprint:
                 f"run {folder} is one at {name} {summary[name]:g} {unit}, and the scene's is {getattr(scene, name):g}; "
                 "give a run of this scene"
             )
-    length = {state: summary.get(f"{state}_contact_length") for state in STATES}
-    ridges = {state: summary.get(f"{state}_ridges_in_contact") for state in STATES}
+    length = {state: summary.get(f"{PREFIXES[state]}_contact_length") for state in STATES}
+    ridges = {state: summary.get(f"{PREFIXES[state]}_ridges_in_contact") for state in STATES}
     if None in (*length.values(), *ridges.values()):
         raise SceneError(f"run {folder} did not reach full slip, so that its contact length there is not known")
     return Footprint(length, ridges, True, f"contact length of the run in {folder}")  # type: ignore[arg-type]
 
 
-def solve(scene: Scene, footprint: Footprint | None = None) -> Answer:
-    """Return rung 1's answer; without a footprint it is the default finger's.
+def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
+    """Return the answer of the cylinders; without a footprint it is the default finger's.
 
     Raises:
         SceneError: a scene with a history, another finger than the footprint's, or ridges that do not stay.
     """
     clock = Stopwatch()
-    refuse_history(scene, 1)
+    refuse_history(scene, "cylinders")
     footprint = footprint or fitted(scene)
-    summary: dict[str, Any] = {}
+    found: dict[str, ContactState] = {}
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
-    notes, states = [footprint.source, exact, "the bone's height is not known to this rung"], {}
+    notes, states = [footprint.source, exact, "the bone's height is not in this model"], {}
     for state in STATES:
         try:
             ridge = _ridge(scene, footprint, state)
         except NoEquilibriumError as error:
-            raise SceneError(f"{state} contact of rung 1: {error}") from None
+            raise SceneError(f"{WORDS[state]} of the model 'cylinders': {error}") from None
         n = footprint.ridges[state]
         contact = {
             "f_contact": n * ridge.f_contact,
@@ -143,12 +145,16 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Answer:
             "contact_length": n * ridge.length,
             "ridges_in_contact": n,
         }
-        normal = state == "normal"
-        summary |= at_rest(scene.f_ext, contact) if normal else at_slip(scene.f_ext, scene.friction, contact)
+        found[state] = at_rest(scene, contact) if state == "charged" else at_slip(scene, contact)
         states[state] = ridge
         notes += _remarks(scene, state, ridge)
-    more = {f"{state}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")}
-    return Answer(1, summary, Cost(clock.seconds()), tuple(notes), more)
+    more = {
+        f"{PREFIXES[state]}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
+    }
+    cost = Cost(processor_seconds=clock.seconds())
+    return Result(
+        scene, "cylinders", None, found["charged"], found["full_slip"], cost=cost, notes=tuple(notes), record=more
+    )
 
 
 def _ridge(scene: Scene, footprint: Footprint, state: str) -> RidgeState:
@@ -167,11 +173,11 @@ def _remarks(scene: Scene, state: str, ridge: RidgeState) -> list[str]:
     said = []
     place = scene.roughness.bearing_area(scene.h_0).state(ridge.p_c, scene.voltage)
     if place:
-        said.append(f"{state} contact: a mean pressure of {ridge.p_c:.4g} Pa is {place}")
+        said.append(f"{WORDS[state]}: a mean pressure of {ridge.p_c:.4g} Pa is {place}")
     if ridge.others:
         pressures = ", ".join(f"{p:.4g}" for p in ridge.others)
         said.append(
-            f"{state} contact: further equilibria at a mean pressure of {pressures} Pa, of ridges not on the screen yet"
+            f"{WORDS[state]}: further equilibria at a mean pressure of {pressures} Pa, of ridges not on the screen yet"
         )
     return said
 
@@ -189,6 +195,7 @@ def tip_radius(finger: Fingertip) -> float:
     if len(places) > 1 or high <= low:
         what = f"{len(places)} crests" if len(places) > 1 else "a flat tip"
         raise SceneError(
-            f"geometry.ridge_profile gives a ridge {what}; rung 1 takes ridges for cylinders, so use rung 2"
+            f"geometry.ridge_profile gives a ridge {what}; the model 'cylinders' takes ridges for cylinders, so use "
+            "the model 'smooth'"
         )
     return step**2 / (2 * (high - low))

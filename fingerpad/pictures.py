@@ -55,8 +55,9 @@ _TOUCHING = 0.5e-6  # m: vertices lower than this count as in contact when a vie
 _DECADES = 1e3  # span of the colours of the energy density
 
 
-def _save(figure: Figure, path: Path | str) -> None:
-    figure.savefig(path, dpi=170)
+def _save(figure: Figure, path: Path | str | None) -> None:
+    if path is not None:
+        figure.savefig(path, dpi=170)
 
 
 def _second_scale(ax: Axes, unit: float, label: str) -> None:
@@ -72,11 +73,11 @@ def _second_scale(ax: Axes, unit: float, label: str) -> None:
 
 
 # -- the body ------------------------------------------------------------------------------------------
-def finger(path: Path | str, snapshot: "Snapshot", sites: Array | None, title: str) -> Figure:
+def finger(path: Path | str | None, snapshot: "Snapshot", sites: Array | None, title: str) -> Figure:
     """Draw the deformed cross-section, and the energy density near the contact.
 
     Args:
-        path: of the PNG file.
+        path: of the PNG file; None for the figure alone.
         snapshot: state of the body, see :func:`variational.output.gather_mesh`.
         sites: current positions of Merkel sites (m), shape (n, 2), or None.
         title: what state it is, see :mod:`fingerpad.titles`.
@@ -218,11 +219,11 @@ class SurfaceProfile:
     """What else the panel's title says."""
 
 
-def surface(path: Path | str, states: Sequence[SurfaceProfile], title: str, largest_gap: float = 6e-6) -> Figure:
+def surface(path: Path | str | None, states: Sequence[SurfaceProfile], title: str, largest_gap: float = 6e-6) -> Figure:
     """Draw pressure, shear traction, attraction and gaps along the surface (Fig. 2 of Forsbach et al. 2023).
 
     Args:
-        path: of the PNG file.
+        path: of the PNG file; None for the figure alone.
         states: one pair of panels each, such as normal contact, partial slip and full slip.
         title: what they have in common, see :mod:`fingerpad.titles`.
         largest_gap: end of the gaps' axis (m).
@@ -285,11 +286,13 @@ def _draw_gaps(ax: Axes, s: SurfaceProfile, largest: float) -> None:
 
 
 # -- the history ---------------------------------------------------------------------------------------
-def history(path: Path | str, rows: Sequence[Mapping[str, Any]], title: str, mu_0: float | None = None) -> Figure:
+def history(
+    path: Path | str | None, rows: Sequence[Mapping[str, Any]], title: str, mu_0: float | None = None
+) -> Figure:
     """Draw friction force and contact length over the bone's displacement.
 
     Args:
-        path: of the PNG file.
+        path: of the PNG file; None for the figure alone.
         rows: accepted steps in order, with ``bone_x`` (m), ``f_t`` and ``f_ext`` (N/m), ``contact_length`` (m),
             ``ridges_in_contact`` and, true where ridges jumped, ``jump``. What precedes sliding is left out but
             for its last row.

@@ -1,84 +1,69 @@
-"""What a run leaves: printed steps, tables, fields, summary, log and a progress bar; rank 0 alone writes text."""
+"""What is kept of a run while it goes: its states, the skin and the finger to draw, and in the end its result."""
 
 import json
 import logging
-import logging.handlers
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from mpi4py import MPI
-from numpy.typing import NDArray
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from fingerpad import drawing, states
-from fingerpad.files import Table, replace_json
+from fingerpad import states
+from fingerpad.console import Console
+from fingerpad.drawing import Drawing, End
 from fingerpad.place import Place
 from fingerpad.provenance import provenance
+from fingerpad.result import Cost, Result
 from fingerpad.scene import Scene
 from fingerpad.simulation import Simulation
 from fingerpad.steps import Checked, Step, force_error
 from fingerpad.views import Profile, View, Viewer
+from fingerpad.writing import Writer
 from fingerpad.zone import Woken
-from variational.output import Fields, Snapshot
+from variational.state import ContactState
 from variational.timing import memory_mb
-
-_HEADER = "step load     f_ext    U  bone x   bone y      f_T  mu_app    f_el ridges  contact newton fact."
-_UNITS = "               N/m     V      mm       mm      N/m             N/m             mm"
 
 
 class Report:
-    """Writes a run into a folder; every accepted step is on disk before the next one starts.
+    """Keeps and prints a run, and writes it into a folder if there is one.
 
     Attributes:
-        rows: accepted steps, on every rank.
+        states: accepted states, on every rank.
+        console: what a person sees.
+        seconds: spent here (s).
     """
 
-    def __init__(self, scene: Scene, place: Place, comm: MPI.Comm) -> None:
-        """Start the progress bar; nothing is written before there is a step.
+    def __init__(self, scene: Scene, place: Place | None, comm: MPI.Comm, console: Console) -> None:
+        """Nothing is written before there is a step.
 
         Args:
             scene: what is run.
-            place: the folder, locked.
+            place: the folder, locked; None to write nothing.
             comm: communicator of the run.
+            console: prints.
         """
-        self.scene, self.folder, self.comm = scene, place.folder, comm
-        self._place, self._taken = place, False
-        self._fields: Fields | None = None
-        self.rows: list[dict[str, Any]] = []
+        self.scene, self.comm, self.console = scene, comm, console
+        self._folder = None if place is None else place.folder
+        self._writer = Writer(place, comm)
+        self.log = self._writer.log
+        self.log.info("scene %s", json.dumps(scene.parameters()))
+        self.states: list[ContactState] = []
         self.seconds = 0.0
         self._start = self._begun = time.perf_counter()
         self._processor = time.process_time()
         self._setup = 0.0
         self._simulation: Simulation | None = None
         self._profiles: dict[int, Profile] = {}
-        self._ends: dict[str, tuple[dict[str, Any], Snapshot, NDArray[np.float64] | None]] = {}
+        self._ends: dict[str, End] = {}
         self._finer: dict[str, View] = {}
-        self._tables: dict[str, Table] = {}
         self._written = self._checks = 0
         self._woken: list[dict[str, Any]] = []
-        self.log = logging.getLogger("fingerpad")
-        self._progress = Progress(
-            TextColumn("{task.description}"),
-            BarColumn(),
-            TextColumn("{task.percentage:3.0f} %"),
-            TimeElapsedColumn(),
-            TimeRemainingColumn(),
-            disable=comm.rank != 0,
-            transient=True,
-        )
-        self._progress.disable |= not self._progress.console.is_terminal
-        self._task = self._progress.add_task("meshing the finger", total=1.0)
-        self.log.handlers = [logging.handlers.MemoryHandler(1000, logging.CRITICAL, flushOnClose=False)]
-        self.log.setLevel(logging.INFO)
-        self.log.info("scene %s", scene.model_dump_json())
-        self._progress.start()
 
     def say(self, text: str) -> None:
         """Print a line on rank 0, above the progress bar."""
-        if self.comm.rank == 0:
-            self._progress.console.print(text, highlight=False, soft_wrap=True, markup=False)
+        self.console.say(text)
 
     def open(self, simulation: Simulation) -> None:
         """Meet the simulation, once it is set up."""
@@ -89,34 +74,21 @@ class Report:
             self.say(f"{omission}")
             self.log.info("%s", omission)
         self.say(f"{simulation.unknowns} unknowns, {len(simulation.ridges)} ridges that can touch")
-        self.say(_HEADER)
-        self.say(_UNITS)
-
-    def _take(self) -> None:
-        """Open the log and the fields where that has not been done, an earlier run's files gone; collective."""
-        assert self._simulation is not None
-        if not self._taken:
-            self._taken = True
-            self._place.take()
-            if self.comm.rank == 0:
-                _send(self.log, _LogFile(self.folder / "run.log", mode="w", encoding="utf-8"))
-        if self._fields is None:
-            self._fields = Fields(self._simulation.problem, self.folder)
+        self.console.head()
 
     def restart(self, wake: Woken) -> None:
         """Forget every step: the loads are gone through again, with what was left out."""
         assert self._simulation is not None
         counts, half_arc = self._simulation.solver.counts, wake.scene.mesh.touching_half_arc
-        last: dict[str, Any] = self.rows[-1] if self.rows else {"step": 0, "load": "start"}
+        step, load = (self.states[-1].step, self.states[-1].load) if self.states else (0, "start")
         halves = " and both halves of the finger" if wake.needed.both_halves else ""
-        text = f"step {last['step']} ({last['load']}): {wake}; all loads again with "
-        text += f"mesh.touching_half_arc {half_arc:g} m{halves}"
+        text = f"step {step} ({load}): {wake}; all loads again with mesh.touching_half_arc {half_arc:g} m{halves}"
         self.say(f"fingerpad: {text}")
         self.log.warning(text)
         self._woken.append(
             {
-                "step": last["step"],
-                "load": last["load"],
+                "step": step,
+                "load": load,
                 "reason": str(wake),
                 "touching_half_arc": half_arc,
                 "both_halves": wake.needed.both_halves,
@@ -124,8 +96,8 @@ class Report:
                 "factorisations": counts.factorisations,
             }
         )
-        self._close_files()
-        for kept in (self.rows, self._profiles, self._ends, self._finer, self._tables):
+        self._writer.restart()
+        for kept in (self.states, self._profiles, self._ends, self._finer):
             kept.clear()
         self._written = self._checks = 0
         self._begun = time.perf_counter()
@@ -134,64 +106,51 @@ class Report:
     def step(self, step: Step, done: float) -> None:
         """Report an accepted step; collective."""
         start = time.perf_counter()
-        assert self._simulation is not None
-        self._take()
-        size = {"mesh_contact": self._simulation.scene.mesh.contact}
-        row = step.row | size | {"processor_seconds": self._processor_seconds()}
-        self.rows.append(row)
+        assert self._simulation is not None and step.state.record is not None
+        self._writer.take(self._simulation.problem)
+        record = replace(step.state.record, processor_seconds=self._processor_seconds())
+        state = replace(step.state, record=record)
+        self.states.append(state)
         profile, receptors = self._viewer.profile(step), self._viewer.receptors(step)
+        if profile is not None:
+            self._profiles[state.step] = profile
+        self._writer.row("steps", state.row())
+        size = {"mesh_contact": state.mesh_contact}
+        for name, found in (("ridges", self._viewer.ridges(step)), ("receptors", receptors)):
+            for each in found:
+                self._writer.row(name, each | size)
+        for sweep, change in enumerate(step.attempt.changes):
+            self._writer.row("coupling", {"step": state.step, "sweep": sweep + 1, "change": change})
+        self.console.step(state, done)
         if self.comm.rank == 0:
-            assert profile is not None
-            self._profiles[row["step"]] = profile
-            self._table("steps", row)
-            for name, found in (("ridges", self._viewer.ridges(step)), ("receptors", receptors)):
-                for each in found:
-                    self._table(name, each | size)
-            for sweep, change in enumerate(step.attempt.changes):
-                self._table("coupling", {"step": row["step"], "sweep": sweep + 1, "change": change})
-            self._print(step, done)
+            self._log(step, state)
         self.seconds += time.perf_counter() - start
+
+    def _log(self, step: Step, state: ContactState) -> None:
+        assert self._simulation is not None
+        self.log.info("step %s sweeps %s", json.dumps(state.row()), step.attempt.changes)
+        for cut in step.attempt.cutbacks:
+            self.log.warning("step %d cut: %s", state.step, cut)
+        notes = [f"ridge {j} {note}" for j, note in zip(self._simulation.ridges, step.notes, strict=True) if note]
+        if notes:
+            self.log.warning("step %d closure: %s", state.step, ", ".join(notes))
 
     def _processor_seconds(self) -> float:
         """Return the processor time (s) of all ranks since the start; collective."""
         return float(self.comm.allreduce(time.process_time() - self._processor))
 
-    def _print(self, step: Step, done: float) -> None:
-        r = step.row
-        self.say(
-            f"{r['step']:4d} {r['load'][:7]:7s} {r['f_ext']:7.3f} {r['voltage']:5.1f} {r['bone_x'] * 1e3:7.4f} "
-            f"{r['bone_height'] * 1e3:8.5f} {r['f_t']:8.4f} {r['mu_app']:7.4f} {r['f_electrostatic']:7.3f} "
-            f"{r['ridges_in_contact']:6d} {r['contact_length'] * 1e3:8.4f} {r['newton_iterations']:6d} "
-            f"{r['factorisations']:5d}{'  jump, ' + _released(r) if r['jump'] else ''}"
-        )
-        self.log.info("step %s sweeps %s", json.dumps(r), step.attempt.changes)
-        for cut in step.attempt.cutbacks:
-            self.log.warning("step %d cut: %s", r["step"], cut)
-        assert self._simulation is not None
-        notes = [f"ridge {j} {s}" for j, s in zip(self._simulation.ridges, step.states, strict=True) if s]
-        if notes:
-            self.log.warning("step %d closure: %s", r["step"], ", ".join(notes))
-        loads = f"{r['load']}: {r['f_ext']:.1f} N/m, {r['voltage']:.0f} V, x {r['bone_x'] * 1e3:.2f} mm"
-        self._progress.update(self._task, completed=done, description=f"{loads}, µ {r['mu_app']:.3f}")
-
-    def _table(self, name: str, row: dict[str, Any]) -> None:
-        if name not in self._tables:
-            self._tables[name] = Table(self.folder / f"{name}.csv", row)
-        self._tables[name].write(row)
-
     def load_reached(self) -> None:
         """Write the present state for ParaView and keep it for the pictures, if it was reported; collective."""
         start = time.perf_counter()
         assert self._simulation is not None
-        last = self.rows[-1] if self.rows else {"step": 0}
-        if self._written != last["step"] == self._simulation.continuation.steps:
-            assert self._fields is not None
-            self._written = last["step"]
-            self._fields.write(float(self._written))
+        last = self.states[-1].step if self.states else 0
+        if self._written != last == self._simulation.continuation.steps:
+            self._written = last
+            self._writer.fields(last)
             self._log_checks()
             snapshot, merkel = self._viewer.picture()
             if snapshot is not None:
-                self._ends[last["load"]] = (last, snapshot, merkel)
+                self._ends[self.states[-1].load] = End(self.states[-1], snapshot, merkel)
         self.seconds += time.perf_counter() - start
 
     def look(self, simulation: Simulation) -> View:
@@ -204,12 +163,12 @@ class Report:
         if views:
             words = "; ".join(f"{states.WORDS[name]}: contact size {v.mesh.contact:g} m" for name, v in views.items())
             self.log.info("steps.csv, history.png and *.bp are of the path on the starting mesh; %s", words)
-        if self.comm.rank == 0:
-            for state, view in views.items():
-                for name, found in (("ridges", view.ridges), ("receptors", view.receptors)):
-                    for row in found:
-                        values = {key: value for key, value in row.items() if key != "step"}
-                        self._table(f"{name}_final", {"of": state} | values | {"mesh_contact": view.mesh.contact})
+        for state, view in views.items():
+            for name, found in (("ridges", view.ridges), ("receptors", view.receptors)):
+                for row in found:
+                    values = {key: value for key, value in row.items() if key != "step"}
+                    size = {"mesh_contact": view.mesh.contact}
+                    self._writer.row(f"{name}_final", {"of": state} | values | size)
 
     def _log_checks(self) -> None:
         assert self._simulation is not None
@@ -218,122 +177,126 @@ class Report:
         self._checks = len(self._simulation.checks)
 
     # -- the end ---------------------------------------------------------------------------------------
-    def summary(self, ended: dict[str, Any]) -> dict[str, Any]:
-        """Write ``summary.json`` and return it; ``ended`` is what else is to be said of the run's end."""
-        assert self._simulation is not None
-        self._take()
-        solver, rows = self._simulation.solver, self.rows
-        last: dict[str, Any] = rows[-1] if rows else {}
-        seconds = {"setup": self._setup, **solver.timings.seconds, "output": self.seconds}
-        peak = self.comm.allreduce(memory_mb())
-        result: dict[str, Any] = {
-            "f_ext": last.get("f_ext", 0.0),
-            "voltage": last.get("voltage", 0.0),
-            "full_slip": any(row["slip_held"] for row in rows),
-            "newton_iterations": solver.counts.newton,
-            "factorisations": solver.counts.factorisations,
-            "unknowns": self._simulation.unknowns,
-            "unknowns_path": self._simulation.unknowns,
-            "path_mesh": self._simulation.scene.mesh.model_dump(),
-            "wall_seconds": time.perf_counter() - self._start,
-            "processor_seconds": self._processor_seconds(),
-            "steps": len(rows),
-            "jumps": sum(row["jump"] for row in rows),
-            "cutbacks": sum(row["cutbacks"] for row in rows),
-            "penetration": max((row["penetration"] for row in rows), default=0.0),
-            "imbalance": max((row["imbalance"] for row in rows), default=0.0),
-            "energy_released": sum(row["energy_released"] for row in rows if row["jump"]),
-            "energy_released_error": sum(row["released_error"] for row in rows if row["jump"]),
-            "dissipation": sum(row["dissipation"] for row in rows),
-            "memory_mb": peak,
-            "ranks": self.comm.size,
-            **{f"seconds_{phase}": value for phase, value in seconds.items()},
-        }
-        found = states.named(rows)
-        for prefix in states.STATES:
-            row = found.get(prefix)
-            names = (*states.CONDITIONS, *states.RESULTS)
-            result |= {f"{prefix}_{name}": None if row is None else row[name] for name in names}
-            check = None if row is None else self._check(row)
-            result[f"{prefix}_stable"] = None if check is None else check.stable
-            result[f"{prefix}_lambda_min"] = None if check is None else check.frozen.lambda_min
-            result[f"{prefix}_gain"] = None if check is None else check.gain
-        result["loads"] = []
-        for name, mine in states.by_load(rows):
-            check = self._check(mine[-1])
-            result["loads"].append(states.summary(name, mine, None if check is None else check.stable))
-        result |= ended
-        numerics, scale = self.scene.numerics, solver.force_scale
-        result["floor"] = max((row["floor"] for row in rows), default=0.0)
-        left = max(numerics.tolerance, result["floor"])
-        result["force_error"] = force_error(result["unknowns"], left, scale)
-        result |= {"omitted": self._simulation.plan.table(), "woken": self._woken}
-        result["provenance"] = provenance()
-        result["parameters"] = self.scene.parameters()
-        if self.comm.rank == 0:
-            replace_json(self.folder / "summary.json", result)
-        return result
+    def named(self) -> dict[str, ContactState]:
+        """Return the named states of the path, with their stability and, on every rank, their skin; collective."""
+        return {name: self._complete(state) for name, state in states.named(self.states).items()}
 
-    def _check(self, row: states.Row) -> Checked | None:
+    def _complete(self, state: ContactState) -> ContactState:
+        state, check = self._with_skin(state, self._profiles.get(state.step)), self._check(state)
+        if check is None:
+            return state
+        return replace(state, stable=check.stable, lambda_min=check.frozen.lambda_min, gain=check.gain)
+
+    def on_final_mesh(self, named: Mapping[str, ContactState]) -> dict[str, ContactState]:
+        """Return named states with the skin of the mesh that the run ended with, where there is one; collective."""
+        return {
+            name: self._with_skin(state, self._finer[name].profile) if name in self._finer else state
+            for name, state in named.items()
+        }
+
+    def _with_skin(self, state: ContactState, profile: Profile | None) -> ContactState:
+        """Return a state with the skin that rank 0 has; collective."""
+        numbers = np.arange(0) if state.ridges is None else state.ridges.number
+        return replace(state, skin=self.comm.bcast(None if profile is None else profile.skin(numbers)))
+
+    def _check(self, state: ContactState) -> Checked | None:
         """Return the stability of a state, or of another one of the same full slip; None where none was examined."""
         assert self._simulation is not None
-        same = [other["step"] for other in self.rows if other["slip_began"] == row["slip_began"] > 0]
-        return next((self._simulation.checks[k] for k in (row["step"], *same) if k in self._simulation.checks), None)
+        same = [other.step for other in self.states if other.slip_began == state.slip_began > 0]
+        return next((self._simulation.checks[k] for k in (state.step, *same) if k in self._simulation.checks), None)
 
-    def draw(self) -> None:
-        """Draw the run, on rank 0."""
-        start = time.perf_counter()
-        if self.rows and self.comm.rank == 0:
-            assert self._simulation is not None
-            size = None if self.scene.accuracy is None else self._simulation.scene.mesh.contact
-            drawing.Drawing(
-                self.folder, self.scene.friction, self.rows, self._profiles, self._ends, self._finer, size
-            ).draw()
-        self.seconds += time.perf_counter() - start
-
-    def close(self, whole: bool = True) -> None:
-        """Close every file.
+    def result(self, named: Mapping[str, ContactState], ended: Mapping[str, Any]) -> Result:
+        """Return the result, and write it and the pictures; collective.
 
         Args:
-            whole: all ranks do so; else fields stay as they are, since closing them waits for all ranks.
+            named: the named states.
+            ended: ``failure``, ``interrupted``, ``notes`` and ``unknowns`` of the final mesh, where there are any, and
+                what else is to be kept of the run's end.
         """
-        self._progress.stop()
-        if whole:
-            self._close_files()
-        elif self._fields is not None:
-            self._fields.abandon()
-        for handler in self.log.handlers:
-            handler.close()
+        assert self._simulation is not None
+        start = time.perf_counter()
+        self._writer.take(self._simulation.problem)
+        more = dict(ended)
+        unknowns = int(more.pop("unknowns", self._simulation.unknowns))
+        words = {name: more.pop(name, "") for name in ("failure", "interrupted")}
+        notes = tuple(more.pop("notes", ()))
+        drawing = self._drawing()
+        if drawing is not None and self._folder is not None:
+            drawing.write(self._folder)
+        self.seconds += time.perf_counter() - start
+        found = Result(
+            self.scene,
+            "full",
+            named.get("uncharged"),
+            named.get("charged"),
+            named.get("full_slip"),
+            steps=tuple(self.states),
+            loads=tuple(self._loads()),
+            cost=self._cost(unknowns),
+            **words,
+            notes=notes,
+            record=self._record(unknowns) | more | {"provenance": provenance()},
+            folder=self._folder,
+            drawing=drawing,
+        )
+        self._writer.summary(found.to_dict())
+        return found
 
-    def _close_files(self) -> None:
-        if self._fields is not None:
-            self._fields.close()
-            self._fields = None
-        for table in self._tables.values():
-            table.close()
+    def _drawing(self) -> Drawing | None:
+        """Return what the pictures are drawn from, on rank 0."""
+        assert self._simulation is not None
+        if not self.states or self.comm.rank != 0:
+            return None
+        size = None if self.scene.accuracy is None else self._simulation.scene.mesh.contact
+        return Drawing(self.scene.friction, self.states, self._profiles, self._ends, self._finer, size)
 
+    def _loads(self) -> list[states.LoadResult]:
+        found = []
+        for name, mine in states.by_load(self.states):
+            check = self._check(mine[-1])
+            found.append(states.load_result(name, mine, None if check is None else check.stable))
+        return found
 
-class _LogFile(logging.FileHandler):
-    """A log that says so where it cannot be written, as tables do."""
+    def _cost(self, unknowns: int) -> Cost:
+        assert self._simulation is not None
+        counts = self._simulation.solver.counts
+        return Cost(
+            self._processor_seconds(),
+            time.perf_counter() - self._start,
+            counts.newton,
+            counts.factorisations,
+            unknowns,
+            self.comm.allreduce(memory_mb()),
+            self.comm.size,
+        )
 
-    def handleError(self, record: logging.LogRecord) -> None:
-        """Raise what went wrong."""
-        raise  # noqa: PLE0704
+    def _record(self, unknowns: int) -> dict[str, Any]:
+        """Return what else is to be said of the path, ready for JSON."""
+        assert self._simulation is not None
+        simulation, records = self._simulation, [s.record for s in self.states if s.record is not None]
+        jumps = [r for r in records if r.jump]
+        floor = max((r.floor for r in records), default=0.0)
+        left = max(self.scene.numerics.tolerance, floor)
+        seconds = {"setup": self._setup, **simulation.solver.timings.seconds, "output": self.seconds}
+        return {
+            "unknowns_path": simulation.unknowns,
+            "path_mesh": simulation.scene.mesh.model_dump(),
+            "steps": len(self.states),
+            "jumps": len(jumps),
+            "cutbacks": sum(r.cutbacks for r in records),
+            "penetration": max((r.penetration for r in records), default=0.0),
+            "imbalance": max((r.imbalance for r in records), default=0.0),
+            "energy_released": sum(r.energy_released for r in jumps),
+            "energy_released_error": sum(r.released_error for r in jumps),
+            "dissipation": sum(r.dissipation for r in records),
+            **{f"seconds_{phase}": value for phase, value in seconds.items()},
+            "floor": floor,
+            "force_error": force_error(unknowns, left, simulation.solver.force_scale),
+            "omitted": simulation.plan.table(),
+            "woken": self._woken,
+        }
 
-
-def _send(log: logging.Logger, file: logging.Handler) -> None:
-    """Write what was logged so far, and what is to come, into a file."""
-    file.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
-    for memory in log.handlers:
-        if isinstance(memory, logging.handlers.MemoryHandler):
-            memory.setTarget(file)
-            memory.flush()
-    log.handlers = [file]
-
-
-def _released(row: dict[str, Any]) -> str:
-    """Return the energy that a jump released in words, or below what it is where its own error hides it."""
-    value, error = row["energy_released"], row["released_error"]
-    if abs(value) <= error:
-        return f"energy released below {max(value, 0.0) + error:.2g} J/m"
-    return f"{value:.2g} ± {error:.1g} J/m released"
+    def close(self, whole: bool = True) -> None:
+        """Close every file; ``whole`` as in :meth:`fingerpad.writing.Writer.close`."""
+        self.console.close()
+        self._writer.close(whole)

@@ -1,65 +1,49 @@
-"""What the rungs of the ladder have in common: a scene in, the summary's keys, a cost and what is to be said out.
+"""What the reduced models have in common: a scene in, normal contact and full slip out, as a full run has them.
 
-Every rung answers with the keys of :meth:`fingerpad.report.Report.summary` for normal contact and full slip. One that
-it cannot know is not there, and a note says so.
+A quantity that a model cannot know is NaN in its states, and a note says so.
 """
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
 from fingerpad.scene import Scene, SceneError
+from variational.state import ContactState, Errors
 
-STATES = ("normal", "slip")
-NAMES = ("f_t", "mu_app", "f_electrostatic", "f_contact", "bone_height", "ridges_in_contact", "contact_length")
-
-
-@dataclass(frozen=True)
-class Cost:
-    """What an answer took."""
-
-    seconds: float
-    """Processor time, microscale, mesh and compiled forms included (s)."""
-    factorisations: int = 0
-    unknowns: int = 0
-    """Of the largest linear system."""
+STATES = ("charged", "full_slip")
+"""For which they answer, by their names in :mod:`fingerpad.states`."""
 
 
-@dataclass(frozen=True)
-class Answer:
-    """What a rung says of a scene."""
+def at_rest(scene: Scene, contact: Mapping[str, float], error: Errors | None = None) -> ContactState:
+    """Return normal contact; by symmetry there is no friction.
 
-    rung: int
-    summary: dict[str, Any]
-    """Keys are a state, an underscore and a name, of :data:`STATES` and :data:`NAMES`, and ``full_slip``; SI units."""
-    cost: Cost
-    notes: tuple[str, ...] = ()
-    """Where its inputs come from, what it left out, and what a reader should know of the state."""
-    more: dict[str, Any] = field(default_factory=dict)
-    """What this rung alone knows."""
-    errors: dict[str, float] = field(default_factory=dict)
-    """Estimated discretisation errors, by the summary's keys; none of a closed form, which has no mesh."""
-
-    def missing(self) -> list[str]:
-        """Return the keys that this rung cannot know."""
-        keys = [f"{state}_{name}" for state in STATES for name in NAMES]
-        return [key for key in keys if self.summary.get(key) is None]
+    Args:
+        scene: whose loads act.
+        contact: contact force, attraction, contact length and ridges in contact, and the bone's height if known.
+        error: estimated discretisation errors.
+    """
+    return _state(scene, contact, 0.0, error)
 
 
-def at_rest(f_ext: float, contact: Mapping[str, float | int]) -> dict[str, Any]:
-    """Return the keys of normal contact; by symmetry there is no friction."""
-    return {"normal_f_t": 0.0, "normal_mu_app": 0.0} | {f"normal_{name}": value for name, value in contact.items()}
+def at_slip(scene: Scene, contact: Mapping[str, float], error: Errors | None = None) -> ContactState:
+    """Return full slip: f_T is mu_0 times the contact force, exactly; arguments as of :func:`at_rest`."""
+    return _state(scene, contact, scene.friction * contact["f_contact"], error)
 
 
-def at_slip(f_ext: float, mu_0: float, contact: Mapping[str, float | int]) -> dict[str, Any]:
-    """Return the keys of full slip: f_T is mu_0 times the contact force, exactly."""
-    f_t = mu_0 * contact["f_contact"]
-    keys = {"full_slip": True, "slip_f_t": f_t, "slip_mu_app": f_t / f_ext}
-    return keys | {f"slip_{name}": value for name, value in contact.items()}
+def _state(scene: Scene, contact: Mapping[str, float], f_t: float, error: Errors | None) -> ContactState:
+    values: dict[str, Any] = {name: value for name, value in contact.items() if name != "ridges_in_contact"}
+    return ContactState(
+        f_ext=scene.f_ext,
+        voltage=scene.voltage,
+        f_t=f_t,
+        mu_app=f_t / scene.f_ext,
+        ridges_in_contact=int(contact["ridges_in_contact"]),
+        error=error or Errors(),
+        **values,
+    )
 
 
-def refuse_history(scene: Scene, rung: int) -> None:
+def refuse_history(scene: Scene, model: str) -> None:
     """Refuse a scene whose loads are not press, charge and slide.
 
     Raises:
@@ -67,7 +51,7 @@ def refuse_history(scene: Scene, rung: int) -> None:
     """
     if scene.history is not None:
         raise SceneError(
-            f"history is given; rung {rung} of the ladder answers for press, charge and slide alone, so use rung 3 "
+            f"history is given; the model '{model}' answers for press, charge and slide alone, so use the model 'full' "
             "or give f_ext and voltage instead"
         )
 

@@ -27,6 +27,7 @@ from variational.quantities import Observer, RidgeLoads, SurfaceState
 from variational.solver import Solver
 from variational.squeeze import squeeze
 from variational.stability import StabilityCheck
+from variational.state import ContactState, RidgeStates, StepRecord
 from variational.surface import Surface
 from variational.transfer import Carried, give
 
@@ -42,7 +43,7 @@ class Simulation:
         ridges: numbers of the ridges that can touch, of the whole finger.
         plan: the parts of the model that the scene needs.
         checks: stability of the state at the end of each load, at first full slip and after each jump, by step.
-        rows: of the accepted steps so far, and of states from elsewhere without their energies.
+        states: the accepted states so far, and states from elsewhere, which have no record of a step.
         unknowns: number of unknowns.
     """
 
@@ -93,7 +94,7 @@ class Simulation:
         self.continuation = Continuation(self.coupling, self._accepted, step_scale=numerics.step_scale)
         self.energy = EnergyBook(self.problem, *self._state(), copies=self._copies)
         self.unknowns = self.solver.layout.global_size
-        self.rows: list[dict[str, Any]] = []
+        self.states: list[ContactState] = []
         self.checks: dict[int, Checked] = {}
         self._stability = StabilityCheck(self.solver)
         self._load, self._loads_done = "", 0.0
@@ -135,8 +136,8 @@ class Simulation:
         loads = self.observer.ridge_loads(self.continuation.surface_state)
         return loads if self.plan.both_halves else mirror.loads(loads)
 
-    def resultants(self, loads: RidgeLoads) -> dict[str, float]:
-        """Return what bone and ridges bear in the present state, in SI, by the names of a run's steps."""
+    def resultants(self, loads: RidgeLoads) -> dict[str, Any]:
+        """Return what bone and ridges bear in the present state, in SI, by the names of :class:`ContactState`."""
         reaction = self.solver.reaction
         f_ext, f_t = float(reaction[1]), 0.0 - float(reaction[0])  # no negative zero
         return {
@@ -184,7 +185,7 @@ class Simulation:
         loads = self.ridge_loads()
         self._check_balance(loads)
         self._zone.check(self.ridges, loads)
-        self._take(self.present(loads).row, probe=False)
+        self.states.append(self._placed(self.present(loads).state, probe=False))
         ahead = Load.model_construct(name=name, bone_x=self.solver.control.x + direction)
         if direction and not self._slides_on(ahead):
             raise StepFailed(
@@ -251,7 +252,7 @@ class Simulation:
         return self.continuation.surface_state, solver.bone, solver.reaction, self.coupling.d_eq
 
     def present(self, loads: RidgeLoads, attempt: Attempt | None = None, touches: bool = False) -> Step:
-        """Return the present state as a step whose row has no energies and no work.
+        """Return the present state as a step without a record of energies and work.
 
         Args:
             loads: its :meth:`ridge_loads`.
@@ -261,26 +262,39 @@ class Simulation:
         state, d_eq = self.continuation.surface_state, self.coupling.d_eq
         if not self.plan.both_halves:
             d_eq = np.array(mirror.values(list(d_eq)))
-        states = [self.closure.state(float(p), self._voltage) if self.closure else "" for p in loads.p_c]
+        notes = [self.closure.state(float(p), self._voltage) if self.closure else "" for p in loads.p_c]
         slipping, full = self.continuation.slip
-        row = {
-            "step": self.continuation.steps,
-            "load": "touch" if touches else self._load,
-            "load_number": int(self._loads_done) + 1,
-            "f_ext": 0.0,  # its place in the table
-            "voltage": self._voltage,
-            "bone_x": float(self.solver.bone[0]),
+        found = ContactState(
+            step=self.continuation.steps,
+            load="touch" if touches else self._load,
+            load_number=int(self._loads_done) + 1,
+            voltage=self._voltage,
+            bone_x=float(self.solver.bone[0]),
             **self.resultants(loads),
-            "slipping": slipping,
-            "all_slip": full,
-        }
-        return Step(row, loads, d_eq, states, attempt or Attempt(), state)
+            slipping=slipping,
+            all_slip=full,
+            mesh_contact=self.scene.mesh.contact,
+            ridges=RidgeStates(
+                np.array(self.ridges),
+                loads.length,
+                loads.f_contact,
+                loads.f_friction,
+                loads.f_attraction,
+                loads.p_c,
+                d_eq,
+            ),
+        )
+        return Step(found, notes, attempt or Attempt(), state)
 
-    def _take(self, row: dict[str, Any], probe: bool) -> None:
-        """Add a row, and what full slip it is of; where none was held so long yet, a probe may show that it would."""
-        began, held = full_slip(self.rows, row, self._steady(), self.force_error)
-        row |= {"slip_began": began, "slip_held": held or (probe and began > 0 and self._holds())}
-        self.rows.append(row)
+    def _placed(self, state: ContactState, probe: bool) -> ContactState:
+        """Return a state with what full slip it is of; where none was held so long yet, a probe may show that it would.
+
+        Args:
+            state: not among :attr:`states` yet.
+            probe: whether to slide on for that, none of which is accepted.
+        """
+        began, held = full_slip(self.states, state, self._steady(), self.force_error)
+        return replace(state, slip_began=began, slip_held=held or (probe and began > 0 and self._holds()))
 
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
         loads = self.ridge_loads()
@@ -288,10 +302,12 @@ class Simulation:
         if _jumped(attempt):
             self._check_stability()
         step = self.present(loads, attempt, target.name == "touch")
-        self._take(step.row, probe=part >= 1 and not target.until_full_slip)
-        self._account(step.row, imbalance, attempt)
+        state = self._placed(step.state, probe=part >= 1 and not target.until_full_slip)
+        state = replace(state, record=self._record(imbalance, attempt))
+        self.states.append(state)
         whole = len(self.scene.loads())
-        self.on_step(step, min((self._loads_done + (0.0 if target.name == "touch" else part)) / whole, 1.0))
+        done = min((self._loads_done + (0.0 if target.name == "touch" else part)) / whole, 1.0)
+        self.on_step(replace(step, state=state), done)
         try:
             self._zone.check(self.ridges, loads)
         except ZoneExceeded as error:
@@ -301,23 +317,23 @@ class Simulation:
     def _voltage(self) -> float:
         return float(self.problem.voltage.value)
 
-    def _account(self, row: dict[str, Any], imbalance: float, attempt: Attempt) -> None:
-        """Add energies and work to a row."""
+    def _record(self, imbalance: float, attempt: Attempt) -> StepRecord:
+        """Return energies and work of the step to the present state; collective."""
         energy = self.energy.step(*self._state())
-        row |= {
-            "penetration": self.observer.penetration(self.continuation.surface_state),
-            "imbalance": imbalance,
-            "floor": self.solver.floor,
-            "stored": energy.stored,
-            "dissipation": energy.dissipation,
-            "energy_released": energy.released,
-            "released_error": energy.released_error,
-            "newton_iterations": attempt.newton,
-            "factorisations": attempt.factorisations,
-            "sweeps": attempt.sweeps,
-            "cutbacks": len(attempt.cutbacks),
-            "jump": _jumped(attempt),
-        }
+        return StepRecord(
+            penetration=self.observer.penetration(self.continuation.surface_state),
+            imbalance=imbalance,
+            floor=self.solver.floor,
+            stored=energy.stored,
+            dissipation=energy.dissipation,
+            energy_released=energy.released,
+            released_error=energy.released_error,
+            newton_iterations=attempt.newton,
+            factorisations=attempt.factorisations,
+            sweeps=attempt.sweeps,
+            cutbacks=len(attempt.cutbacks),
+            jump=_jumped(attempt),
+        )
 
     def _check_balance(self, loads: RidgeLoads) -> float:
         """Stop if forces are left at a node, or the bone does not bear what the screen does: no equilibrium.

@@ -1,4 +1,4 @@
-"""Rung 2: a smooth layered finger with elements of ridge size, and a ridge's law as its contact.
+"""The model "smooth": a smooth layered finger with elements of ridge size, and a ridge's law as its contact.
 
 The outline is the ridged skin's mean line; the junctions below, and the epidermis's ridges in them, are as they were.
 One papillary ridge was pressed, charged, slid and lifted by itself (:mod:`fingerpad.ridge_cell`); its tables are the
@@ -15,7 +15,7 @@ lengths by 0.1 % and the bone's height by 0.13 % (default finger, 15 and 75 N/m,
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -27,9 +27,11 @@ from numpy.typing import NDArray
 from fingerpad import ridge_cell
 from fingerpad.estimate import Knob
 from fingerpad.reach import by_rule
-from fingerpad.rungs import NAMES, STATES, Answer, Cost, Stopwatch, at_rest, at_slip, refuse_history
+from fingerpad.result import Cost, Result
+from fingerpad.rungs import Stopwatch, at_rest, at_slip, refuse_history
 from fingerpad.scene import Scene, SceneError
 from fingerpad.simulation import solids
+from fingerpad.states import WORDS
 from geometry import fingertip, tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
@@ -40,6 +42,7 @@ from variational.problem import Interface, Problem
 from variational.quantities import Observer
 from variational.ridge_law import RidgeLaw, RidgeTable
 from variational.solver import Solver
+from variational.state import ContactState, Errors
 from variational.surface import Surface
 from variational.transfer import Carried, carry
 
@@ -77,8 +80,8 @@ def sizes(scene: Scene) -> MeshSize:
     )  # fmt: skip
 
 
-def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Answer:
-    """Return rung 2's answer; collective.
+def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Result:
+    """Return the answer of the smooth finger; collective.
 
     Args:
         scene: press, charge and slide.
@@ -86,34 +89,37 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Answer
         comm: communicator of the mesh.
 
     Raises:
-        SceneError: a scene with a history, one this rung finds no equilibrium for, or one whose mesh.contact is too
+        SceneError: a scene with a history, one this model finds no equilibrium for, or one whose mesh.contact is too
             large for the answer to mean anything.
     """
     clock = Stopwatch()
-    refuse_history(scene, 2)
+    refuse_history(scene, "smooth")
     half = scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"contact": scene.mesh.contact / 2})})
-    fingers, summaries = zip(*(_solved(one, folder, comm) for one in (scene, half)), strict=True)
-    summary, found = summaries[0], errors(*summaries)
-    _refuse_coarse(scene, summary, found)
+    fingers, answers = zip(*(_solved(one, folder, comm) for one in (scene, half)), strict=True)
+    errors = {state: estimated(answers[0][state], answers[1].get(state)) for state in answers[0]}
+    _refuse_coarse(scene, answers[0], errors)
+    found = {state: replace(value, error=errors[state]) for state, value in answers[0].items()}
     counts = [finger.solver.counts.factorisations for finger in fingers]
     used = {tables.name: tables for finger in fingers for tables in (finger.uncharged, finger.charged)}.values()
     made_in = sum(tables.seconds for tables in used)
     made = f"tables of the ridge took {made_in:.2f} s of processor time when they were made; kept in {folder}"
     counted = "ridges are counted by their mean height, which misses some that barely touch"
-    notes = [made, "receptors are not known to this rung", counted]
-    if not summary["full_slip"]:
+    notes = [made, "receptors are not in this model", counted]
+    if "full_slip" not in found:
         notes.append(f"no full slip within {scene.slide_length:g} m of sliding")
     more = {
         "table_seconds": made_in,
         "table_factorisations": sum(tables.factorisations for tables in used),
         "table_version": ridge_cell.VERSION,
     }
-    cost = Cost(clock.seconds(), sum(counts), fingers[0].solver.layout.global_size)
-    return Answer(2, summary, cost, tuple(notes), more, found)
+    size = fingers[0].solver.layout.global_size
+    cost = Cost(processor_seconds=clock.seconds(), factorisations=sum(counts), unknowns=size, ranks=comm.size)
+    states = (None, found["charged"], found.get("full_slip"))
+    return Result(scene, "smooth", *states, cost=cost, notes=tuple(notes), record=more)
 
 
-def _solved(scene: Scene, folder: Path, comm: MPI.Comm) -> tuple["_SmoothFinger", dict[str, Any]]:
-    """Return the finger at the end of its loads, and its answer.
+def _solved(scene: Scene, folder: Path, comm: MPI.Comm) -> tuple["_SmoothFinger", dict[str, ContactState]]:
+    """Return the finger at the end of its loads, and its states by name.
 
     Raises:
         SceneError: the ridge could not be followed to where it lets go, or no equilibrium was found.
@@ -121,14 +127,14 @@ def _solved(scene: Scene, folder: Path, comm: MPI.Comm) -> tuple["_SmoothFinger"
     try:
         finger = _SmoothFinger(scene, folder, comm)
         _refuse_lost(scene, finger.charged.slip)
-        summary = {"full_slip": False} | at_rest(scene.f_ext, finger.press())
+        found = {"charged": at_rest(scene, finger.press())}
         slip = finger.slide()
     except StepFailed as error:
         raise SceneError(
-            f"rung 2 found no equilibrium with the ridge's tables at mesh.contact {scene.mesh.contact:g} m: {error}; "
-            "use another rung"
+            f"the model 'smooth' found no equilibrium with the ridge's tables at mesh.contact {scene.mesh.contact:g} "
+            f"m: {error}; use another model"
         ) from error
-    return finger, summary if slip is None else summary | at_slip(scene.f_ext, scene.friction, slip)
+    return finger, found if slip is None else found | {"full_slip": at_slip(scene, slip)}
 
 
 def _refuse_lost(scene: Scene, table: RidgeTable) -> None:
@@ -137,41 +143,53 @@ def _refuse_lost(scene: Scene, table: RidgeTable) -> None:
     last = np.flatnonzero(table.length > 0)[-1]
     if force[last] > _PRESSED * force.max():
         raise SceneError(
-            f"mesh.contact is {scene.mesh.contact:g} m, on which rung 2's ridge, lifted as it slides, is lost at "
-            f"{force[last]:.3g} N/m, before it lets go; give a mesh.contact of {scene.mesh.contact / 2:g} m or less"
+            f"mesh.contact is {scene.mesh.contact:g} m, on which the ridge of the model 'smooth', lifted as it slides, "
+            f"is lost at {force[last]:.3g} N/m, before it lets go; "
+            f"give a mesh.contact of {scene.mesh.contact / 2:g} m or less"
         )
 
 
-def errors(coarse: Mapping[str, Any], fine: Mapping[str, Any]) -> dict[str, float]:
-    """Return the estimated discretisation errors of an answer, from one by tables of facets of half the size.
+def estimated(coarse: ContactState, fine: ContactState | None) -> Errors:
+    """Return the estimated discretisation errors of a state, from one by tables of facets of half the size.
 
     Args:
-        coarse: the answer's summary.
-        fine: the other's.
+        coarse: the state.
+        fine: the other one; None where it is not known, and so are the errors.
     """
-    named = [f"{state}_{name}" for state in STATES for name in NAMES if name != "ridges_in_contact"]
-    both = [name for name in named if name in coarse and name in fine]
+    if fine is None:
+        return Errors()
+    names = [field.name for field in fields(Errors)]
+    before, after = ({name: getattr(state, name) for name in names} for state in (coarse, fine))
     knob = Knob()
-    knob.see({name: coarse[name] for name in both}, {name: fine[name] for name in both})
-    return {name: knob.changes[0][name] + knob.safe(name) for name in both}
+    knob.see(before, after)
+    return Errors(**{name: knob.changes[0][name] + knob.safe(name) for name in names})
 
 
-def _refuse_coarse(scene: Scene, summary: Mapping[str, Any], found: Mapping[str, float]) -> None:
+def _refuse_coarse(scene: Scene, states: Mapping[str, ContactState], errors: Mapping[str, Errors]) -> None:
     """Refuse an answer whose error is too large for it to mean anything, or is not known."""
-    remedy = f"give a mesh.contact of {scene.mesh.contact / 2:g} m or less, or use another rung"
-    wanted = [name for name in summary if name.endswith(_JUDGED)]
-    unknown = next((name for name in wanted if name not in found), None)
+    remedy = f"give a mesh.contact of {scene.mesh.contact / 2:g} m or less, or use another model"
+    wanted = [(state, name) for state in states for name in _JUDGED]
+    unknown = next(((state, name) for state, name in wanted if np.isnan(getattr(errors[state], name))), None)
     if unknown is not None:
         raise SceneError(
-            f"mesh.contact is {scene.mesh.contact:g} m, and rung 2's {unknown} is not known with facets of half the "
-            f"size, so that its discretisation error is not either; {remedy}"
+            f"mesh.contact is {scene.mesh.contact:g} m, and {_named(*unknown)} in the model 'smooth' is not known with "
+            f"facets of half the size, so that its discretisation error is not either; {remedy}"
         )
-    worst = max(wanted, key=lambda name: found[name] / (abs(summary[name]) or np.inf))
-    if found[worst] > _LARGEST * abs(summary[worst]) > 0:
+
+    def share(of: tuple[str, str]) -> float:
+        return float(getattr(errors[of[0]], of[1]) / (abs(getattr(states[of[0]], of[1])) or np.inf))
+
+    worst = max(wanted, key=share)
+    value, error = (getattr(each[worst[0]], worst[1]) for each in (states, errors))
+    if error > _LARGEST * abs(value) > 0:
         raise SceneError(
-            f"mesh.contact is {scene.mesh.contact:g} m, with which rung 2's {worst} is {summary[worst]:.3g} with an "
-            f"estimated discretisation error of {found[worst]:.2g}, more than {_LARGEST:g} of it; {remedy}"
+            f"mesh.contact is {scene.mesh.contact:g} m, with which {_named(*worst)} in the model 'smooth' is "
+            f"{value:.3g} with an estimated discretisation error of {error:.2g}, more than {_LARGEST:g} of it; {remedy}"
         )
+
+
+def _named(state: str, name: str) -> str:
+    return f"{name} of {WORDS[state]}"
 
 
 @dataclass(frozen=True)
@@ -198,12 +216,14 @@ def full_slip(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Sl
         StepFailed: there is none, or rung 2 does not come to it.
     """
     if scene.history is not None or scene.numerics.element == "P2-P1" or scene.friction == 0:
-        raise StepFailed("rung 2 has no full slip of a scene with a history, without friction or with element 'P2-P1'")
+        raise StepFailed(
+            "the model 'smooth' has no full slip of a scene with a history, without friction or with element 'P2-P1'"
+        )
     finger = _SmoothFinger(scene, folder, comm)
     finger.press()
     found = finger.slide()
     if found is None:
-        raise StepFailed(f"rung 2 does not come to full slip within {scene.slide_length:g} m of sliding")
+        raise StepFailed(f"the model 'smooth' does not come to full slip within {scene.slide_length:g} m of sliding")
     return Slipping(
         finger.carried(),
         found["ridges_in_contact"],

@@ -22,13 +22,16 @@ from pathlib import Path
 from mpi4py import MPI
 
 from fingerpad import ridge_cell, smooth
-from fingerpad.accuracy import Keeper, Search, Solve
+from fingerpad.accuracy import Search
+from fingerpad.again import Keeper, Solve
 from fingerpad.needs import plan
 from fingerpad.reach import by_rule
-from fingerpad.rungs import Answer, Cost, Stopwatch, at_slip
+from fingerpad.result import Cost, Result
+from fingerpad.rungs import Stopwatch
 from fingerpad.scene import Scene
 from fingerpad.simulation import Simulation
 from variational.continuation import StepFailed
+from variational.state import ContactState
 
 # Depth (m) and reach (in ridges) of the squeezes to try; found by trial.
 _SQUEEZES = ((0.1e-6, 0.5), (0.3e-6, 5 / 6))
@@ -39,7 +42,7 @@ class Started:
     """A state of full slip without its path."""
 
     solve: Solve
-    """Its state ``slip``; factorisations of guesses that were of no use are counted."""
+    """Its state ``full_slip``; factorisations of guesses that were of no use are counted."""
     smooth: smooth.Slipping
     """What it was started from."""
     notes: tuple[str, ...]
@@ -70,8 +73,8 @@ def full_slip(scene: Scene, folder: Path, comm: MPI.Comm) -> Started:
             failures.append(str(error))
     else:
         raise StepFailed(f"full slip was not found from rung 2's: {failures[-1]}")
-    keeper.keep("slip")
-    found = int(keeper.states["slip"].row["ridges_in_contact"])
+    keeper.keep("full_slip")
+    found = keeper.states["full_slip"].state.ridges_in_contact
     notes = [
         "full slip was solved for from rung 2's; normal contact depends on the path, which was not followed",
         f"{found} ridges are in contact, in rung 2 {guess.ridges}: where a voltage makes ridges jump, the path may end "
@@ -80,33 +83,35 @@ def full_slip(scene: Scene, folder: Path, comm: MPI.Comm) -> Started:
     return Started(keeper.solve(), guess, tuple(notes))
 
 
-def answer(scene: Scene, folder: Path, comm: MPI.Comm) -> Answer:
-    """Return rung 3's answer from rung 2's state; collective.
+def answer(scene: Scene, folder: Path, comm: MPI.Comm) -> Result:
+    """Return the full model's full slip from the smooth model's; collective.
 
     Raises:
         StepFailed: see :func:`full_slip`.
     """
     clock = Stopwatch()
     found = full_slip(scene, folder, comm)
-    row = found.solve.states["slip"].row
-    names = ("f_contact", "f_electrostatic", "bone_height", "ridges_in_contact", "contact_length")
-    summary = at_slip(scene.f_ext, scene.friction, {name: row[name] for name in names})
-    errors, notes = _errors(by_rule(scene), found.solve, comm)
+    states = {"full_slip": found.solve.states["full_slip"].state}
+    states, notes = _with_errors(by_rule(scene), found.solve, states, comm)
     more = {
         "table_version": ridge_cell.VERSION,
         "rung_2_factorisations": found.smooth.factorisations,
         "rung_2_unknowns": found.smooth.unknowns,
     }
-    cost = Cost(clock.seconds(), found.solve.factorisations, found.solve.unknowns)
-    return Answer(3, summary, cost, (*found.notes, *notes), more, {k: e for k, e in errors.items() if k in summary})
+    solve, seconds = found.solve, clock.seconds()
+    cost = Cost(processor_seconds=seconds, factorisations=solve.factorisations, unknowns=solve.unknowns)
+    notes = [*found.notes, *notes]
+    return Result(scene, "full", None, None, states["full_slip"], cost=cost, notes=tuple(notes), record=more)
 
 
-def _errors(scene: Scene, solve: Solve, comm: MPI.Comm) -> tuple[dict[str, float], list[str]]:
-    """Return the estimated discretisation errors of a state, as a run has them, and what is to be said of them."""
+def _with_errors(
+    scene: Scene, solve: Solve, states: dict[str, ContactState], comm: MPI.Comm
+) -> tuple[dict[str, ContactState], list[str]]:
+    """Return states with their estimated discretisation errors, as a run has them, and what is to be said of them."""
     needed = plan(scene)
     if not needed.errors:
-        return {}, [str(omission) for omission in needed.omitted if omission.what == "discretisation errors"]
+        return states, [str(omission) for omission in needed.omitted if omission.what == "discretisation errors"]
     plain = scene.model_copy(update={"accuracy": None})
     search = Search(plain, needed, solve, comm, lambda text: None, lambda: None)
     search.run()
-    return search.estimates(), search.notes
+    return search.states(states), search.notes

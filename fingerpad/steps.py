@@ -1,28 +1,22 @@
 """An accepted step as it is reported, and what is known of its state."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from variational.continuation import Attempt
-from variational.quantities import RidgeLoads, SurfaceState
+from variational.quantities import SurfaceState
 from variational.stability import Stability
-
-Array = NDArray[np.float64]
+from variational.state import ContactState
 
 
 @dataclass(frozen=True)
 class Step:
-    """An accepted step; ``row`` is flat and in SI, the ridges' values have shape (ridges,)."""
+    """An accepted step."""
 
-    row: dict[str, Any]
-    ridges: RidgeLoads
-    d_eq: Array
-    """Equivalent air gaps (m), NaN where no load of the scene has a voltage."""
-    states: list[str]
-    """What is to be known of each ridge's place on the closure, mostly nothing."""
+    state: ContactState
+    notes: list[str]
+    """What a reader should know of each ridge's place on the closure, mostly nothing."""
     attempt: Attempt
     surface: SurfaceState
 

@@ -13,6 +13,7 @@ from fingerpad.steps import Step
 from geometry.parameters import MeshSize
 from variational.output import Snapshot, gather_mesh
 from variational.receptors import Receptors
+from variational.state import ContactState, Skin
 
 Array = NDArray[np.float64]
 _PROFILE = ("x", "y", "p_n", "t_t", "p_el", "area_x", "area_y")
@@ -29,13 +30,19 @@ class Profile:
     d_eq: Array
     """Equivalent air gap (m) of each ridge, shape (ridges,)."""
 
+    def skin(self, numbers: NDArray[np.int64]) -> Skin:
+        """Return the same with tractions per current area, for the numbers of the ridges, shape (ridges,)."""
+        x, y, p_n, t_t, p_el, area_x, area_y = self.values
+        stretch = np.hypot(area_x, area_y)
+        return Skin(numbers[self.ridge], x, y, p_n / stretch, t_t / stretch, p_el)
+
 
 @dataclass(frozen=True)
 class View:
     """All that is shown of a state."""
 
-    row: dict[str, Any]
-    """As in ``steps.csv``, without energies and work."""
+    state: ContactState
+    """Without a record of a step."""
     mesh: MeshSize
     profile: Profile | None
     """None on ranks other than 0, likewise the next."""
@@ -65,7 +72,7 @@ class Viewer:
         step = self._simulation.present(self._simulation.ridge_loads())
         profile, (snapshot, merkel) = self.profile(step), self.picture()
         mesh, receptors = self._simulation.scene.mesh, list(self.receptors(step))
-        return View(step.row, mesh, profile, snapshot, merkel, list(self.ridges(step)), receptors)
+        return View(step.state, mesh, profile, snapshot, merkel, list(self.ridges(step)), receptors)
 
     def profile(self, step: Step) -> Profile | None:
         """Return the skin of a step on rank 0, None elsewhere; collective."""
@@ -77,7 +84,7 @@ class Viewer:
         where = ridge[0, :, 0].astype(int)
         if not self._simulation.plan.both_halves:
             values, where = mirror.profile(_PROFILE, values, where)
-        return Profile(where, values, step.d_eq)
+        return Profile(where, values, step.state.d_eq)
 
     def picture(self) -> tuple[Snapshot | None, Array | None]:
         """Return the present state of the whole finger, and where the Merkel sites are if wanted; collective."""
@@ -91,19 +98,20 @@ class Viewer:
 
     def ridges(self, step: Step) -> Iterator[dict[str, Any]]:
         """Yield the row of each ridge in contact."""
-        values = step.ridges
-        for k, j in enumerate(self._simulation.ridges):
+        values = step.state.ridges
+        assert values is not None
+        for k, note in enumerate(step.notes):
             if values.length[k] > 0:
                 yield {
-                    "step": step.row["step"],
-                    "ridge": j,
+                    "step": step.state.step,
+                    "ridge": int(values.number[k]),
                     "contact_length": values.length[k],
                     "f_contact": values.f_contact[k],
                     "f_friction": values.f_friction[k],
-                    "f_electrostatic": values.f_attraction[k],
+                    "f_electrostatic": values.f_electrostatic[k],
                     "p_c": values.p_c[k],
-                    "d_eq": step.d_eq[k],
-                    "state": step.states[k],
+                    "d_eq": values.d_eq[k],
+                    "state": note,
                 }
 
     def receptors(self, step: Step) -> list[dict[str, Any]]:
@@ -114,7 +122,7 @@ class Viewer:
         merkel, meissner = sed[: len(names)], sed[len(names) :].reshape(-1, 2)
         return [
             {
-                "step": step.row["step"],
+                "step": step.state.step,
                 "ridge": j,
                 "merkel_sed": at_tip,
                 "meissner_left": left,

@@ -11,7 +11,7 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad import accuracy
-from fingerpad import run as running
+from fingerpad import full as running
 from fingerpad.accuracy import Search, Solve, State
 from fingerpad.estimate import MORE, ONCE, plus_minus
 from fingerpad.interrupt import Interrupted
@@ -19,7 +19,7 @@ from fingerpad.needs import plan
 from fingerpad.scene import SceneError, from_data
 from fingerpad.screen import ORDER
 from fingerpad.simulation import Simulation
-from fingerpad.sweep import key
+from fingerpad.study import key
 from variational.continuation import StepFailed
 from variational.solver import Control
 from variational.transfer import Carried

@@ -40,7 +40,7 @@ def clean(tmp_path_factory) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize("first", ["from fingerpad.entry import start; start()", "import fingerpad.run"])
+@pytest.mark.parametrize("first", ["from fingerpad.entry import start; start()", "import fingerpad.full"])
 def test_nothing_is_taken_from_the_current_folder(tmp_path, clean, first):
     """Neither by a program nor by a script of one's own."""
     for name, text in FOUND.items():
@@ -73,5 +73,5 @@ def test_the_home_folder_is_obeyed(tmp_path):
 def test_modules_of_the_current_folder_are_not_run(tmp_path):
     """Processes of a sweep are started with python3 -m, which looks there first."""
     (tmp_path / "numpy.py").write_text("raise SystemExit('found')")
-    code = "from fingerpad import processes; print(processes.run('fingerpad.sweep', ['no.json', '.', '9'], 9).message)"
+    code = "from fingerpad import processes; print(processes.run('fingerpad.study', ['no.json', '.', '9'], 9).message)"
     assert "No such file or directory: 'no.json'" in python(tmp_path, code).stdout

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad.run import run
+from fingerpad.full import run
 from fingerpad.scene import from_data
 from geometry.benchmarks import block
 from geometry.mesh import load

@@ -10,10 +10,10 @@ import pytest
 import ufl
 from mpi4py import MPI
 
+from fingerpad import full as run_module
 from fingerpad import mirror, needs
-from fingerpad import run as run_module
+from fingerpad.full import run
 from fingerpad.needs import plan
-from fingerpad.run import run
 from fingerpad.scene import Scene, from_data
 from variational.continuation import Continuation, Target
 from variational.coupling import Coupling

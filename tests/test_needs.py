@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from fingerpad import full as run_module
 from fingerpad import needs
-from fingerpad import run as run_module
+from fingerpad.full import run
 from fingerpad.needs import plan
-from fingerpad.run import run
 from fingerpad.scene import Scene, from_data
 from geometry import fingertip, tags
 from geometry.benchmarks import ridge

@@ -14,7 +14,7 @@ from benchmarks.paper.statement import HOLDS, IN_PART, NOT, Statement, verdict
 from benchmarks.runs import Run
 from benchmarks.traces import FORCES, VOLTAGES
 from fingerpad.scene import Scene, from_data
-from fingerpad.sweep import key
+from fingerpad.study import key
 from geometry import tags
 
 MU_0 = 0.25

@@ -8,8 +8,8 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from fingerpad.full import run
 from fingerpad.place import LEFT, Place, PlaceError
-from fingerpad.run import run
 from fingerpad.scene import from_data
 
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
@@ -114,7 +114,7 @@ def test_a_crash_before_the_first_step_leaves_the_last_one(scene, folder, finish
     def crash(*_):
         raise ZeroDivisionError
 
-    monkeypatch.setattr("fingerpad.run.Simulation", crash)
+    monkeypatch.setattr("fingerpad.full.Simulation", crash)
     with pytest.raises(ZeroDivisionError):
         run(scene, folder, MPI.COMM_WORLD)
     assert kept(folder) == finished

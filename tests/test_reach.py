@@ -4,9 +4,9 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad import coarse, reach
+from fingerpad.full import run
 from fingerpad.needs import plan
 from fingerpad.reach import by_rule, decide
-from fingerpad.run import run
 from fingerpad.scene import Scene, from_data
 from fingerpad.simulation import Simulation
 from geometry.profiles import GeometryError

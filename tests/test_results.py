@@ -12,8 +12,8 @@ from petsc4py import PETSc
 
 from fingerpad import drawing, report
 from fingerpad.accuracy import Keeper
+from fingerpad.full import run
 from fingerpad.needs import plan
-from fingerpad.run import run
 from fingerpad.scene import from_data
 from fingerpad.simulation import Simulation
 from fingerpad.states import RESULTS, named

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from benchmarks import traces
-from fingerpad.sweep import key
+from fingerpad.study import key
 
 
 def keep(folder, scene, **values):

@@ -9,7 +9,7 @@ from benchmarks import accuracy, hertz, limits, untuned
 from benchmarks.convergence import Limit
 from benchmarks.errors import DEFAULT
 from fingerpad.scene import Scene, start
-from fingerpad.sweep import key
+from fingerpad.study import key
 
 
 def test_the_same_scenes_are_drawn_each_time():

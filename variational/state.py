@@ -1,10 +1,11 @@
 """A state of contact: what bone, screen and ridges bear. Plain numbers and NumPy arrays, no finite elements.
 
-Every model of a finger or of one ridge answers with :class:`ContactState`, and so do files of results. SI units; forces,
-energies and stiffnesses are per out-of-plane length, since the models are of plane strain: a force is in N/m.
+Every model of a finger or of one ridge answers with :class:`ContactState`, and so do files of results. SI units;
+forces, energies and stiffnesses are per out-of-plane length, since the models are of plane strain: a force is in N/m.
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -158,6 +159,22 @@ class ContactState:
             raise ValueError("the state has no values by ridge; they are kept of the named states of a run in memory")
         return self.ridges
 
+    @classmethod
+    def from_row(cls, row: Mapping[str, str]) -> "ContactState":
+        """Return the state of a row of ``steps.csv``; columns that are missing, in older files, are not known.
+
+        Raises:
+            ValueError: a column that must be there is not, or is no number.
+        """
+        try:
+            found = {field.name: _read(row[field.name], field.type) for field in _FIELDS if field.name in row}
+            kept = [field.name in row for field in fields(StepRecord)]
+            record = {f.name: _read(row[f.name], f.type) for f in fields(StepRecord)} if all(kept) else None
+            size = float(row.get("mesh_contact", math.nan))
+            return cls(**found, mesh_contact=size, record=None if record is None else StepRecord(**record))
+        except TypeError as error:
+            raise ValueError(f"a row of steps has too few columns: {error}") from None
+
     def row(self) -> dict[str, Any]:
         """Return conditions, results and the record of the step as one flat row, as ``steps.csv`` holds it."""
         row: dict[str, Any] = {name: getattr(self, name) for name in _FLAT}
@@ -171,4 +188,12 @@ class ContactState:
 
 CONDITIONS = ("step", "load", "f_ext", "voltage", "bone_x")
 RESULTS = ("f_t", "mu_app", "f_electrostatic", "f_contact", "bone_height", "ridges_in_contact", "contact_length")
-_FLAT = tuple(field.name for field in fields(ContactState))[: [f.name for f in fields(ContactState)].index("record")]
+_FIELDS = fields(ContactState)[: [field.name for field in fields(ContactState)].index("record")]
+_FLAT = tuple(field.name for field in _FIELDS)
+
+
+def _read(text: str, kind: Any) -> Any:
+    """Return the value of a text, of the type of a field."""
+    if kind is bool:
+        return text == "True"
+    return kind(text) if kind in (int, float) else text

@@ -4,15 +4,14 @@ import argparse
 import math
 import re
 import sys
-import tomllib
 from collections.abc import Callable, Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
-from typing import IO, Any, NoReturn
+from typing import Any, NoReturn
 
 from fingerpad import terminal
 from fingerpad.cli.keys import every
-from fingerpad.scene import Scene, check, load
+from fingerpad.scene import Scene, check, load, override
 from fingerpad.sentences import SceneError, clip
 
 _PETSC = "-fingerpad_"  # prefix of PETSc's options
@@ -47,7 +46,7 @@ class Parser(argparse.ArgumentParser):
         """
         raise SceneError(f"command line: {message}")
 
-    def _print_message(self, message: str, file: IO[str] | None = None) -> None:
+    def _print_message(self, message: str, file: Any = None) -> None:
         if terminal.rank() == 0:
             super()._print_message(message, file)
 
@@ -109,21 +108,6 @@ def scene_of(args: argparse.Namespace, meshed: bool = True) -> Scene:
     if meshed:
         check(scene)
     return scene
-
-
-def override(text: str) -> tuple[str, Any]:
-    """Return key and value of ``KEY=VALUE``, the value as TOML or else as text.
-
-    Raises:
-        SceneError: there is no key or no value.
-    """
-    key, equals, value = (part.strip() for part in text.partition("="))
-    if not (key and equals and value):
-        raise SceneError(f"--set {clip(text) or 'an empty text'} is no KEY=VALUE; write --set f_ext=50, for example")
-    try:
-        return key, tomllib.loads(f"value = {value}")["value"]
-    except (ValueError, RecursionError):
-        return key, value
 
 
 def separate(argv: Sequence[str]) -> tuple[list[str], list[str]]:

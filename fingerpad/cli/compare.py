@@ -1,16 +1,16 @@
 """``fingerpad compare``: models of one scene side by side, the cheapest first."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from fingerpad import closed_form
+from fingerpad.api import MODELS, solved
 from fingerpad.cli.arguments import Parser, path, positive, say, scene_of
 from fingerpad.folder import check_folder
-from fingerpad.rungs import Answer
+from fingerpad.result import Result
 from fingerpad.scene import Scene
 from fingerpad.sentences import SceneError
 
-MODELS = ("cylinders", "smooth", "full")
 _EXAMPLES = """
     fingerpad compare --set voltage=100
     fingerpad compare scene.toml --model cylinders smooth full --out results/compare
@@ -41,13 +41,16 @@ def main(argv: Sequence[str]) -> int:
     entry.start(petsc)
     from fingerpad import ladder
 
-    models: dict[str, Callable[[], Answer]] = {
-        "cylinders": lambda: closed_form.solve(scene, footprint),
-        "smooth": lambda: ladder.smooth(scene, args.out / "ridge_tables"),
-        "full": lambda: ladder.started(scene, args.out) if args.from_smooth else ladder.full(scene, args.out / "full"),
-    }
-    say(ladder.table([models[name]() for name in MODELS if name in args.model]))
-    return 0
+    def answer(model: str) -> Result:
+        if model == "cylinders":
+            return closed_form.solve(scene, footprint)
+        if model == "full" and args.from_smooth:
+            return ladder.started(scene, args.out)
+        return solved(scene, model, args.out / "full" if model == "full" else args.out, lines=True)
+
+    results = [answer(model) for model in MODELS if model in args.model]
+    say(ladder.table(results))
+    return max(1 if result.failure else 0 for result in results)
 
 
 def _footprint(

@@ -83,8 +83,8 @@ def grid(scene: Scene, forces: Sequence[float], voltages: Sequence[float]) -> tu
         for voltage in voltages:
             row: dict[str, Any] = {"f_ext": f_ext, "voltage": voltage}
             try:
-                found = closed_form.solve(_with(scene, f_ext=f_ext, voltage=voltage)).summary
-                row |= {c.key: found[f"slip_{c.key}"] for c in _COLUMNS if c.key not in row}
+                found = closed_form.solve(_with(scene, f_ext=f_ext, voltage=voltage)).full_slip
+                row |= {c.key: getattr(found, c.key) for c in _COLUMNS if c.key not in row}
             except SceneError as error:
                 lost.append(f"At {f_ext:g} N/m and {voltage:g} V: {error}.")
             rows.append(row)

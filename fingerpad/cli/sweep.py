@@ -1,27 +1,19 @@
 """``fingerpad sweep``: a scene over values of its keys, each run in a process of its own and kept on disk."""
 
-import itertools
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from fingerpad.cli import ranges, tables
-from fingerpad.cli.arguments import Parser, override, positive, say, writable
+from fingerpad.api import MODELS
+from fingerpad.cli import ranges
+from fingerpad.cli.arguments import Parser, positive, say
 from fingerpad.folder import check_folder
+from fingerpad.grid import sweep
 from fingerpad.reading import plain, read
-from fingerpad.scene import Scene, check, from_data
+from fingerpad.scene import from_data, override
 from fingerpad.sentences import SceneError, clip, show
+from fingerpad.words import PER_LENGTH
 
-_MOST = 10_000  # scenes of a study
-_RESULTS = (
-    tables.Column("mu_app", "mu_app", digits=".4f"),
-    tables.Column("mu_app_error", "±", digits=".2g"),
-    tables.Column("f_t", "friction", "N/m"),
-    tables.Column("f_electrostatic", "attraction", "N/m"),
-    tables.Column("contact_length", "contact", "mm", 1e3),
-    tables.Column("contact_length_error", "±", "mm", 1e3, ".2g"),
-    tables.Column("ridges_in_contact", "ridges", digits=".0f"),
-)
 _EXAMPLES = """
     fingerpad sweep --over voltage=0:200:5 --over f_ext=25,75 --jobs 2 --out results/sweep
     fingerpad sweep study.toml --set friction=0.3
@@ -39,27 +31,16 @@ def main(argv: Sequence[str]) -> int:
     )
     parser.add_out("results/sweep", "folder of all runs and of table.csv (default: results/sweep)")
     parser.add_argument("--jobs", type=positive(int), default=2, metavar="N", help="runs at a time (default: 2)")
+    parser.add_argument("--model", choices=MODELS, default="full", help="model to run (default: full)")
     args = parser.read(argv)
     check_folder(args.out)
     base, axes = study(args.scene, args.set, args.over)
-    scenes = {name: from_data(data) for name, data in grid(base, axes).items()}
-    for scene in scenes.values():
-        check(scene)
-    args.out.mkdir(parents=True, exist_ok=True)
-    writable(args.out / "table.csv")
-    from fingerpad.sweep import sweep
-
-    found = sweep(scenes, args.out, args.jobs)
-    columns = [tables.Column(key, key, digits=".6g") for key in axes] + [*_RESULTS]
-    rows = [_row(axes, scenes[name], found[name]) for name in scenes]
-    say("Full slip of each run:")
-    say(tables.text(columns, rows))
-    failed = {name: summary["failure"] for name, summary in found.items() if summary.get("failure")}
-    for name, why in failed.items():
-        say(f"{name}: {why}")
-    tables.write(args.out / "table.csv", [*columns, tables.Column("failure", "")], rows)
+    scene = from_data(base)
+    found = sweep(scene, args.out, jobs=args.jobs, model=args.model, **axes)
+    say(str(found))
+    say(PER_LENGTH)
     say(f"Written: {args.out / 'table.csv'}")
-    return 1 if failed else 0
+    return 1 if any(result.failure for result in found) else 0
 
 
 def study(file: Path | None, given: Sequence[str], over: Sequence[str]) -> tuple[dict[str, Any], dict[str, list[Any]]]:
@@ -104,30 +85,6 @@ def _flat(table: Mapping[str, Any], where: str = "") -> list[tuple[str, Any]]:
     return found
 
 
-def grid(base: Mapping[str, Any], axes: Mapping[str, Sequence[Any]]) -> dict[str, dict[str, Any]]:
-    """Return the data of every scene of a study, by a name that says its values.
-
-    Raises:
-        SceneError: there are too many.
-    """
-    count = 1
-    for values in axes.values():
-        count *= len(values)
-    if count > _MOST:
-        raise SceneError(f"the study has {count} scenes; it must have at most {_MOST}")
-    scenes = {}
-    for values in itertools.product(*axes.values()):
-        data: dict[str, Any] = plain(base)
-        for key, value in zip(axes, values, strict=True):
-            _put(data, key, value)
-        name = ", ".join(
-            f"{key} = {value if isinstance(value, str) else show(value)}"
-            for key, value in zip(axes, values, strict=True)
-        )
-        scenes[name] = data
-    return scenes
-
-
 def _put(data: dict[str, Any], key: str, value: Any) -> None:
     *tables_, name = key.split(".")
     for part in tables_:
@@ -135,14 +92,3 @@ def _put(data: dict[str, Any], key: str, value: Any) -> None:
         if not isinstance(data, dict):
             raise SceneError(f"{key} cannot be given, since {part} is {show(data)}")
     data[name] = value
-
-
-def _row(axes: Mapping[str, Any], scene: Scene, summary: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the row of a run; values of keys as the scene has them, in SI."""
-    row: dict[str, Any] = {}
-    for key in axes:
-        value: Any = scene
-        for part in key.split("."):
-            value = getattr(value, part)
-        row[key] = value
-    return row | {c.key: summary.get(f"slip_{c.key}") for c in _RESULTS} | {"failure": summary.get("failure")}

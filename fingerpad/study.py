@@ -4,7 +4,7 @@ A scene's folder is named by a hash of all its parameters: run again, a sweep co
 that is killed has lost the runs in hand. The hash knows nothing of the program: after a change of the mechanics the
 folder must be deleted.
 
-    python3 -m fingerpad.sweep SCENE.json FOLDER LIMIT    one run, as the sweep starts it
+    python3 -m fingerpad.study SCENE.json FOLDER LIMIT MODEL    one run, as the sweep starts it
 """
 
 import fcntl
@@ -19,6 +19,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from fingerpad.processes import End, Pool, limit_processor_time, run
 from fingerpad.scene import Scene
+from fingerpad.terminal import watched
 
 Summary = dict[str, Any]
 _LIMIT = 900.0  # s of processor time for one scene
@@ -42,11 +43,13 @@ def progress() -> Progress:
     """Return a bar of things done, time taken and time remaining; nothing where the output is no terminal."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
     bar = Progress(*columns, TimeElapsedColumn(), TimeRemainingColumn(), transient=True)
-    bar.disable = not bar.console.is_terminal
+    bar.disable = not watched()
     return bar
 
 
-def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int = 2, limit: float = _LIMIT) -> dict[str, Summary]:
+def sweep(
+    scenes: Mapping[str, Scene], folder: Path, jobs: int = 2, limit: float = _LIMIT, model: str = "full"
+) -> dict[str, Summary]:
     """Run what has not been run yet, with a progress bar.
 
     Args:
@@ -54,6 +57,7 @@ def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int = 2, limit: float
         folder: of all results.
         jobs: processes at a time.
         limit: seconds of processor time for one scene.
+        model: ``"full"`` or ``"smooth"``.
 
     Returns:
         The summaries by name. That of a run that crashed, took too long or was asked to stop holds ``failure`` alone,
@@ -70,7 +74,7 @@ def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int = 2, limit: float
             if result(scenes[name], folder) is not None:
                 return End(0, "", "", "")
             (place / "scene.json").write_text(json.dumps(scenes[name].parameters(), indent=1), encoding="utf-8")
-            return run("fingerpad.sweep", [str(place / "scene.json"), str(place), str(limit)], limit)
+            return run("fingerpad.study", [str(place / "scene.json"), str(place), str(limit), model], limit)
 
     def done(name: str, end: End, left: int) -> None:
         summary = result(scenes[name], folder)
@@ -87,16 +91,20 @@ def sweep(scenes: Mapping[str, Scene], folder: Path, jobs: int = 2, limit: float
     return {name: result(scene, folder) or broken[name] for name, scene in scenes.items()}
 
 
-def _one(scene: Path, folder: Path) -> None:
-    from fingerpad.entry import MPI, start
+def _one(scene: Path, folder: Path, model: str) -> None:
+    from fingerpad.entry import start
 
     start()
-    from fingerpad.run import run as run_scene
+    from fingerpad.api import kept, solved
     from fingerpad.scene import from_data
 
-    run_scene(from_data(json.loads(scene.read_text(encoding="utf-8"))), folder, MPI.COMM_WORLD)
+    asked = from_data(json.loads(scene.read_text(encoding="utf-8")))
+    if model == "full":
+        solved(asked, model, folder, lines=True)
+    else:
+        kept(solved(asked, model, folder.parent), folder)
 
 
 if __name__ == "__main__":
     limit_processor_time(float(sys.argv[3]))
-    _one(Path(sys.argv[1]), Path(sys.argv[2]))
+    _one(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[4])

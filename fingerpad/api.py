@@ -1,0 +1,116 @@
+"""Run a scene, or many: what ``import fingerpad`` gives for that."""
+
+import os
+import tempfile
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fingerpad.files import replace_json
+from fingerpad.result import Result
+from fingerpad.scene import Scene, SceneError, check
+from fingerpad.sentences import show
+
+if TYPE_CHECKING:
+    from variational.material import Material
+
+    from fingerpad.entry import MPI
+    from variational.friction import Friction
+    from variational.roughness.closure import Closure
+
+MODELS = ("cylinders", "smooth", "full")
+"""The cheapest first; see :mod:`fingerpad.ladder`."""
+
+
+def run(
+    scene: Scene | None = None,
+    *,
+    out: str | Path | None = None,
+    model: str = "full",
+    closure: "Closure | None" = None,
+    materials: "Mapping[str, Material] | None" = None,
+    friction: "Friction | float | None" = None,
+    mesh: str | Path | None = None,
+    comm: "MPI.Comm | None" = None,
+) -> Result:
+    """Return what a model answers to a scene; collective.
+
+    Args:
+        scene: the scene; by default press, charge and slide of the default finger.
+        out: folder for tables, pictures, fields and ``summary.json``; without it nothing is written.
+        model: ``"full"``, every ridge along the whole path (minutes); ``"smooth"``, a smooth finger with the law of
+            one ridge (seconds, half a minute the first time); ``"cylinders"``, a closed form (at once).
+        closure: microscale model in place of the bearing area model, see :mod:`variational.roughness.closure`.
+        materials: materials by layer (``{"dermis": NeoHooke(2.5e3)}``), see :mod:`variational.material`.
+        friction: friction law, see :mod:`variational.friction`.
+        mesh: file of a gmsh mesh in place of the finger's own, see :mod:`geometry.meshfile`.
+        comm: communicator; by default of all ranks.
+
+    Returns:
+        The result. A load that could not be reached is its ``failure``, with a warning; the states before are in it.
+
+    Raises:
+        SceneError: the scene cannot be run, in one sentence.
+    """
+    scene = scene or Scene()
+    if closure is not None or materials or friction is not None or mesh is not None:
+        scene = scene.with_laws(closure=closure, materials=materials, friction=friction, mesh=mesh)
+    result = solved(scene, model, None if out is None else Path(out), comm)
+    if result.failure and not result.interrupted:
+        warnings.warn(result.failure, stacklevel=2)
+    return result
+
+
+def solved(
+    scene: Scene, model: str, out: Path | None = None, comm: "MPI.Comm | None" = None, lines: bool = False
+) -> Result:
+    """Return what a model answers to a scene with all its laws; collective; arguments as of :func:`run`.
+
+    Args:
+        scene: the scene.
+        model: one of :data:`MODELS`.
+        out: folder of results.
+        comm: communicator.
+        lines: whether the full model prints its steps.
+    """
+    if model not in MODELS:
+        raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
+    if model == "cylinders":
+        from fingerpad import closed_form
+
+        return kept(closed_form.solve(scene), out)
+    check(scene)
+    import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
+    from fingerpad.entry import MPI
+
+    comm = comm or MPI.COMM_WORLD
+    if model == "full":
+        from fingerpad import full
+
+        return full.run(scene, out, comm, lines)
+    from fingerpad import smooth
+
+    found = smooth.solve(scene, tables_in(out), comm)
+    return kept(found, out if comm.rank == 0 else None)
+
+
+def kept(result: Result, out: Path | None) -> Result:
+    """Write the summary of a model without a path, if it is wanted."""
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+        replace_json(out / "summary.json", result.to_dict())
+    return result
+
+
+def tables_in(out: Path | None) -> Path:
+    """Return the folder of the tables of ridges: inside that of the results, or else in the user's cache."""
+    if out is not None:
+        folder = out / "ridge_tables"
+    else:
+        folder = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "fingerpad" / "ridge_tables"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return Path(tempfile.mkdtemp(prefix="fingerpad-tables-"))
+    return folder
