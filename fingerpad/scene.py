@@ -144,8 +144,9 @@ class Scene(Part):
     def replace(self, **changes: Any) -> "Scene":
         """Return a checked copy with some values changed.
 
-        What the changes make meaningless goes: the sizes of a coarse start with another ``accuracy``, the values of
-        the default loads with a ``history``, and the values of one ``contact.formulation`` with another.
+        Laws given from Python stay. What the changes make meaningless goes: the sizes of a coarse start with another
+        ``accuracy``, the values of the default loads with a ``history``, and the values of one
+        ``contact.formulation`` with another.
 
         Args:
             changes: values by key. A table given as a mapping keeps the keys that are not in it; any other value, also
@@ -167,7 +168,10 @@ class Scene(Part):
             present["contact"] = {
                 key: value for key, value in present.get("contact", {}).items() if key not in FORMULATION_KEYS
             }
-        return Scene(**_merged(present, changes))
+        found = Scene(**_merged(present, changes))
+        for name, value in (self.__pydantic_private__ or {}).items():
+            setattr(found, name, value)
+        return found
 
     @property
     def h_0(self) -> float:

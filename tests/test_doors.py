@@ -111,6 +111,13 @@ def test_objects_are_as_tables(objects, tables):
     assert Scene(**objects) == Scene(**tables)
 
 
+def test_accuracy_starts_coarse():
+    """In the sizes that are not given; coarser elements at the sites do not see the tips of intermediate ridges."""
+    mesh = Scene(accuracy=ASKED, mesh={"growth": 0.3}).mesh
+    assert (mesh.contact, mesh.receptor, mesh.growth) == (20e-6, 40e-6, 0.3)
+    assert Scene(accuracy={"sed": 0.1}).mesh.receptor == 10e-6
+
+
 def test_number_beyond_the_reals_is_refused():
     assert outcome(lambda: Scene(friction=1 + 2j)) == "friction is '(1+2j)'; it must be a number"
 
