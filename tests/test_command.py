@@ -595,3 +595,42 @@ def test_the_launchers_output_counts(bare, output, watches):
     bare.setenv("OMPI_COMM_WORLD_RANK", "0")
     bare.setattr("os.readlink", lambda path: output)
     assert terminal.watched(Screen(True)) == watches
+
+
+def test_scene_may_name_a_height_map(tmp_path, capsys):
+    """Beside the scene file; h_rms and wavelength are those that the command prints, to its four digits."""
+    h = SelfAffine().surface((64, 64), (400e-6, 400e-6), 3).heights
+    np.savetxt(tmp_path / "skin.csv", h * 1e6, delimiter=";")
+    (tmp_path / "scene.toml").write_text(
+        '[roughness.topography]\nfile = "skin.csv"\nunit = "um"\nsize = [0.4, 0.4]\nsize_unit = "mm"\n'
+    )
+    scene = load(tmp_path / "scene.toml")
+    size = ("--size", "400", "400")
+    assert main(["topography", str(tmp_path / "skin.csv"), "--unit", "um", *size]) == 0
+    table = table_of(capsys.readouterr().out)
+    assert (scene.roughness.h_rms, scene.roughness.wavelength) == pytest.approx(
+        (table["h_rms"], table["wavelength"]), rel=1e-3
+    )
+    again = from_data(scene.parameters())
+    assert again == scene and scene.replace(voltage=100.0).roughness == scene.roughness
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ({"file": "none.csv", "unit": "um"}, "roughness.topography.file is 'none.csv': No such file"),
+        ({"file": "none.csv"}, "roughness.topography.unit is missing"),
+        ({"file": "none.csv", "unit": "inch"}, "roughness.topography.unit is 'inch'; it must be 'm'"),
+        ({"fil": "none.csv"}, "roughness.topography.file is missing"),
+        ("skin.csv", "roughness.topography is 'skin.csv'; it must be a table of keys"),
+    ],
+)
+def test_bad_height_map_of_a_scene(table, message):
+    with pytest.raises(SceneError) as refusal:
+        from_data({"roughness": {"topography": table}})
+    assert str(refusal.value).startswith(message)
+
+
+def test_height_map_and_its_numbers_are_refused():
+    with pytest.raises(SceneError, match="roughness.h_rms is 3e-06 and roughness.topography is given too"):
+        from_data({"roughness": {"h_rms": 3e-6, "topography": {"file": "skin.csv", "unit": "um"}}})

@@ -46,6 +46,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         if missing not in _OPTIONAL:
             raise
         return refuse(f"{words[0]} needs {missing}, which is not installed; the README says how to install it")
+    except KeyboardInterrupt:
+        return 130
     except BrokenPipeError:  # of `fingerpad params | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
@@ -97,7 +99,7 @@ commands:
 
 A scene is a TOML file, the default press, charge and slide where none is given. Every key of a scene can be given as an
 option, with a unit where one helps: --set f_ext="50 N/m" --set roughness.h_rms=2e-6. Forces are per metre of finger
-along the screen, in N/m: 75 N/m on 15 mm of finger are about 1.1 N.
+along the screen, in N/m: 75 N/m are 1.5 N on 20 mm of finger.
 
 examples:
   fingerpad estimate --f-ext 20:75:3 --voltage 0:200:5

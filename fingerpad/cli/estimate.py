@@ -9,6 +9,7 @@ from fingerpad.cli import ranges, tables
 from fingerpad.cli.arguments import Parser, path, say, scene_of, writable
 from fingerpad.scene import Scene, from_data
 from fingerpad.sentences import SceneError
+from fingerpad.words import PER_LENGTH
 
 # Largest errors at full slip against the full runs of the default finger in docs/ladder.json, over their forces (N/m)
 # and voltages (V); tests/test_command.py compares.
@@ -46,10 +47,10 @@ def main(argv: Sequence[str]) -> int:
     forces, voltages = (_axis(scene, key, getattr(args, key)) for key in ("f_ext", "voltage"))
     rows, lost = grid(scene, forces, voltages)
     say("Friction at full slip by a closed form, every ridge in contact the same charged cylinder.")
-    say(f"Friction coefficient {scene.friction:g}. Forces are per metre of finger along the screen.\n")
+    say(f"Friction coefficient {scene.friction:g}.\n")
     say(tables.text(_COLUMNS, rows))
     say("\nmu_app is friction over force, at full slip; contact is the length of skin on the screen.")
-    for note in (*_known(scene, rows), *lost):
+    for note in (PER_LENGTH, *_known(scene, rows), *lost):
         say(note)
     if args.csv:
         tables.write(args.csv, _COLUMNS, rows)

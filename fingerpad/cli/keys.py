@@ -44,8 +44,6 @@ def every() -> Iterator[Key]:
 def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Iterator[Key]:
     inner = []
     for name, field in model.model_fields.items():
-        if field.exclude:  # what a file cannot give
-            continue
         parts = tuple(_parts(field.annotation)) + tuple(field.metadata)
         tables = [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
         many = "[]" if tuple in parts else ""

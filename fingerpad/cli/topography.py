@@ -9,7 +9,7 @@ from fingerpad.cli.arguments import Parser, path, positive, say, writable
 from fingerpad.sentences import SceneError, clip
 from variational.roughness.heightfile import UNITS, Found, is_plain, scan
 from variational.roughness.spectrum import Fit, power_spectrum, roughness_table
-from variational.roughness.topography import HeightMap, distribution
+from variational.roughness.topography import distribution
 
 _EXAMPLES = """
     fingerpad topography skin.csv --unit um --size 100 100
@@ -58,14 +58,8 @@ def _scan(args: argparse.Namespace) -> Found:
     if args.unit is None and is_plain(args.file):
         raise SceneError(f"{clip(str(args.file), 80)} holds numbers without a unit; give --unit, um for example")
     try:
-        size = None if args.size is None else (args.size[0], args.size[1])
-        if args.pixel is None:
-            return scan(args.file, size, args.unit, args.size_unit, args.missing)
-        found = scan(args.file, (1.0, 1.0), args.unit, "m", args.missing)  # its length is known by its pixels
-        factor = UNITS[args.size_unit or args.unit or "m"]
-        nx, ny = found.map.heights.shape
-        size = (nx * args.pixel[0] * factor, ny * args.pixel[1] * factor)
-        return found._replace(map=HeightMap(found.map.heights, size))
+        size, pixel = (None if given is None else (given[0], given[1]) for given in (args.size, args.pixel))
+        return scan(args.file, size, args.unit, args.size_unit, args.missing, pixel)
     except OSError as error:
         raise SceneError(f"{clip(str(args.file), 80)} cannot be read: {error.strerror or error}") from None
     except (ValueError, ImportError) as error:

@@ -40,6 +40,7 @@ def scan(
     unit: str | None = None,
     size_unit: str | None = None,
     missing: str | None = None,
+    pixel: tuple[float, float] | None = None,
 ) -> Found:
     """Return the height map of a file, and what was found in it.
 
@@ -47,10 +48,11 @@ def scan(
         path: ``.npy`` or text (``.txt``, ``.csv``, ``.tsv``, ``.dat``, ``.asc``, ``.xyz``, ``.prn``, see
             :mod:`variational.roughness.heighttext`) with a matrix of heights, x along its rows' number, or with points
             x, y, z; any other name is left to SurfaceTopography, and so are heights, lengths and their units.
-        size: lengths along x and y. A matrix needs it; another file has its own.
+        size: lengths along x and y. A matrix needs them, or those of a pixel; another file has its own.
         unit: of heights, of :data:`UNITS`; m if None.
         size_unit: of lengths along x and y; that of the heights if None.
         missing: how a text marks a missing pixel, beside the usual ways.
+        pixel: lengths of a pixel along x and y, in place of ``size``.
 
     Raises:
         ValueError: the file is no height map, ``size`` is missing or one too many, or a unit is not known.
@@ -59,7 +61,7 @@ def scan(
     """
     path = Path(path)
     if not is_plain(path):
-        if size is not None:
+        if size is not None or pixel is not None:
             raise ValueError(f"{path} has its own size; give none")
         if unit is not None or size_unit is not None:
             raise ValueError(f"{path} has its own units; give none")
@@ -67,6 +69,10 @@ def scan(
     height_factor = _factor(unit or "m")
     factor = _factor(size_unit or unit or "m")
     found = _array(path) if path.suffix.lower() == ".npy" else _text(path, missing)
+    if pixel is not None and size is not None:
+        raise ValueError(f"{path}: size and pixel are given; give one of the two")
+    if pixel is not None and found.heights.ndim == 2:
+        size = (pixel[0] * found.heights.shape[0], pixel[1] * found.heights.shape[1])
     if found.size is None and size is None:
         raise ValueError(f"{path} holds heights alone; give the lengths along x and y too")
     if found.size is not None and size is not None:
