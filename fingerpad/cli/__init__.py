@@ -27,6 +27,7 @@ COMMANDS = {
     "topography": "roughness of a scene from a measured height map",
     "params": "every key of a scene: unit, default, range and meaning",
 }
+_COLLECTIVE = ("run", "compare")  # use all ranks; the others are answered by rank 0
 _OPTIONAL = ("dolfinx", "ufl", "basix", "ffcx", "petsc4py", "mpi4py", "gmsh", "matplotlib")
 
 
@@ -74,6 +75,8 @@ def _call(words: list[str]) -> int:
         near = get_close_matches(name[:60], COMMANDS, n=1)
         instead = f"did you mean {near[0]}?" if near else f"commands are {', '.join(COMMANDS)}"
         raise SceneError(f"{clip(name) or 'an empty text'} is not a command; {instead}")
+    if terminal.rank() and name not in _COLLECTIVE:
+        return 0
     try:
         return int(importlib.import_module(f"fingerpad.cli.{name}").main(words[1:]))
     except SystemExit as stop:  # of --help
