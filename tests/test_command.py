@@ -585,6 +585,8 @@ def test_a_person_watches_a_terminal(bare):
 
 @pytest.mark.parametrize(("name", "value"), [("NO_COLOR", "1"), ("TERM", "dumb"), ("PMIX_RANK", "1")])
 def test_nobody_watches(bare, name, value):
+    """Nor the ranks beside rank 0, whose output goes to the same terminal."""
+    bare.setattr("os.readlink", lambda path: "/dev/pts/3")
     bare.setenv(name, value)
     assert not terminal.watched(Screen(True))
 
