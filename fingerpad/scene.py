@@ -260,9 +260,8 @@ def override(text: str) -> tuple[str, Any]:
     """
     key, equals, value = (part.strip() for part in text.partition("="))
     if not (equals and value and _KEY.fullmatch(key)):
-        raise SceneError(
-            f"{clip(text.strip()) or 'an empty text'} is no change of a scene; it must be key=value, as in mesh.contact=10e-6"
-        )
+        shown = clip(text.strip()) or "an empty text"
+        raise SceneError(f"{shown} is no change of a scene; it must be key=value, as in mesh.contact=10e-6")
     try:
         found = tomllib.loads(f"value = {value}") if value.isprintable() else {}
     except (ValueError, RecursionError):
