@@ -12,9 +12,9 @@ from mpi4py import MPI
 
 from fingerpad import full as run_module
 from fingerpad import mirror, needs
-from fingerpad.full import run
 from fingerpad.needs import plan
 from fingerpad.scene import Scene, from_data
+from tests.runs import run
 from variational.continuation import Continuation, Target
 from variational.coupling import Coupling
 from variational.energy import EnergyBook

@@ -4,13 +4,13 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad import coarse, reach
-from fingerpad.full import run
 from fingerpad.needs import plan
 from fingerpad.reach import by_rule, decide
 from fingerpad.scene import Scene, from_data
 from fingerpad.simulation import Simulation
 from geometry.profiles import GeometryError
 from geometry.sizing import touching_ridges
+from tests.runs import run
 
 COMM = MPI.COMM_WORLD
 PRESS = {"name": "press", "bone_height": -50e-6}
