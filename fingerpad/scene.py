@@ -287,9 +287,20 @@ def load(path: Path | None = None, overrides: Mapping[str, Any] | None = None) -
         SceneError: the file cannot be read, or the first key at fault.
     """
     data: dict[str, Any] = plain(read(Path(path))) if path is not None else {}
+    if path is not None:
+        _beside(data, Path(path).parent)
     for key, value in (overrides or {}).items():
         put(data, key, value)
     return from_data(data)
+
+
+def _beside(data: dict[str, Any], folder: Path) -> None:
+    """Put the folder of a scene file before the name of a height map."""
+    place: Any = data
+    for key in ("roughness", "topography"):
+        place = place.get(key) if isinstance(place, dict) else None
+    if isinstance(place, dict) and isinstance(place.get("file"), str):
+        place["file"] = str(folder / place["file"])
 
 
 def from_data(data: Mapping[str, Any]) -> Scene:
