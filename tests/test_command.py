@@ -379,7 +379,7 @@ def test_check(tmp_path, capsys):
     text = capsys.readouterr().out
     assert text.index("1. press: force to 75 N/m") < text.index("3. slide: bone sideways to 5 mm, or until full slip")
     assert "attraction and the air gaps of the ridges: no load has a voltage" in text
-    assert "air gap: bearing area model" not in text
+    assert "friction: Coulomb(mu_f=0.25)" in text and "closure: none" in text
     assert (tmp_path / "mesh.png").stat().st_size > 10_000
 
 

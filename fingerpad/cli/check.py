@@ -8,6 +8,7 @@ from fingerpad.budget import estimate
 from fingerpad.cli import cost
 from fingerpad.cli.arguments import Parser, say, scene_of
 from fingerpad.folder import check_folder
+from fingerpad.laws import used
 from fingerpad.needs import Plan, plan
 from fingerpad.reach import by_rule
 from fingerpad.scene import Load, Scene
@@ -32,7 +33,7 @@ def main(argv: Sequence[str]) -> int:
     needed = plan(scene)
     for title, lines in (
         ("Loads, in order", _loads(scene)),
-        ("Laws", _laws(scene, needed)),
+        ("Laws, numbers in SI units", (f"{name.replace('_', ' ')}: {law}" for name, law in used(scene).items())),
         ("Model", _model(scene, needed)),
         ("Left out", (f"{omission.what}: {omission.reason}" for omission in needed.omitted)),
         ("Cost, within a factor of 2", _cost(scene, needed)),
@@ -58,29 +59,6 @@ def _aims(load: Load) -> Iterator[str]:
         yield f"voltage to {load.voltage:g} V"
     if load.bone_x is not None:
         yield f"bone sideways to {load.bone_x * 1e3:g} mm{', or until full slip' if load.until_full_slip else ''}"
-
-
-def _laws(scene: Scene, needed: Plan) -> Iterator[str]:
-    m, c, r = scene.materials, scene.contact, scene.roughness
-    for name in ("subcutis", "dermis", "viable_epidermis", "stratum_corneum"):
-        skin = getattr(m, name)
-        words = f"Ogden, G_0 {skin.shear_modulus * 1e-3:g} kPa, alpha {skin.alpha:g}, Poisson's ratio {skin.poisson:g}"
-        yield f"{name.replace('_', ' ')}: {words}"
-    for name, stiff in (("nail", m.nail), ("nail bed", m.nail_bed)):
-        yield f"{name}: Saint Venant-Kirchhoff, E {stiff.young * 1e-6:g} MPa, Poisson's ratio {stiff.poisson:g}"
-    given = {
-        "penalty": f"penalty, eps_n {c.eps_n:g} Pa/m, eps_t {c.eps_t:g} Pa/m",
-        "nitsche": f"Nitsche's method, gamma_0 {c.gamma_0:g}, theta {c.theta}",
-        "augmented": f"augmented Lagrangian, eps_n {c.eps_n:g} Pa/m, to {c.tolerance * 1e9:g} nm",
-    }
-    yield f"contact: {given[c.formulation]}"
-    if needed.friction:
-        yield f"friction: Coulomb, coefficient {scene.friction:g}"
-    if needed.voltage:
-        yield (
-            f"air gap: bearing area model, h_rms {r.h_rms * 1e6:g} µm, wavelength {r.wavelength * 1e6:g} µm, "
-            f"h_0 {scene.h_0 * 1e6:.3g} µm"
-        )
 
 
 def _model(scene: Scene, needed: Plan) -> Iterator[str]:
