@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -195,13 +196,12 @@ def test_sweep_is_taken_up_again(tmp_path, monkeypatch):
     asked = []
 
     def run(module, arguments, limit):
-        scene = json.loads(open(arguments[0], encoding="utf-8").read())
+        scene = json.loads(Path(arguments[0]).read_text(encoding="utf-8"))
         asked.append((scene["voltage"], arguments[3]))
         if scene["voltage"] > 0:
             return End(1, "CRASH_1", "out of luck", "")
         done = fp.Result(from_data(scene), "smooth", None, None, state(voltage=0.0), cost=Cost(1.0))
-        with open(f"{arguments[1]}/summary.json", "w", encoding="utf-8") as file:
-            json.dump(done.to_dict(), file)
+        (Path(arguments[1]) / "summary.json").write_text(json.dumps(done.to_dict()), encoding="utf-8")
         return End(0, "", "", "")
 
     monkeypatch.setattr("fingerpad.study.run", run)
