@@ -1,6 +1,7 @@
 """Run a scene, or many: what ``import fingerpad`` gives for that."""
 
 import os
+import signal
 import tempfile
 import warnings
 from collections.abc import Mapping
@@ -51,12 +52,16 @@ def run(
 
     Raises:
         SceneError: the scene cannot be run, in one sentence.
+        KeyboardInterrupt: Ctrl-C, after the present step; every step accepted before is in ``out``.
     """
     scene = scene or Scene()
     if closure is not None or materials or friction is not None or mesh is not None:
         scene = scene.with_laws(closure=closure, materials=materials, friction=friction, mesh=mesh)
     result = solved(scene, model, None if out is None else Path(out), comm)
-    if result.failure and not result.interrupted:
+    if result.interrupted:
+        number = signal.Signals[result.interrupted]
+        raise KeyboardInterrupt if number == signal.SIGINT else SystemExit(128 + number)
+    if result.failure:
         warnings.warn(result.failure, stacklevel=2)
     return result
 

@@ -129,6 +129,15 @@ def test_failure_is_a_warning():
     assert found.full_slip is None and found.steps and "no more ridges" in str(found)
 
 
+@pytest.mark.parametrize(("name", "error"), [("SIGINT", KeyboardInterrupt), ("SIGTERM", SystemExit)])
+def test_signal_ends_the_program_after_the_step(monkeypatch, name, error):
+    """A loop over runs ends with the first Ctrl-C, as any Python program does."""
+    ended = fp.Result(fp.Scene(), "full", None, None, None, failure="stopped", interrupted=name)
+    monkeypatch.setattr(full, "run", lambda *_: ended)
+    with pytest.raises(error):
+        fp.run(from_data(SMALL))
+
+
 # -- text --------------------------------------------------------------------------------------------------
 def state(**values) -> ContactState:
     rest = {"f_ext": 75.0, "voltage": 200.0, "f_contact": 150.0, "f_electrostatic": 75.0, "ridges_in_contact": 16}
