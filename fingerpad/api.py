@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fingerpad.files import replace_json
+from fingerpad.installed import needed_by
 from fingerpad.result import Result
 from fingerpad.scene import Scene, SceneError, check
 from fingerpad.sentences import show
@@ -84,10 +85,15 @@ def solved(
         from fingerpad import closed_form
 
         return kept(closed_form.solve(scene), out)
-    check(scene)
+    with needed_by(f"the model {model!r}"):
+        return _with_finite_elements(scene, model, out, comm, lines)
+
+
+def _with_finite_elements(scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool) -> Result:
     import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
     from fingerpad.entry import MPI
 
+    check(scene)
     comm = comm or MPI.COMM_WORLD
     if model == "full":
         from fingerpad import full

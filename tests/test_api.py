@@ -102,6 +102,13 @@ def test_arrays_have_documented_shapes(ran):
     np.testing.assert_allclose(np.abs(skin.t_t[touching]), 0.25 * skin.p_n[touching], rtol=1e-7)
 
 
+def test_model_without_its_libraries_is_refused_in_a_sentence(monkeypatch):
+    monkeypatch.setitem(sys.modules, "fingerpad.smooth", None)
+    monkeypatch.setattr("fingerpad.installed.OPTIONAL", ("fingerpad",))
+    with pytest.raises(ImportError, match="the model 'smooth' needs fingerpad, which is not installed; finite elements"):
+        fp.run(from_data(SMALL), model="smooth")
+
+
 @pytest.mark.parametrize("kind", ["surface", "finger", "history"])
 def test_pictures(ran, tmp_path, kind):
     figure = ran[0].plot(kind, tmp_path / "picture.png")
