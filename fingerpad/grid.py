@@ -16,7 +16,7 @@ from fingerpad.result import Result
 from fingerpad.scene import Scene, SceneError, from_data
 from fingerpad.sentences import show
 from fingerpad.states import PREFIXES, STATES
-from fingerpad.words import QUANTITIES
+from fingerpad.words import PER_LENGTH, QUANTITIES, cell
 
 _MOST = 10_000  # points
 _LIMIT = 4 * 3600.0  # s of processor time for one point
@@ -94,16 +94,11 @@ class Sweep:
             if state is None:
                 rows.append([*first, result.failure or "no full slip"])
                 continue
-            error = state.error.known()
-            cells = []
-            for key in _SHOWN:
-                scale, digits = QUANTITIES[key].scale, QUANTITIES[key].digits
-                spread = f" ± {error[key] * scale:.2g}" if error.get(key) else ""
-                cells.append(f"{getattr(state, key) * scale:.{digits}f}{spread}")
+            cells = [cell(key, getattr(state, key), getattr(state.error, key, np.nan)) for key in _SHOWN]
             rows.append([*first, *cells])
         widths = [max(len(row[k]) for row in rows if len(row) == len(heads)) for k in range(len(heads))]
         lines = ["   ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=False)) for row in rows]
-        return "\n".join(["At full slip", *lines])
+        return "\n".join(["At full slip", *lines, PER_LENGTH])
 
 
 class _Lines(list[str]):

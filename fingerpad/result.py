@@ -3,16 +3,15 @@
 import csv
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.estimate import plus_minus
 from fingerpad.laws import coefficient
 from fingerpad.scene import Scene, SceneError, from_data
-from fingerpad.states import PREFIXES, STATES, WORDS, LoadResult
-from fingerpad.words import PER_LENGTH, QUANTITIES
+from fingerpad.states import PREFIXES, STATES, WORDS, LoadResult, by_load, load_result
+from fingerpad.words import PER_LENGTH, QUANTITIES, cell
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
 
 if TYPE_CHECKING:
@@ -169,12 +168,14 @@ class Result:
 
         folder = Path(folder)
         try:
-            found = cls.from_dict(json.loads((folder / "summary.json").read_text(encoding="utf-8")), folder)
+            summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+            found = cls.from_dict(summary, folder)
             if found.model != "full":
                 return found
             with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
                 steps = tuple(ContactState.from_row(row) for row in csv.DictReader(file))
-            return replace(found, steps=steps, drawing=Drawing(coefficient(found.scene), steps, {}, {}, {}, None))
+            drawing = Drawing(coefficient(found.scene), steps, {}, {}, {}, None)
+            return replace(found, steps=steps, loads=tuple(_loads(steps, summary)), drawing=drawing)
         except (OSError, ValueError, KeyError) as error:
             if isinstance(error, SceneError):
                 raise
@@ -206,14 +207,8 @@ class Result:
         """Return a quantity of the named states as a row of text; empty where no state has it."""
         quantity, cells = QUANTITIES[key], []
         for name, state in self.named.items():
-            value = getattr(state, key)
-            error = getattr(state.error, key, math.nan)
-            if math.isnan(value) or (key in ("mu_app", "f_t") and name != "full_slip"):
-                cells.append("–")
-            elif math.isnan(error):
-                cells.append(f"{value * quantity.scale:.{quantity.digits}f}")
-            else:
-                cells.append(plus_minus(value * quantity.scale, error * quantity.scale))
+            shown = key not in ("mu_app", "f_t") or name == "full_slip"
+            cells.append(cell(key, getattr(state, key), getattr(state.error, key, math.nan)) if shown else "–")
         unit = f" ({quantity.unit})" if quantity.unit else ""
         return [f"{quantity.words}{unit}", *cells] if set(cells) - {"–"} else []
 
@@ -231,6 +226,13 @@ class Result:
                 f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm."
             )
         return [*found, PER_LENGTH] if self.named else found
+
+
+def _loads(steps: Sequence[ContactState], summary: Mapping[str, Any]) -> Iterator[LoadResult]:
+    """Yield what each load of a run came to; whether its end is stable is in the summary alone."""
+    stable = [load.get("stable") for load in summary.get("loads", ())]
+    for k, (name, mine) in enumerate(by_load(steps)):
+        yield load_result(name, mine, stable[k] if k < len(stable) else None)
 
 
 def _plain(value: Any) -> Any:

@@ -289,6 +289,8 @@ def load(path: Path | None = None, overrides: Mapping[str, Any] | None = None) -
     data: dict[str, Any] = plain(read(Path(path))) if path is not None else {}
     if path is not None:
         _beside(data, Path(path).parent)
+    if "sweep" in data:
+        raise SceneError(f"{path} has a table sweep, which makes it a study; run it by fingerpad sweep, or without it")
     for key, value in (overrides or {}).items():
         put(data, key, value)
     return from_data(data)

@@ -12,7 +12,6 @@ from fingerpad.grid import sweep
 from fingerpad.reading import plain, read
 from fingerpad.scene import from_data, override
 from fingerpad.sentences import SceneError, clip, show
-from fingerpad.words import PER_LENGTH
 
 _EXAMPLES = """
     fingerpad sweep --over voltage=0:200:5 --over f_ext=25,75 --jobs 2 --out results/sweep
@@ -38,7 +37,6 @@ def main(argv: Sequence[str]) -> int:
     scene = from_data(base)
     found = sweep(scene, args.out, jobs=args.jobs, model=args.model, **axes)
     say(str(found))
-    say(PER_LENGTH)
     say(f"Written: {args.out / 'table.csv'}")
     return 1 if any(result.failure for result in found) else 0
 
