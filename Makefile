@@ -1,5 +1,6 @@
 # make demo   press, charge and slide the default finger; results in results/demo
 # make test   all tests, then those marked mpi on two ranks
+# make lint   style, layout and types: ruff and mypy, half a minute
 # make test-order  all tests with other rounding: cells numbered the other way round, other kernels of OpenBLAS
 # make fuzz   10 000 scenes and command lines, each ready to run or refused in one sentence; some minutes
 # make verify every number with a known answer, some minutes; docs/verification.md
@@ -11,13 +12,16 @@
 
 run := environment/run
 
-.PHONY: help demo test test-order fuzz verify paper chart
+.PHONY: help demo lint test test-order fuzz verify paper chart
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
 
 demo:
 	$(run) python3 demos/demo_fingerpad.py --out results/demo
+
+lint:
+	environment/lint
 
 test:
 	$(run) python3 -m pytest -q --color=no -n auto tests

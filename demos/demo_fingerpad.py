@@ -33,7 +33,8 @@ def main(comm: MPI.Comm, argv: list[str] | None = None) -> int:
     from variational.friction import CONE_ROUNDOFF
 
     try:
-        result = run(scene, args.out, comm)
+        answer = run(scene, args.out, comm)
+        result = answer.to_dict()
     except SceneError as error:
         if comm.rank == 0:
             print(f"fingerpad: {error}", file=sys.stderr)
@@ -48,7 +49,7 @@ def main(comm: MPI.Comm, argv: list[str] | None = None) -> int:
         law = scene.friction_law()
         cone = 0.0 if law is None else law.resultant(result["slip_f_contact"], result["slip_contact_length"])
         assert abs(abs(result["slip_f_t"]) - cone) <= result["force_error"] + CONE_ROUNDOFF * cone, result["slip_f_t"]
-    return exit_code(result)
+    return exit_code(answer)
 
 
 if __name__ == "__main__":

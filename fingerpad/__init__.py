@@ -12,9 +12,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from variational.material import Material as Material
-    from variational.neo_hooke import NeoHooke as NeoHooke
-
     import geometry as geometry
     from fingerpad.api import run as run
     from fingerpad.body import Body as Body
@@ -27,6 +24,8 @@ if TYPE_CHECKING:
     from variational.friction import Coulomb as Coulomb
     from variational.friction import Derjaguin as Derjaguin
     from variational.friction import Friction as Friction
+    from variational.material import Material as Material
+    from variational.neo_hooke import NeoHooke as NeoHooke
     from variational.nitsche import Nitsche as Nitsche
     from variational.ogden import Ogden as Ogden
     from variational.penalty import Penalty as Penalty

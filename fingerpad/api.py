@@ -13,10 +13,9 @@ from fingerpad.scene import Scene, SceneError, check
 from fingerpad.sentences import show
 
 if TYPE_CHECKING:
-    from variational.material import Material
-
     from fingerpad.entry import MPI
     from variational.friction import Friction
+    from variational.material import Material
     from variational.roughness.closure import Closure
 
 MODELS = ("cylinders", "smooth", "full")

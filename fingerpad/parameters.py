@@ -134,7 +134,7 @@ class Contact(Part):
 
     def unread(self) -> set[str]:
         """Return the keys that the formulation does not read."""
-        return set().union(*_FORMULATION_KEYS.values()) - _FORMULATION_KEYS[self.formulation]
+        return set(FORMULATION_KEYS) - _FORMULATION_KEYS[self.formulation]
 
     def law(self) -> "Formulation":
         """Return the formulation with its parameters."""
@@ -154,6 +154,8 @@ _FORMULATION_KEYS = {
     "nitsche": {"gamma_0", "theta"},
     "augmented": {"eps_n", "eps_t", "tolerance"},
 }
+FORMULATION_KEYS = frozenset().union(*_FORMULATION_KEYS.values())
+"""Keys of :class:`Contact` that some formulations read and others do not."""
 
 
 class Output(Part):

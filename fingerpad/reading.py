@@ -7,6 +7,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from pydantic import BaseModel
+
 from fingerpad.sentences import SceneError, clip, key_of
 
 _MOST_BYTES = 1_000_000  # of a file; the longest scene that comes along has 1000
@@ -50,13 +53,19 @@ def _bytes(path: Path) -> bytes:
 
 
 def plain(value: Any, place: tuple[int | str, ...] = ()) -> Any:
-    """Return data of tables, lists, numbers and texts that JSON can hold; dates become texts.
+    """Return data of tables, lists, numbers and texts that JSON can hold.
+
+    Dates become texts, NumPy's numbers and arrays Python's, and a model a table of what it was given.
 
     Raises:
         SceneError: data that is nested too deep, or a whole number beyond floating point.
     """
     if len(place) > _MOST_DEPTH:
         raise SceneError(f"{key_of(place[:3])} has lists or tables that are nested too deep; {_DEPTH}")
+    if isinstance(value, np.generic | np.ndarray):
+        value = float(value) if isinstance(value, np.floating) else value.tolist()
+    if isinstance(value, BaseModel):
+        value = {name: inner for name, inner in value if name in value.model_fields_set}
     if isinstance(value, Mapping):
         return {_text(str(key)): plain(inner, (*place, _text(str(key)))) for key, inner in value.items()}
     if isinstance(value, list | tuple):

@@ -1,8 +1,12 @@
-"""Scenes: everything a run needs, read from TOML and the command line, and refused in one sentence if impossible."""
+"""Scenes: everything a run needs, from Python, TOML or the command line, and refused in one sentence if impossible.
+
+A number is in SI units, or a text with its unit (:mod:`geometry.units`).
+"""
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+import tomllib
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -12,9 +16,9 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 from fingerpad.laws import LAYERS, Laws
 from fingerpad.materials import Electric, Materials, Roughness
 from fingerpad.names import first_clash
-from fingerpad.parameters import Accuracy, Contact, Load, Numerics, Output, Voltage
+from fingerpad.parameters import FORMULATION_KEYS, Accuracy, Contact, Load, Numerics, Output, Voltage
 from fingerpad.reading import plain, read
-from fingerpad.sentences import SceneError, first_error, key_of, qualify, show
+from fingerpad.sentences import SceneError, clip, first_error, key_of, qualify, show
 from fingerpad.table import Finite, Part
 from geometry import sizing
 from geometry.bounds import within
@@ -29,6 +33,10 @@ if TYPE_CHECKING:
 
 class Scene(Part):
     """Everything a run needs; SI units, forces per out-of-plane length.
+
+    ``Scene(f_ext="50 N/m", mesh={"contact": 10e-6})`` is the scene of the same keys in a TOML file: the same values,
+    the same coarse start where an accuracy is asked for, and the same refusals. NumPy's numbers and arrays are taken
+    as Python's, and a table may also be one of the classes here, such as ``MeshSize``.
 
     Without ``history`` the bone is pressed with ``f_ext``, the voltage is switched on, and the bone slides until
     every ridge slips. With ``history`` the loads say it all and the three keys of the default one are refused.
@@ -57,6 +65,21 @@ class Scene(Part):
     numerics: Numerics = Numerics()
     accuracy: Accuracy | None = None
     """Relative errors within which results are wanted; sizes in ``mesh`` are then those to start from."""
+
+    def __init__(self, /, **data: Any) -> None:
+        """Check a scene given as nested tables.
+
+        Raises:
+            SceneError: the first key at fault.
+        """
+        if "laws" in data:
+            raise SceneError("laws is no key, since no file can hold one; give laws from Python, by Scene.with_laws")
+        text = json.dumps(_coarse_start(plain(data)))
+        try:
+            # As JSON, because there a list is a tuple and a table is a model even under strict rules.
+            self.__pydantic_validator__.validate_json(text, strict=True, self_instance=self)
+        except ValidationError as error:
+            raise SceneError(first_error(error, Scene)) from None
 
     @model_validator(mode="after")
     def _can_be_carried(self) -> "Scene":
@@ -126,6 +149,40 @@ class Scene(Part):
                     f"history[{k}].name is {show(load.name)}, which ends at f_ext 0 and voltage 0, where nothing holds "
                     "the skin on the screen; one of the two must be greater than 0, or a bone_height be given"
                 )
+
+    def replace(self, **changes: Any) -> "Scene":
+        """Return a checked copy with some values changed.
+
+        Laws given from Python stay, but for a law of friction where ``friction`` changes. What the changes make meaningless goes: the sizes of a coarse start with another
+        ``accuracy``, the values of the default loads with a ``history``, and the values of one
+        ``contact.formulation`` with another.
+
+        Args:
+            changes: values by key. A table given as a mapping keeps the keys that are not in it; any other value, also
+                a table given as an object such as ``MeshSize``, stands in place of the present one.
+
+        Raises:
+            SceneError: the first key at fault.
+        """
+        present = plain(self)
+        if "accuracy" in changes and self.accuracy is not None:
+            coarse = start(self.accuracy.tolerances())
+            present["mesh"] = {key: size for key, size in present.get("mesh", {}).items() if coarse.get(key) != size}
+        if changes.get("history") is not None:
+            present = {key: value for key, value in present.items() if key not in _DEFAULT_HISTORY}
+        contact = changes.get("contact")
+        if isinstance(contact, Mapping) and contact.get("formulation", self.contact.formulation) != (
+            self.contact.formulation
+        ):
+            present["contact"] = {
+                key: value for key, value in present.get("contact", {}).items() if key not in FORMULATION_KEYS
+            }
+        found = Scene(**_merged(present, changes))
+        for name, value in (self.__pydantic_private__ or {}).items():
+            setattr(found, name, value)
+        if "friction" in changes:
+            found._laws = replace(found._laws, friction=None)
+        return found
 
     @property
     def h_0(self) -> float:
@@ -215,6 +272,8 @@ _LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
 _START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}
 _START_AT_SITES = 10e-6  # m; coarser elements do not see the tips of 6 µm, and to halve them tells nothing of the error
 _DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
+_NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
+_KEY = re.compile(rf"{_NAME}(\.{_NAME})*")
 
 
 # -- files ---------------------------------------------------------------------------------------------
@@ -223,14 +282,15 @@ def load(path: Path | None = None, overrides: Mapping[str, Any] | None = None) -
 
     Args:
         path: TOML file; None for the default scene.
-        overrides: values by dotted key (``{"mesh.contact": 5e-6}``), which win over the file's.
+        overrides: values by dotted key (``{"mesh.contact": 5e-6, "history[0].voltage": 100}``), which win over the
+            file's.
 
     Raises:
         SceneError: the file cannot be read, or the first key at fault.
     """
     data: dict[str, Any] = plain(read(Path(path))) if path is not None else {}
     for key, value in (overrides or {}).items():
-        _put(data, key.split("."), value)
+        _put(data, key, value)
     return from_data(data)
 
 
@@ -243,13 +303,36 @@ def from_data(data: Mapping[str, Any]) -> Scene:
     data = plain(data)
     if not isinstance(data, dict):
         raise SceneError(f"a scene is {show(data)}; it must be a table of keys")
-    if "laws" in data:
-        raise SceneError("laws is given, which no file can hold; give laws from Python, by Scene.with_laws")
+    return Scene(**data)
+
+
+def override(text: str) -> tuple[str, Any]:
+    """Return key and value of ``key=value``, for :func:`load`.
+
+    Args:
+        text: a dotted key and a value as in TOML: a number, true or false, a quoted text, a list or a table. Any other
+            value is a text without quotation marks: ``f_ext=50 N/m``, ``contact.formulation=nitsche``.
+
+    Raises:
+        SceneError: no key, no value, or a value with a bracket or a quotation mark left open.
+    """
+    key, equals, value = (part.strip() for part in text.partition("="))
+    if not (equals and value and _KEY.fullmatch(key)):
+        raise SceneError(
+            f"{clip(text) or 'an empty text'} is no change of a scene; it must be key=value, as in mesh.contact=10e-6"
+        )
     try:
-        # As JSON, because there a list is a tuple and a table is a model even under strict rules.
-        return Scene.model_validate_json(json.dumps(_coarse_start(data)), strict=True)
-    except ValidationError as error:
-        raise SceneError(first_error(error, Scene)) from None
+        found = tomllib.loads(f"value = {value}") if value.isprintable() else {}
+    except (ValueError, RecursionError):
+        found = {}
+    if found.keys() == {"value"}:
+        return key, plain(found["value"])
+    if value[0] in "[{\"'":
+        raise SceneError(f"{clip(key)} is {show(value)}; it must be a value as in TOML, with all brackets and quotes")
+    try:
+        return key, float(value)
+    except ValueError:
+        return key, plain(value)
 
 
 def _coarse_start(data: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -288,9 +371,33 @@ def check(scene: Scene) -> None:
         raise SceneError(qualify(message, "geometry.", Fingertip.model_fields)) from None
 
 
-def _put(data: dict[str, Any], keys: Sequence[str], value: Any) -> None:
-    for depth, key in enumerate(keys[:-1], start=1):
-        data = data.setdefault(key, {})
-        if not isinstance(data, dict):
-            raise SceneError(f"{key_of(keys[:depth])} is {show(data)}; it must be a table of keys")
-    data[keys[-1]] = value
+def _put(data: dict[str, Any], key: str, value: Any) -> None:
+    """Put a value at a dotted key, with the tables on the way to it; a list keeps its length."""
+    parts = [
+        int(part[1:-1]) if part.startswith("[") else part for part in re.split(r"\.|(?=\[[0-9]{1,6}\](?:\.|$))", key)
+    ]
+    here: Any = data
+    for depth, part in enumerate(parts):
+        name = key_of(parts[:depth])
+        if isinstance(part, int):
+            if not isinstance(here, list):
+                raise SceneError(f"{name} is {show(here)}; it must be a list")
+            if part >= len(here):
+                raise SceneError(f"{key_of(parts[: depth + 1])} is not there; {name} has {len(here)} entries")
+        elif not isinstance(here, dict):
+            raise SceneError(f"{name} is {show(here)}; it must be a table of keys")
+        if depth == len(parts) - 1:
+            here[part] = value
+        elif isinstance(part, int):
+            here = here[part]
+        else:
+            here = here.setdefault(part, [] if isinstance(parts[depth + 1], int) else {})
+
+
+def _merged(present: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a table with changes, of which tables are merged and all else replaced."""
+    found = dict(present)
+    for key, value in changes.items():
+        both = isinstance(value, Mapping) and isinstance(found.get(key), Mapping)
+        found[key] = _merged(found[key], value) if both else value
+    return found

@@ -1,5 +1,7 @@
 """Ranges of physical quantities, in SI units, each beyond what anyone has measured or would try.
 
+A number may be given as text with a unit (:mod:`geometry.units`).
+
 A value outside its range is a slip, of the keyboard or of units, and not a choice. Most slips of units are a power of a
 thousand; where one of them leads back into the range, the refusal says so.
 """
@@ -11,6 +13,8 @@ from typing import Any
 from pydantic import ValidatorFunctionWrapHandler, WrapValidator
 from pydantic_core import PydanticCustomError
 
+from geometry.units import to_si
+
 # What a number may have been meant in, over the SI unit that it is taken for.
 _SLIPS = {
     "m": ("lengths are in m", (1e-3, 1e-6, 1e-9, 1e-2)),
@@ -20,7 +24,8 @@ _SLIPS = {
     "V": ("voltages are in V", (1e-3, 1e3)),
     "B": ("memory is in bytes", (1e9, 1e6)),
 }
-OUT_OF_RANGE = "out_of_range"  # kind of the error that a range raises
+OUT_OF_RANGE = "out_of_range"  # kinds of the errors that a range raises
+NO_QUANTITY = "no_quantity"
 
 
 @dataclass(frozen=True)
@@ -47,23 +52,30 @@ class Range:
         return (self.zero and value == 0) or self.low <= amount <= self.high
 
     def __call__(self, value: Any, handler: ValidatorFunctionWrapHandler) -> float:
-        """Validate a value; whole numbers are numbers."""
+        """Validate a value; whole numbers are numbers, and so are texts with a unit where there is one."""
         if type(value) is int and abs(value) < 10**300:
             value = float(value)
-        number = float(handler(value))
+        typed = isinstance(value, str) and self.unit != ""
+        number = float(handler(self._read(value) if typed else value))
         if number not in self:
-            raise PydanticCustomError(OUT_OF_RANGE, self.words(number))  # type: ignore[arg-type]
+            raise PydanticCustomError(OUT_OF_RANGE, self.words(number, slip=not typed))  # type: ignore[arg-type]
         return number
 
-    def words(self, value: float) -> str:
-        """Return why a value is refused, to follow the key."""
+    def _read(self, text: str) -> float:
+        try:
+            return to_si(text, self.unit)
+        except ValueError as error:
+            raise PydanticCustomError(NO_QUANTITY, str(error)) from None  # type: ignore[arg-type]
+
+    def words(self, value: float, slip: bool = True) -> str:
+        """Return why a value is refused, to follow the key; with the question whether another unit was meant."""
         unit = f" {self.unit}" if self.unit else ""
         allowed = f"from {self.low:g} to {self.high:g}{unit}"
         if self.sides == 2:
             allowed += ", with either sign"
         if self.zero:
             allowed = f"0 or {allowed}"
-        return f"is {value:.12g}{unit}; it must be {allowed}{self._slip(value)}"
+        return f"is {value:.12g}{unit}; it must be {allowed}{self._slip(value) if slip else ''}"
 
     def _slip(self, value: float) -> str:
         """Return the question whether another unit was meant, empty where none leads to an allowed value."""

@@ -4,6 +4,7 @@ import csv
 import itertools
 import json
 import signal
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,16 +13,20 @@ from mpi4py import MPI
 
 from fingerpad import accuracy
 from fingerpad import full as running
-from fingerpad.accuracy import Search, Solve, State
+from fingerpad.accuracy import Search
+from fingerpad.again import Solve, State
 from fingerpad.estimate import MORE, ONCE, plus_minus
 from fingerpad.interrupt import Interrupted
 from fingerpad.needs import plan
+from fingerpad.result import Result
 from fingerpad.scene import SceneError, from_data
 from fingerpad.screen import ORDER
 from fingerpad.simulation import Simulation
 from fingerpad.study import key
+from tests.runs import run
 from variational.continuation import StepFailed
 from variational.solver import Control
+from variational.state import ContactState
 from variational.transfer import Carried
 
 NOTHING = Carried(*(np.zeros(0) for _ in range(2)), {}, {}, {}, np.zeros(2), Control(), 0.0)
@@ -34,15 +39,22 @@ def mu_app(mesh) -> float:
     return EXACT * (1 + 0.08 * mesh.contact / 20e-6 - 0.02 * (mesh.growth / 0.5) ** 2)
 
 
+def contact(**values) -> ContactState:
+    """Return a state whose other results do not matter."""
+    rest = {"f_ext": 75.0, "voltage": 200.0, "f_contact": 100.0, "f_electrostatic": 25.0, "ridges_in_contact": 17}
+    return ContactState(**(rest | {"contact_length": 1e-3, "mu_app": 0.5, "f_t": 37.5} | values))
+
+
+def change(solve: Solve, **values) -> None:
+    """Change results of full slip."""
+    kept = solve.states["full_slip"]
+    solve.states["full_slip"] = replace(kept, state=replace(kept.state, **values))
+
+
 def known(scene, needed, states, comm, look=None) -> Solve:
-    row = {
-        "f_t": 75 * mu_app(scene.mesh),
-        "mu_app": mu_app(scene.mesh),
-        "contact_length": 1e-3,
-        "ridges_in_contact": 17,
-    }
+    row = contact(mu_app=mu_app(scene.mesh), f_t=75 * mu_app(scene.mesh))
     sed = {0: 1e3 * (1 + (scene.mesh.receptor / 60e-6) ** 2), 1: 10.0}
-    return Solve({"slip": State(NOTHING, 1, row, np.full(17, 1e-3 / 17), sed)}, scene.mesh, 1000, 10, 1.0)
+    return Solve({"full_slip": State(NOTHING, 1, row, np.full(17, 1e-3 / 17), sed)}, scene.mesh, 1000, 10, 1.0)
 
 
 def search(monkeypatch, asked, solve=known, pause=lambda: None) -> Search:
@@ -67,7 +79,7 @@ def test_estimate_is_of_the_true_errors_size(monkeypatch):
     found = search(monkeypatch, {"mu_app": 0.01})
     mesh = found.base.mesh
     parts = EXACT * (0.08 * mesh.contact / 20e-6 + 0.02 * (mesh.growth / 0.5) ** 2)
-    told = found.summary()["accuracy"]["quantities"]["slip_mu_app"]
+    told = found.summary()["quantities"]["slip_mu_app"]
     assert parts * (1 - 1e-9) <= told["estimate"] <= 3 * parts
     assert MORE * told["estimate"] * (1 - 1e-9) <= told["error"] <= ONCE * told["estimate"] * (1 + 1e-9)
 
@@ -88,8 +100,8 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
 
     def stepped(scale: float, mesh) -> Solve:
         length = 1e-3 * (1 + 0.1 * scale)
-        row = {"contact_length": length, "ridges_in_contact": 17}
-        return Solve({"normal": State(NOTHING, 0, row, np.array([length]), {})}, mesh, 1000, 10, 1.0)
+        row = contact(contact_length=length)
+        return Solve({"charged": State(NOTHING, 0, row, np.array([length]), {})}, mesh, 1000, 10, 1.0)
 
     def with_steps(search, n: int) -> Solve:
         paths.append(n)
@@ -111,7 +123,7 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
     assert found.halved == {"contact": 1, "bulk": 1, "steps": 2}
     assert found.base.values()["normal_contact_length"] == pytest.approx(1.025e-3, rel=1e-12)
     assert found.estimates()["normal_contact_length"] == pytest.approx(MORE * 0.025e-3, rel=1e-9)
-    assert found.summary()["accuracy"]["step_scale"] == 0.5, "a quarter of the scene's"
+    assert found.summary()["step_scale"] == 0.5, "a quarter of the scene's"
 
 
 def test_receptors_are_halved_where_energy_density_is_asked_for(monkeypatch):
@@ -141,7 +153,7 @@ def test_estimate_alone_refines_nothing(monkeypatch):
         (1, 1, 1),
     ]
     parts = EXACT * (0.08 * own.contact / 20e-6 + 0.02 * (own.growth / 0.5) ** 2)
-    told = found.summary()["accuracy"]["quantities"]["slip_mu_app"]
+    told = found.summary()["quantities"]["slip_mu_app"]
     assert parts * (1 - 1e-9) <= told["estimate"] <= 3 * parts
     assert told["error"] == pytest.approx(ONCE * told["estimate"], rel=1e-12)
 
@@ -150,7 +162,7 @@ def springs(scene, needed, states, comm, look=None) -> Solve:
     """A contact that springs of the screen make longer, by their law."""
     solve = known(scene, needed, states, comm)
     if scene.contact.formulation == "penalty":
-        solve.states["slip"].row["contact_length"] += 1e-5 * (scene.contact.eps_n / 1.5e12) ** -ORDER
+        change(solve, contact_length=1e-3 + 1e-5 * (scene.contact.eps_n / 1.5e12) ** -ORDER)
     return solve
 
 
@@ -161,10 +173,10 @@ def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
     path = springs(scene, None, {}, MPI.COMM_SELF)
     found = Search(scene, plan(scene), path, MPI.COMM_SELF, lines.append, lambda: None)
     found.run()
-    summary = found.summary()
-    assert summary["slip_contact_length_penalty"] == pytest.approx(-1e-5, rel=1e-9)
-    assert summary["accuracy"]["quantities"]["slip_contact_length"]["penalty"] == summary["slip_contact_length_penalty"]
-    assert summary["slip_contact_length_error"] == 0
+    state = found.states({"full_slip": contact()})["full_slip"]
+    assert state.penalty.contact_length == pytest.approx(-1e-5, rel=1e-9)
+    assert found.summary()["quantities"]["slip_contact_length"]["penalty"] == state.penalty.contact_length
+    assert state.error.contact_length == 0
     assert "penalty: a rigid screen would change" in lines[-1]
     assert all("estimated discretisation error" in line for line in lines if "±" in line)
 
@@ -176,7 +188,7 @@ def test_formulations_without_a_penalty_tell_none(monkeypatch, formulation):
     found = Search(scene, plan(scene), springs(scene, None, {}, None), MPI.COMM_SELF, lambda text: None, lambda: None)
     found.run()
     assert found.penalty == {}
-    assert "slip_contact_length_penalty" not in found.summary()
+    assert found.states({"full_slip": contact()})["full_slip"].penalty.known() == {}
 
 
 def test_penalty_that_cannot_be_told_is_noted(monkeypatch):
@@ -213,12 +225,12 @@ def test_says_when_the_accuracy_is_out_of_reach(monkeypatch):
     def stubborn(scene, needed, states, comm, look=None):
         solve = known(scene, needed, states, comm)
         sign = 1 if round(np.log2(20e-6 / scene.mesh.contact)) % 2 else -1
-        solve.states["slip"].row["mu_app"] = EXACT * (1 + 0.1 * sign)
+        change(solve, mu_app=EXACT * (1 + 0.1 * sign))
         return solve
 
     found = search(monkeypatch, {"mu_app": 0.01}, stubborn)
     assert "not within the accuracy asked for after" in found.failure
-    assert found.summary()["accuracy"]["reached"] is False
+    assert found.summary()["reached"] is False
 
 
 def test_says_when_a_state_is_lost(monkeypatch):
@@ -227,7 +239,7 @@ def test_says_when_a_state_is_lost(monkeypatch):
 
     found = search(monkeypatch, {"mu_app": 0.01}, lost)
     assert found.failure == "the accuracy asked for could not be established: full slip found no equilibrium"
-    assert found.summary()["accuracy"]["quantities"] == {}
+    assert found.summary()["quantities"] == {}
 
 
 def test_stops_when_it_is_asked_to(monkeypatch):
@@ -243,7 +255,7 @@ def test_stops_when_it_is_asked_to(monkeypatch):
 def test_says_where_a_ridge_comes_or_goes(monkeypatch):
     def fewer(scene, needed, states, comm, look=None):
         solve = known(scene, needed, states, comm)
-        solve.states["slip"].row["ridges_in_contact"] = 16 if scene.mesh.contact < 20e-6 else 17
+        change(solve, ridges_in_contact=16 if scene.mesh.contact < 20e-6 else 17)
         return solve
 
     notes = search(monkeypatch, {"mu_app": 0.2}, fewer).notes
@@ -252,7 +264,7 @@ def test_says_where_a_ridge_comes_or_goes(monkeypatch):
 
 def test_friction_without_full_slip_is_refused():
     scene = from_data({"accuracy": {"mu_app": 0.01}})
-    path = Solve({"normal": known(scene, None, {}, None).states["slip"]}, scene.mesh, 1000, 10, 1.0)
+    path = Solve({"charged": known(scene, None, {}, None).states["full_slip"]}, scene.mesh, 1000, 10, 1.0)
     with pytest.raises(StepFailed, match="accuracy.mu_app is 0.01, which full slip decides"):
         Search(scene, plan(scene), path, MPI.COMM_SELF, lambda text: None, lambda: None)
 
@@ -302,24 +314,27 @@ def test_plus_minus(value, error, text):
 
 
 # -- from which mesh ---------------------------------------------------------------------------------------
-@pytest.mark.parametrize(("asked", "tried"), [({"mu_app": 0.01}, [20e-6, 10e-6]), ({}, [20e-6])])
-def test_starts_again_finer_where_the_path_is_lost(monkeypatch, tmp_path, asked, tried):
-    """20 um loses the path here and 10 um does not; who asks for an estimate alone has chosen the mesh."""
+@pytest.mark.parametrize(
+    ("start", "helps", "tried"),
+    [(20e-6, True, [20e-6, 10e-6]), (20e-6, False, [20e-6]), (8e-6, True, [8e-6])],
+)
+@pytest.mark.parametrize("asked", [{"mu_app": 0.01}, {}])
+def test_starts_again_finer_where_the_path_is_lost(monkeypatch, tmp_path, asked, start, helps, tried):
+    """20 um loses the path here and 10 um does not; not where that cannot help, nor below the limit."""
     sizes = []
 
-    def once(scene, folder, comm, failed_starts):
+    def once(scene, place, comm, lines, failed_starts):
         sizes.append(scene.mesh.contact)
         lost = scene.mesh.contact != 10e-6
-        end = (
-            {"failure": "no equilibrium", "unknowns": 1, "factorisations": 2, "processor_seconds": 3.0} if lost else {}
-        )
-        return end | {"failed_starts": list(failed_starts)}
+        record = {"failed_starts": list(failed_starts)}
+        failure = "no equilibrium" if lost else ""
+        return Result(scene, "full", None, None, None, failure=failure, record=record), lost and helps
 
     monkeypatch.setattr(running, "_run", once)
-    scene = from_data(({"accuracy": asked} if asked else {}) | {"mesh": {"contact": 20e-6}})
-    summary = running.run(scene, tmp_path, MPI.COMM_SELF)
+    scene = from_data(({"accuracy": asked} if asked else {}) | {"mesh": {"contact": start}})
+    summary = run(scene, tmp_path, MPI.COMM_SELF)
     assert sizes == tried
-    assert len(summary["failed_starts"]) == len(tried) - 1
+    assert [each["contact"] for each in summary["failed_starts"]] == tried[:-1]
 
 
 # -- a small finger ----------------------------------------------------------------------------------------
@@ -335,7 +350,7 @@ SMALL = {
 @pytest.mark.slow
 def test_small_finger_comes_with_its_error(tmp_path: Path):
     """From scene to summary: estimated from two re-solved meshes, within what was asked for, and as JSON on disk."""
-    running.run(from_data(SMALL), tmp_path, MPI.COMM_WORLD)
+    run(from_data(SMALL), tmp_path, MPI.COMM_WORLD)
     summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
     assert "failure" not in summary
     found = summary["accuracy"]
@@ -352,7 +367,7 @@ def test_small_finger_comes_with_its_error(tmp_path: Path):
 def test_small_finger_tells_what_its_penalty_changes(tmp_path: Path):
     """Springs make a contact longer, here by a hundredth of it; meshes of twice the sizes have no part in that."""
     scene = {name: value for name, value in SMALL.items() if name != "accuracy"}
-    summary = running.run(from_data(scene | {"output": {"receptors": False}}), tmp_path, MPI.COMM_WORLD)
+    summary = run(from_data(scene | {"output": {"receptors": False}}), tmp_path, MPI.COMM_WORLD)
     for state in ("normal", "slip"):
         assert -0.03 < summary[f"{state}_contact_length_penalty"] / summary[f"{state}_contact_length"] < -0.003
     assert abs(summary["slip_mu_app_penalty"]) < 0.01 * summary["slip_mu_app"]
@@ -365,7 +380,7 @@ def test_small_finger_tells_what_its_penalty_changes(tmp_path: Path):
 def test_run_without_errors_says_none(tmp_path: Path):
     """And what it took, which grows from step to step up to what the summary says."""
     scene = {name: value for name, value in SMALL.items() if name != "accuracy"}
-    summary = running.run(from_data(scene | {"output": {"errors": False}}), tmp_path, MPI.COMM_WORLD)
+    summary = run(from_data(scene | {"output": {"errors": False}}), tmp_path, MPI.COMM_WORLD)
     assert "accuracy" not in summary and "slip_mu_app_error" not in summary
     with (tmp_path / "steps.csv").open(encoding="utf-8", newline="") as file:
         seconds = [float(row["processor_seconds"]) for row in csv.DictReader(file)]

@@ -6,7 +6,8 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad import budget
-from fingerpad.accuracy import Search, Solve
+from fingerpad.accuracy import Search
+from fingerpad.again import Solve
 from fingerpad.needs import plan
 from fingerpad.scene import Numerics, SceneError, check, from_data
 from geometry import count, fingertip

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from variational.coupling import Coupling
 from variational.failure import NotConverged
 from variational.roughness.bam import BearingArea
-from variational.roughness.closure import AirGap
+from variational.roughness.closure import AirGap, Closure
 from variational.timing import Timings
 
 H_0, EPS_0, FOLD_VOLTAGE = 0.514e-6, 8.854e-12, 200.0
@@ -44,10 +44,17 @@ class Stub:
         return SimpleNamespace(p_c=p_c * (1 + self.noise * self.draw.uniform(-1, 1, len(p_c))))
 
 
+class Linear(Closure):
+    """An air gap of as many metres more as there are pascals, the unit of the stub's formulas."""
+
+    def __call__(self, p_c):
+        return AirGap(CENTRE + np.asarray(p_c), np.ones_like(p_c))
+
+
 def line(gain) -> Stub:
     """Return ridges in equilibrium at CENTRE with the gains given, each the same everywhere."""
     gain = np.atleast_1d(np.asarray(gain, dtype=float))
-    stub = Stub(lambda p_c: AirGap(CENTRE + p_c, np.ones_like(p_c)), lambda d: gain * (d - CENTRE), len(gain))
+    stub = Stub(Linear(), lambda d: gain * (d - CENTRE), len(gain))
     stub.coupling.set_air_gaps(np.full(len(gain), 1.1 * CENTRE))
     return stub
 
@@ -99,7 +106,7 @@ def test_ridges_that_feel_each_other():
     Tolerance: the loop's, twice for what one ridge's error does to the others.
     """
     weak = 0.01 * (np.ones((3, 3)) - np.eye(3)) + np.diag([0.3, 0.9, -0.5])
-    stub = Stub(lambda p_c: AirGap(CENTRE + p_c, np.ones_like(p_c)), lambda d: weak @ (d - CENTRE), 3)
+    stub = Stub(Linear(), lambda d: weak @ (d - CENTRE), 3)
     stub.coupling.set_air_gaps(CENTRE * np.array([1.1, 0.9, 1.0]))
     stub.coupling.solve()
     assert len(stub.coupling.history.changes) <= 12

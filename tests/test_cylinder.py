@@ -12,22 +12,19 @@ from benchmarks.verification import dugdale, two_scales
 from benchmarks.verification.microscale import H_0
 from variational.cylinder import Cylinder, NoEquilibriumError, hertz_modulus
 from variational.roughness.bam import BearingArea
-from variational.roughness.closure import AirGap
+from variational.roughness.closure import AirGap, Closure
 
 EPS_0, RADIUS, MODULUS, VOLTAGE = 8.854e-12, 118e-6, 330e3, 200.0
 
 
-class Held:
+class Held(Closure):
     """A microscale with one air gap."""
 
     def __init__(self, d_eq: float) -> None:
         self.d_eq = d_eq
 
     def __call__(self, p_c):
-        return AirGap(np.full_like(np.asarray(p_c, dtype=float), self.d_eq), np.zeros_like(p_c))
-
-    def state(self, p_c, voltage):
-        return ""
+        return AirGap(np.full_like(np.asarray(p_c, dtype=float), self.d_eq))
 
 
 def ridge(closure=None) -> Cylinder:

@@ -122,7 +122,7 @@ from fingerpad.entry import MPI, start
 start()
 from fingerpad.files import Table, replace_json
 from fingerpad.interrupt import Interrupt, Interrupted
-from fingerpad.full import run
+from tests.runs import run
 from fingerpad.scene import load
 from variational.continuation import Continuation
 accept, steps = Continuation._accept, []

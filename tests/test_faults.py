@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad.full import run
 from fingerpad.scene import from_data
 from geometry.bodies import block
 from geometry.mesh import load
 from tests.measures import accepted
+from tests.runs import run
 from tests.test_contact import HEIGHT, MU_F, WIDTH, over
 from variational.continuation import Attempt, Continuation
 from variational.failure import NotConverged

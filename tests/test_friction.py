@@ -1,10 +1,26 @@
-"""The return mapping at a point."""
+"""The return mapping at a point; laws of friction, one's own among them, on a sliding block."""
+
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 import ufl
+from mpi4py import MPI
 
+from benchmarks.verification.energy import cycle
+from geometry import tags
+from geometry.bodies import block
+from geometry.mesh import load
+from tests import test_contact, test_problem
 from variational import return_mapping
+from variational.augmented import AugmentedLagrangian
+from variational.body import Body
+from variational.contact import Formulation
+from variational.continuation import Target
+from variational.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction, law_of
+from variational.nitsche import Nitsche
+from variational.penalty import Penalty
+from variational.problem import Interface, Ogden
 
 EPS_T = 1e11
 LIMIT = 2e4
@@ -45,3 +61,178 @@ def test_open_point_has_no_stiffness(u_x):
     x = ufl.variable(ufl.as_ufl(u_x))
     slope = ufl.diff(return_mapping.traction(x, 0.0, 0.0, EPS_T), x)
     assert float(ufl.algorithms.apply_derivatives.apply_derivatives(slope)) == 0
+
+
+# -- laws ------------------------------------------------------------------------------------------------------
+LAW = Derjaguin(0.25, tau_0=4e3, p_reg=1e3)
+PRESSURES = np.array([0.0, 1.0, 1e3, 1e4, 1e6])
+
+
+@pytest.mark.parametrize("law", [Coulomb(0.3), LAW], ids=repr)
+def test_limit_of_numbers_arrays_and_expressions(law):
+    """One formula serves the weak form, the observer and the closed form. Tolerance: roundoff."""
+    array = law.limit(PRESSURES)
+    assert [law.limit(p) for p in PRESSURES.tolist()] == pytest.approx(array, rel=1e-15)
+    assert [float(law.limit(ufl.as_ufl(p))) for p in PRESSURES.tolist()] == pytest.approx(array, rel=1e-15)
+    assert array[0] == 0
+
+
+def test_derjaguin_is_coulomb_and_a_constant():
+    """Far above p_reg the limit is mu p + tau_0, but for (p_reg / p)^2 / 2 of tau_0; tolerance: its square."""
+    p = np.array([1e4, 1e5, 1e6])
+    missing = 1 - (LAW.limit(p) - LAW.mu_f * p) / LAW.tau_0
+    np.testing.assert_allclose(missing, (LAW.p_reg / p) ** 2 / 2, rtol=0.01, atol=1e-9)
+
+
+def test_derjaguin_begins_without_a_jump():
+    """At small pressures the limit is proportional to them. Tolerance: the regularisation's next term, of order p^2."""
+    assert LAW.coefficient(1.0) == pytest.approx(LAW.mu_f + LAW.tau_0 / LAW.p_reg, rel=1e-6)
+
+
+def test_dissipation_is_the_limit_times_the_way():
+    """At constant pressure the trapezoidal rule is exact and sure."""
+    p, slip = np.full((2, 3), 2e4), np.full((2, 3), 1e-6)
+    spent, unsure = LAW.dissipated(p, p, slip)
+    np.testing.assert_allclose(spent, LAW.limit(2e4) * 1e-6, rtol=1e-15)
+    assert not unsure.any()
+
+
+# -- what is no law --------------------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class Formula(Friction):
+    """A law of any formula."""
+
+    formula: object
+    scale: float = 1.0
+
+    def limit(self, p):
+        return self.formula(p)
+
+
+@pytest.mark.parametrize(
+    ("law", "sentence"),
+    [
+        (Derjaguin(0.3, float("inf")), "tau_0 is inf; it must be a finite number"),
+        (Derjaguin(0.3, 5e3, 0.0), "limit of .* is nan Pa at 0 Pa"),
+        (Coulomb(-0.1), "is -0.1 Pa at 1 Pa; it must be finite and not negative"),
+        (Formula(lambda p: 0.3 * p + 5e3), "is 5000 Pa at a pressure of 0 Pa; it must go to 0 with the pressure"),
+        (Formula(lambda p: 0.3 * p + 5e3 * (p > 0)), "is 5000 Pa at a pressure of 1e-06 Pa; it must go to 0"),
+        (Formula(lambda p: 0.0), r"has the shape \(\) for 5 pressures"),
+        (Formula(lambda p: p.missing), "cannot be evaluated: .*missing"),
+    ],
+)
+def test_what_is_no_law_is_refused(law, sentence):
+    with pytest.raises(ValueError, match=sentence) as error:
+        Interface(Penalty(1e12, 1e11), law, 1e-6)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("given", [-0.1, float("nan"), float("inf"), True, "smooth"])
+def test_what_is_no_coefficient_is_refused(given):
+    with pytest.raises(ValueError, match="it must be a Friction, a friction coefficient of at least 0, or None"):
+        law_of(given)
+
+
+def test_interface_takes_a_law_a_coefficient_or_none():
+    laws = [Interface(Penalty(1e12, 1e11), given, 1e-6).friction for given in (LAW, 0.25, 1, 0, 0.0, None)]
+    assert laws == [LAW, Coulomb(0.25), Coulomb(1.0), None, None, None]
+
+
+# -- in the weak form ------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    "formulation", [Penalty(1e12, 1e11), AugmentedLagrangian(1e12, 1e11, 1e-9), Nitsche(10.0, 0)], ids=repr
+)
+def test_jacobian(square, formulation):
+    """The remainder is of second order in the step, with points that stick and slip either way; as test_problem.py."""
+    problem = test_problem.make(square, LAW, formulation=formulation)
+    problem.voltage.value = test_problem.VOLTAGE
+    test_problem.wave(problem)
+    test_problem.anchor_apart(problem)
+    move, before = test_problem.direction(problem), test_problem.states(problem)
+    assert before[2].any() and before[3].any()
+    at = problem.w.x.array.copy()
+    problem.w.x.array[:] = at + move
+    assert (test_problem.states(problem) == before).all()
+    problem.w.x.array[:] = at
+    remainders, linear = test_problem.taylor(problem, move)
+    assert remainders[0] < 1e-2 * linear
+    np.testing.assert_allclose(test_problem.rates(remainders), 2, atol=0.02)
+
+
+def test_other_numbers_do_not_compile_again(square):
+    one, other = (test_problem.make(square, law) for law in (LAW, Derjaguin(0.5, 1e3, 2e3)))
+    assert one.residual.module.__name__ == other.residual.module.__name__
+
+
+# -- a block ---------------------------------------------------------------------------------------------------
+FORCE, WIDTH = 10.0, 1e-3
+EPS = Penalty(1e11, 1e10)
+
+
+def slid(law, way: float, formulation: Formulation = EPS) -> Body:
+    """Press a block and slide it to full slip."""
+    body = load(MPI.COMM_WORLD, block(WIDTH, WIDTH / 2, WIDTH / 8))
+    skin = {tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53, 0.48)}
+    made = Body(body, skin, Interface(formulation, law, 1e-6), force_scale=FORCE, touch_depth=1e-6)
+    made.continuation.run(Target("press", f_ext=FORCE))
+    made.continuation.run(Target("slide", bone_x=way, until_full_slip=True))
+    return made
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize(
+    "formulation", [EPS, AugmentedLagrangian(1e12, 1e10, 5e-9), Nitsche(10.0, 0)], ids=lambda f: type(f).__name__
+)
+def test_full_slip_bears_both_parts(formulation, sign):
+    """f_T is mu times the contact force and the part of tau_0 of every point, against the motion, either way.
+
+    The bone bears it to the imbalances of some hundred nodes, points slip to roundoff of the limit.
+    """
+    made = slid(LAW, sign * 0.5e-3, formulation)
+    state, surface = made.continuation.surface_state, made.surface
+    loads = made.observer.ridge_loads(state)
+    assert made.continuation.slip == (1.0, True)
+    fading = state.p_n / np.hypot(state.p_n, LAW.p_reg)
+    adhesion = LAW.tau_0 * float(surface.per_ridge(fading)[0])
+    expected = LAW.mu_f * float(loads.f_contact[0]) + adhesion
+    assert float(loads.f_limit[0]) == pytest.approx(expected, rel=1e-12)
+    assert float(loads.f_friction[0]) == pytest.approx(-sign * expected, rel=2 * CONE_ROUNDOFF)
+    assert made.solver.reaction[0] == pytest.approx(-sign * expected, abs=1e-7 * FORCE)
+
+
+def test_adhesion_is_that_of_the_width():
+    """Pressed by ten times p_reg and dragged too lightly to tip, the block's skin bears tau_0 almost over its width.
+
+    0.5 % of tau_0 are missing at the mean pressure; 2 % are allowed for the edges, where the pressure is not the mean.
+    """
+    law = Derjaguin(0.02, tau_0=500.0, p_reg=1e3)
+    friction = -slid(law, 0.5e-3).solver.reaction[0]
+    assert friction - law.mu_f * FORCE == pytest.approx(law.tau_0 * WIDTH, rel=0.02)
+
+
+def test_unloading_leaves_no_friction():
+    """Lifted off as it slides, the block is released: at every step friction is within the limit, at last none."""
+    made = slid(LAW, 0.5e-3)
+    found = []
+    for height in (0.0, 2e-6, 5e-6, 20e-6):
+        made.continuation.run(Target("lift", bone_height=height))
+        loads = made.observer.ridge_loads(made.continuation.surface_state)
+        found.append((abs(float(loads.f_friction[0])), float(loads.f_limit[0])))
+        assert found[-1][0] <= found[-1][1] * (1 + 2 * CONE_ROUNDOFF)
+    assert found[-1] == (0.0, 0.0)
+
+
+def test_energy_balance_closes_with_the_square_of_the_step():
+    """Over a cycle of press, charge, slide, back, discharge and lift, as test_energy.py has it for Coulomb's law.
+
+    The last step of the lift is left out there for the same reason: roundoff says which points still bear.
+    """
+    law = {"mu_f": LAW, "eps_n": 1e11, "eps_t": 1e10, "held": False}
+    body = load(MPI.COMM_WORLD, block(test_contact.WIDTH, test_contact.HEIGHT, 0.25e-3))
+    cycles = [cycle(test_contact.make(body, **law), 2e-6, 30e-6, steps) for steps in (8, 16, 32)]
+    spent = sum(b.dissipation for phase in cycles[-1].values() for b in phase)
+    errors = [sum(abs(b.released) for phase in c.values() for b in phase[:-1]) / spent for c in cycles]
+    assert np.log2(errors[0] / errors[-1]) / 2 > 1.5
+    assert errors[-1] < 0.02
+    assert all(b.dissipation >= 0 for phase in cycles[0].values() for b in phase)

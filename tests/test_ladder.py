@@ -3,23 +3,21 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from benchmarks import ladder as page
-from fingerpad import closed_form, ladder, ridge_cell, start
+from fingerpad import closed_form, full, ladder, ridge_cell, start
 from fingerpad.processes import End
-from fingerpad.rungs import NAMES
+from fingerpad.result import Result
 from fingerpad.scene import SceneError, from_data
-from fingerpad.states import RESULTS
+from fingerpad.states import PREFIXES
 from variational.continuation import StepFailed
+from variational.state import RESULTS
 
 
 def scene(**data):
     return from_data(data)
-
-
-def test_keys_are_those_of_the_full_summary():
-    assert set(NAMES) == set(RESULTS)
 
 
 # -- rung 1 ------------------------------------------------------------------------------------------------
@@ -28,42 +26,44 @@ def default():
     return closed_form.solve(scene())
 
 
-@pytest.mark.parametrize("state", ["normal", "slip"])
+@pytest.mark.parametrize("state", ["charged", "full_slip"])
 def test_forces_balance(default, state):
     """The screen bears the load and the attraction: one subtraction, to roundoff of the scalar root."""
-    s = default.summary
-    assert s[f"{state}_f_contact"] - s[f"{state}_f_electrostatic"] == pytest.approx(75.0, rel=1e-9)
+    s = default.named[state]
+    assert s.f_contact - s.f_electrostatic == pytest.approx(75.0, rel=1e-9)
 
 
 def test_friction_is_the_cone(default):
     """By definition, to roundoff."""
-    assert default.summary["slip_f_t"] == pytest.approx(0.25 * default.summary["slip_f_contact"], rel=1e-12)
-    assert default.summary["slip_mu_app"] == pytest.approx(default.summary["slip_f_t"] / 75.0, rel=1e-12)
+    assert default.full_slip.f_t == pytest.approx(0.25 * default.full_slip.f_contact, rel=1e-12)
+    assert default.full_slip.mu_app == pytest.approx(default.full_slip.f_t / 75.0, rel=1e-12)
 
 
 def test_default_scene_is_near_the_full_model(default):
     """The full run has mu_app 0.5230 and 1.580 mm at 10 um (docs/traces.md); rung 1 is 1.2 and 0.1 % off."""
-    assert default.summary["slip_mu_app"] == pytest.approx(0.5230, rel=0.02)
-    assert default.summary["slip_contact_length"] == pytest.approx(1.580e-3, rel=0.02)
+    assert default.full_slip.mu_app == pytest.approx(0.5230, rel=0.02)
+    assert default.full_slip.contact_length == pytest.approx(1.580e-3, rel=0.02)
 
 
 def test_what_it_cannot_know_is_absent(default):
-    assert default.missing() == ["normal_bone_height", "slip_bone_height"]
+    unknown = [(state, name) for state, s in default.named.items() for name in RESULTS if np.isnan(getattr(s, name))]
+    assert unknown == [("charged", "bone_height"), ("full_slip", "bone_height")]
+    assert default.to_dict()["slip_bone_height"] is None and default.uncharged is None
     assert any("bone's height" in note for note in default.notes)
 
 
 def test_uncharged_length_is_the_runs(default):
     """At a force of the runs nothing is interpolated; they are kept with four digits."""
-    s = closed_form.solve(scene(f_ext=50.0, voltage=0.0)).summary
-    assert s["normal_contact_length"] == pytest.approx(1.0116e-3, rel=1e-9)
-    assert s["slip_contact_length"] == pytest.approx(0.9843e-3, rel=1e-9)
-    assert s["slip_mu_app"] == pytest.approx(0.25, rel=1e-12)
-    assert (s["normal_ridges_in_contact"], s["slip_ridges_in_contact"]) == (15, 14)
+    found = closed_form.solve(scene(f_ext=50.0, voltage=0.0))
+    assert found.charged.contact_length == pytest.approx(1.0116e-3, rel=1e-9)
+    assert found.full_slip.contact_length == pytest.approx(0.9843e-3, rel=1e-9)
+    assert found.full_slip.mu_app == pytest.approx(0.25, rel=1e-12)
+    assert (found.charged.ridges_in_contact, found.full_slip.ridges_in_contact) == (15, 14)
 
 
 def test_length_that_is_given_is_kept():
     answer = closed_form.solve(scene(), closed_form.given(1.5e-3, 16))
-    assert answer.summary["slip_contact_length"] == pytest.approx(1.5e-3, rel=1e-12)
+    assert answer.full_slip.contact_length == pytest.approx(1.5e-3, rel=1e-12)
     assert "as given" in answer.notes[0]
 
 
@@ -82,7 +82,7 @@ def test_state_past_the_end_of_the_closure_is_said():
     [
         ({"geometry": {"width": 19e-3}}, "geometry is not that of the default finger"),
         ({"materials": {"dermis": {"shear_modulus": 3e3}}}, "materials is not that of the default finger"),
-        ({"history": [{"name": "press", "f_ext": 5.0}]}, "history is given; rung 1"),
+        ({"history": [{"name": "press", "f_ext": 5.0}]}, "history is given; the model 'cylinders'"),
     ],
 )
 def test_scene_it_does_not_know_is_refused(data, sentence):
@@ -92,31 +92,33 @@ def test_scene_it_does_not_know_is_refused(data, sentence):
 
 def test_other_finger_with_its_length_is_answered():
     other = scene(geometry={"width": 19e-3})
-    assert closed_form.solve(other, closed_form.given(1.5e-3, 16)).summary["slip_mu_app"] > 0.4
+    assert closed_form.solve(other, closed_form.given(1.5e-3, 16)).full_slip.mu_app > 0.4
 
 
 def test_ridge_without_a_round_tip_is_refused():
-    with pytest.raises(SceneError, match="gives a ridge 2 crests; rung 1 takes ridges for cylinders"):
+    with pytest.raises(SceneError, match="gives a ridge 2 crests; the model 'cylinders' takes ridges for cylinders"):
         closed_form.solve(scene(geometry={"ridge_profile": [1.0, -0.5]}), closed_form.given(1.5e-3, 16))
 
 
 # -- lengths of a run --------------------------------------------------------------------------------------
 def keep(folder, **values):
-    names = {f"{state}_{name}": 1.0 for state in ("normal", "slip") for name in NAMES}
+    names = {f"{state}_{name}": 1.0 for state in ("normal", "slip") for name in RESULTS}
     lengths = {"normal_contact_length": 1.7e-3, "slip_contact_length": 1.6e-3}
     ridges = {"normal_ridges_in_contact": 17, "slip_ridges_in_contact": 16}
     cost = {"wall_seconds": 9.0, "factorisations": 3, "unknowns": 5, "full_slip": True}
-    summary = {"f_ext": 75.0, "voltage": 200.0} | names | lengths | ridges | cost | values
+    summary = (
+        {"f_ext": 75.0, "voltage": 200.0, "parameters": scene().parameters()} | names | lengths | ridges | cost | values
+    )
     (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     return summary
 
 
 def test_length_of_a_run(tmp_path):
     keep(tmp_path)
-    s = closed_form.solve(scene(), closed_form.from_run(scene(), tmp_path)).summary
-    assert s["normal_contact_length"] == pytest.approx(1.7e-3, rel=1e-12)
-    assert s["slip_contact_length"] == pytest.approx(1.6e-3, rel=1e-12)
-    assert s["slip_ridges_in_contact"] == 16
+    found = closed_form.solve(scene(), closed_form.from_run(scene(), tmp_path))
+    assert found.charged.contact_length == pytest.approx(1.7e-3, rel=1e-12)
+    assert found.full_slip.contact_length == pytest.approx(1.6e-3, rel=1e-12)
+    assert found.full_slip.ridges_in_contact == 16
 
 
 @pytest.mark.parametrize(
@@ -134,51 +136,32 @@ def test_missing_run_is_refused(tmp_path):
         closed_form.from_run(scene(), tmp_path)
 
 
-def test_full_summary_is_an_answer(tmp_path):
-    answer = ladder.from_summary(keep(tmp_path))
-    assert answer.missing() == []
-    assert (answer.cost.seconds, answer.cost.factorisations, answer.cost.unknowns) == (9.0, 3, 5)
-
-
-def test_errors_of_a_run_are_the_answer_s(tmp_path):
-    """Beside their values, with what ± is; a state that comes without has its value alone."""
-    answer = ladder.from_summary(keep(tmp_path, slip_contact_length_error=2e-5))
-    assert answer.errors == {"slip_contact_length": 2e-5}
+def test_errors_of_a_run_stand_beside_its_values(tmp_path):
+    """With what ± is; a state that comes without an error has its value alone."""
+    answer = Result.from_dict(keep(tmp_path, slip_contact_length_error=2e-5))
+    assert answer.full_slip.error.known() == {"contact_length": 2e-5}
     lines = ladder.table([answer]).splitlines()
-    assert next(line for line in lines if line.startswith("slip contact_length")).endswith("0.0016 ± 2e-05")
-    assert next(line for line in lines if line.startswith("normal contact_length")).endswith("  0.0017")
+    assert next(line for line in lines if line.startswith("full slip: contact length")).endswith("1.600 ± 0.020")
+    assert next(line for line in lines if line.startswith("charged normal contact: contact length")).endswith("  1.7")
     assert "±: estimated discretisation error" in lines
 
 
 def test_closed_form_has_no_discretisation_error(default):
-    assert default.errors == {}
+    assert [state.error.known() for state in default.named.values()] == [{}, {}]
     assert any("no discretisation error" in note for note in default.notes)
 
 
-# -- the command -------------------------------------------------------------------------------------------
-def test_command_prints_keys_and_notes(capsys):
-    assert ladder.main(["--rung", "1", "--f-ext", "50", "--voltage", "0"]) == 0
-    printed = capsys.readouterr().out
-    assert ["slip", "mu_app", "0.25"] in [line.split() for line in printed.splitlines()]
-    assert "rung 1: uncharged contact length interpolated" in printed
-
-
 def test_full_model_without_a_start_follows_the_path(monkeypatch, tmp_path):
-    """Rung 2's state does not serve: the answer is the path's, and a note says why."""
+    """The smooth model's state does not serve: the answer is the path's, and a note says why."""
 
     def lost(*_):
         raise StepFailed("full slip was not found")
 
     monkeypatch.setattr(start, "answer", lost)
-    monkeypatch.setattr(ladder, "full", lambda scene, folder: ladder.from_summary(keep(tmp_path)))
+    monkeypatch.setattr(full, "run", lambda *_: Result.from_dict(keep(tmp_path)))
     answer = ladder.started(scene(), tmp_path)
-    assert answer.missing() == []
+    assert answer.full_slip.contact_length == 1.6e-3
     assert answer.notes == ("full slip was not found; the path was followed instead",)
-
-
-def test_command_refuses_half_a_footprint(capsys):
-    assert ladder.main(["--rung", "1", "--ridges", "3"]) == 2
-    assert "give both or none" in capsys.readouterr().err
 
 
 # -- the benchmark -----------------------------------------------------------------------------------------
@@ -213,11 +196,11 @@ def test_answers_are_kept_and_failures_asked_again(monkeypatch, tmp_path):
 def test_lengths_in_the_program_are_the_runs():
     """Those that rung 1 interpolates are the full runs' of docs/ladder.json, to the four digits they are kept with."""
     known = json.loads((Path(page.__file__).parents[1] / "docs" / "ladder.json").read_text(encoding="utf-8"))
-    for state in ("normal", "slip"):
+    for state in ("charged", "full_slip"):
         for k, f in enumerate(closed_form._FORCES):
-            full = known[page.name(f, 0.0)]["3"]["summary"]
-            assert closed_form._LENGTHS[state][k] == pytest.approx(full[f"{state}_contact_length"], abs=0.5e-7)
-            assert closed_form._RIDGES[state][k] == full[f"{state}_ridges_in_contact"]
+            run = known[page.name(f, 0.0)]["3"]["summary"]
+            assert closed_form._LENGTHS[state][k] == pytest.approx(run[f"{PREFIXES[state]}_contact_length"], abs=0.5e-7)
+            assert closed_form._RIDGES[state][k] == run[f"{PREFIXES[state]}_ridges_in_contact"]
 
 
 def test_errors_are_against_the_full_model():

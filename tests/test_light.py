@@ -7,6 +7,9 @@ import pytest
 
 HEAVY = ("dolfinx", "ufl", "basix", "ffcx", "petsc4py", "mpi4py", "gmsh")
 LIGHT = (
+    "fingerpad.api",
+    "fingerpad.grid",
+    "fingerpad.result",
     "fingerpad.scene",
     "fingerpad.closed_form",
     "fingerpad.rungs",
@@ -15,6 +18,7 @@ LIGHT = (
     "fingerpad.place",
     "fingerpad.command",
     "variational.cylinder",
+    "variational.state",
     "variational.roughness.bam",
     "variational.roughness.heightfile",
     "variational.roughness.selfaffine",
@@ -23,19 +27,27 @@ LIGHT = (
     "geometry.sizing",
 )
 WORK = """
-from fingerpad import budget, closed_form, scene
+import fingerpad as fp
+from fingerpad import budget, scene
 found = scene.load(None, {"voltage": 100.0})
 scene.check(found)
-assert 0.3 < closed_form.solve(found).summary["slip_mu_app"] < 0.5
+assert 0.25 < fp.run(found, model="cylinders").full_slip.mu_app < 0.5
 assert found.roughness.bearing_area(found.h_0)(1e4).d_eq > 0
 assert budget.estimate(found).memory > 1e8
 """
+DOOR = """
+import sys
+import fingerpad as fp
+scene = fp.Scene(f_ext=75.0, voltage=200.0, friction=0.25)
+table = fp.sweep(scene, sys.argv[1], model="cylinders", voltage=[0.0, 200.0])
+assert table.array("mu_app")[1] == fp.run(scene, model="cylinders").full_slip.mu_app
+"""
 
 
-def without(code: str, *blocked: str) -> subprocess.CompletedProcess[str]:
+def without(code: str, *blocked: str, argument: str = "") -> subprocess.CompletedProcess[str]:
     """Run code where modules cannot be imported; None in ``sys.modules`` is Python's own way of saying so."""
     block = f"import sys; sys.modules.update(dict.fromkeys({blocked!r}))\n"
-    return subprocess.run([sys.executable, "-c", block + code], capture_output=True, text=True, check=False)
+    return subprocess.run([sys.executable, "-c", block + code, argument], capture_output=True, text=True, check=False)
 
 
 @pytest.mark.parametrize("module", LIGHT)
@@ -47,6 +59,12 @@ def test_module_imports_no_finite_elements(module):
 def test_scene_and_closed_form_work_without_finite_elements():
     """Read, check, estimate and answer: all that a newcomer does before the first run."""
     done = without(WORK, *HEAVY, "pint", "rich")
+    assert done.returncode == 0, done.stderr
+
+
+def test_closed_form_by_the_door(tmp_path):
+    """A run and a sweep, each in one line."""
+    done = without(DOOR, *HEAVY, "pint", "rich", argument=str(tmp_path))
     assert done.returncode == 0, done.stderr
 
 

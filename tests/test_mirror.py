@@ -12,11 +12,11 @@ from mpi4py import MPI
 
 from fingerpad import full as run_module
 from fingerpad import mirror, needs
-from fingerpad.full import run
 from fingerpad.needs import plan
 from fingerpad.scene import Scene, from_data
 from geometry import tags
 from geometry.mesh import TaggedMesh
+from tests.runs import run
 from variational.body import Body
 from variational.continuation import Target
 from variational.energy import EnergyBook

@@ -10,13 +10,13 @@ from mpi4py import MPI
 
 from fingerpad import full as run_module
 from fingerpad import needs
-from fingerpad.full import run
 from fingerpad.needs import plan
 from fingerpad.scene import Scene, from_data
 from geometry import fingertip, tags
 from geometry.bodies import ridge
 from geometry.mesh import load
 from geometry.parameters import Fingertip
+from tests.runs import run
 from variational.augmented import AugmentedLagrangian
 from variational.body import Body
 from variational.continuation import Target

@@ -2,13 +2,18 @@
 
 import importlib.util
 import re
+import shutil
+import subprocess
+import sys
 import tomllib
+import zipfile
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parent.parent
 DOLFINX = ">=0.9,<0.12"
+LIBRARY = ("geometry", "variational", "fingerpad")
 
 
 def _column(number: int, *uses: str) -> set[str]:
@@ -39,20 +44,21 @@ def conda() -> dict[str, str]:
 
 def test_conda(conda, project):
     assert conda.pop("python") == project["project"]["requires-python"]
-    assert set(conda) == _column(2, "run", "test", "system")
+    assert set(conda) == _column(2, "run", "fem", "test", "system")
 
 
 def test_pypi(project):
     assert set(_split(project["project"]["dependencies"])) == _column(3, "run")
     extras = project["project"]["optional-dependencies"]
     assert {name: set(_split(listed)) for name, listed in extras.items()} == {
-        name: _column(3, name) for name in ("test", "topography")
+        name: _column(3, name) for name in ("fem", "test", "topography")
     }
 
 
 def test_ranges_agree(conda, project):
     """Where both pin a package, to the same range; dolfinx to what environment/run accepts."""
-    pypi = _split(project["project"]["dependencies"])
+    extras = project["project"]["optional-dependencies"]
+    pypi = _split([*project["project"]["dependencies"], *extras["fem"], *extras["test"]])
     assert conda["fenics-dolfinx"] == pypi["fenics-dolfinx"] == DOLFINX
     assert {name: pin for name, pin in conda.items() if pin and name != "python"} == {
         name: pin for name, pin in pypi.items() if pin
@@ -64,31 +70,51 @@ def test_ranges_agree(conda, project):
 def test_run_script_reads_the_list():
     """A name of the list's own would go stale; dolfinx's distribution is named for its version."""
     assert "packages.txt" in _run_script()
-    names = _column(4, "run") - {"dolfinx"}
+    names = _column(4, "run", "fem") - {"dolfinx"}
     assert not {name for name in names if f'"{name}"' in _run_script()}
 
 
-@pytest.mark.parametrize("name", sorted(_column(4, "run")))
+@pytest.mark.parametrize("name", sorted(_column(4, "run", "fem")))
 def test_what_runs_can_be_imported(name):
     assert importlib.util.find_spec(name) is not None
 
 
-def test_packages_exist(project):
-    """The explicit list holds each folder with modules of the library, and no other."""
-    listed = project["tool"]["setuptools"]["packages"]
-    found = {
-        ".".join(file.parent.relative_to(ROOT).parts)
-        for top in ("geometry", "variational", "fingerpad")
-        for file in (ROOT / top).rglob("*.py")
-    }
-    assert set(listed) == found
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory) -> zipfile.ZipFile:
+    """The wheel of this checkout, built with what is installed: no network."""
+    folder = tmp_path_factory.mktemp("wheel")
+    for name in ("pyproject.toml", "README.md", "LICENSE", "COPYING"):
+        shutil.copy(ROOT / name, folder)
+    for name in LIBRARY:
+        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+    options = ["--no-build-isolation", "--no-deps", "--no-index", "--quiet", "--disable-pip-version-check"]
+    command = [sys.executable, "-m", "pip", "wheel", *options, "--wheel-dir", str(folder), str(folder)]
+    subprocess.run(command, check=True, capture_output=True, cwd=folder)
+    return zipfile.ZipFile(next(folder.glob("fingerpad-*.whl")))
+
+
+def test_wheel_holds_the_library(wheel):
+    """Each module of it and the marks of its types, and nothing of tests, benchmarks and demos."""
+    modules = {file.relative_to(ROOT) for top in LIBRARY for file in (ROOT / top).rglob("*.py")}
+    marks = {file.parent / "py.typed" for file in modules}
+    listed = {Path(name) for name in wheel.namelist() if ".dist-info/" not in name}
+    assert listed == modules | marks
+
+
+def test_wheel_holds_licence_and_command(wheel, project):
+    """The licence's two texts, its short name, and the command."""
+    info = f"fingerpad-{project['project']['version']}.dist-info"
+    for name in ("LICENSE", "COPYING"):
+        assert wheel.read(f"{info}/licenses/{name}") == (ROOT / name).read_bytes()
+    assert f"License-Expression: {project['project']['license']}\n" in wheel.read(f"{info}/METADATA").decode()
+    assert "fingerpad = fingerpad.cli:main" in wheel.read(f"{info}/entry_points.txt").decode()
 
 
 def test_papers_name_the_same_version_and_licence(project):
     """What is cited is what is installed, and the licence's text is there."""
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     assert f"\nversion: {project['project']['version']}\n" in citation
-    assert f"\nlicense: {project['project']['license']['text']}\n" in citation
+    assert f"\nlicense: {project['project']['license']}\n" in citation
     for name, words in (("LICENSE", "GNU LESSER GENERAL PUBLIC LICENSE"), ("COPYING", "GNU GENERAL PUBLIC LICENSE")):
         assert (ROOT / name).read_text(encoding="utf-8").lstrip().startswith(words)
 

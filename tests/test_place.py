@@ -8,9 +8,9 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fingerpad.full import run
 from fingerpad.place import LEFT, Place, PlaceError
 from fingerpad.scene import from_data
+from tests.runs import run
 
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
 LOADS = [{"name": "press", "bone_height": -30e-6}, {"name": "slide", "bone_x": 5e-6}]

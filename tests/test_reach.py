@@ -4,13 +4,14 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad import coarse, reach
-from fingerpad.full import run
 from fingerpad.needs import plan
 from fingerpad.reach import by_rule, decide
 from fingerpad.scene import Scene, from_data
 from fingerpad.simulation import Simulation
 from geometry.profiles import GeometryError
 from geometry.sizing import touching_ridges
+from tests.runs import run
+from variational.friction import Coulomb
 
 COMM = MPI.COMM_WORLD
 PRESS = {"name": "press", "bone_height": -50e-6}
@@ -58,7 +59,7 @@ def test_voltage_acts_as_friction(monkeypatch):
     make = coarse.Interface
     monkeypatch.setattr(coarse, "Interface", lambda law, mu, *a, **k: coefficients.append(mu) or make(law, mu, *a, **k))
     coarse.solve(Scene(), COMM)
-    assert coefficients[0] == 0.25
+    assert coefficients[0] == Coulomb(0.25)
     assert coefficients[1] == pytest.approx(0.523, rel=0.05)
 
 

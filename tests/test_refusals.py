@@ -30,8 +30,9 @@ def refusal(path: Path | None = None, **overrides) -> str:
         ("f_ext", float("inf"), "f_ext is inf; it must be a finite number"),
         ("f_ext", True, "f_ext is true; it must be a number"),
         ("f_ext", [1], "f_ext is [1]; it must be a number"),
-        ("voltage", "high", "voltage is 'high'; it must be a number"),
-        ("voltage", "200", "voltage is '200'; it must be a number"),
+        ("voltage", "high", "voltage is 'high'; it must be a number in V or a text such as '1 V'"),
+        ("voltage", "200", "voltage is '200'; it has no unit; it must be a number in V or a text such as '200 V'"),
+        ("friction", "0.25", "friction is '0.25'; it must be a number"),
         ("voltage", -1.5, "voltage is -1.5 V; it must be 0 or from 0.001 to 5000 V"),
         ("friction", -0.1, "friction is -0.1; it must be 0 or from 1e-06 to 2"),
         ("friction", 2.1, "friction is 2.1; it must be 0 or from 1e-06 to 2"),
@@ -39,7 +40,10 @@ def refusal(path: Path | None = None, **overrides) -> str:
         ("mesh", 3, "mesh is 3; it must be a table of keys"),
         ("materials", 3, "materials is 3; it must be a table of keys"),
         ("materials.dermis", 3, "materials.dermis is 3; it must be a table of keys"),
-        ("mesh.contact", "5e-6", "mesh.contact is '5e-6'; it must be a number"),
+        (
+            "mesh.contact", "5e-6",
+            "mesh.contact is '5e-6'; it has no unit; it must be a number in m or a text such as '5e-6 m'",
+        ),
         ("mesh.contact", float("nan"), "mesh.contact is nan; it must be a finite number"),
         ("mesh.contact", -5e-6, "mesh.contact is -5e-06 m; it must be from 1e-08 to 0.01 m"),
         ("mesh.growth", 1.5, "mesh.growth is 1.5; it must be from 0.0001 to 1"),
@@ -146,7 +150,7 @@ def test_impossible_geometry_and_mesh():
             '[[history]]\nname = "a"\nf_ext = 1\nu = 3',
             "history[0].u is not a key of history[0]; keys are name, f_ext, bone_height, voltage, bone_x,",
         ),
-        ("f_ext = 1979-05-27", "f_ext is '1979-05-27'; it must be a number"),
+        ("f_ext = 1979-05-27", "f_ext is '1979-05-27'; its unit is not known; it must be a number in N/m"),
     ],
 )
 def test_unknown_key(write, text, start):

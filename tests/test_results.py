@@ -10,15 +10,16 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fingerpad import drawing, report
-from fingerpad.accuracy import Keeper
-from fingerpad.full import run
+from fingerpad import console, drawing, report, writing
+from fingerpad.again import Keeper
 from fingerpad.needs import plan
 from fingerpad.scene import from_data
 from fingerpad.simulation import Simulation
 from fingerpad.states import RESULTS, named
 from fingerpad.steps import force_error
+from fingerpad.views import Profile
 from tests import test_demo
+from tests.runs import run
 from variational.friction import CONE_ROUNDOFF
 from variational.solver import PREFIX, Solver
 
@@ -126,11 +127,12 @@ def test_errors_are_estimated_of_the_headline(more, load):
     simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: keeper.see(step), lambda: None)
     keeper = Keeper(simulation)
     simulation.run()
-    found, kept = named(simulation.rows), keeper.solve().states
-    assert found["slip"]["load"] == load and found["normal"]["load"] == "press"
-    for state in ("normal", "slip"):
-        assert {name: kept[state].row[name] for name in RESULTS} == {name: found[state][name] for name in RESULTS}
-        assert kept[state].carried.voltage == found[state]["voltage"]
+    found, kept = named(simulation.states), keeper.solve().states
+    assert found["full_slip"].load == load and found["charged"].load == "press"
+    for state in ("charged", "full_slip"):
+        for name in RESULTS:
+            assert getattr(kept[state].state, name) == getattr(found[state], name), (state, name)
+        assert kept[state].carried.voltage == found[state].voltage
 
 
 def test_probe_of_full_slip_leaves_no_trace(monkeypatch):
@@ -141,7 +143,7 @@ def test_probe_of_full_slip_leaves_no_trace(monkeypatch):
     for rows in (probed, plain):
         simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
         simulation.run()
-        rows += simulation.rows
+        rows += [state.row() for state in simulation.states]
         monkeypatch.setattr(Simulation, "_holds", lambda self: False)
     assert probed[-1]["slip_held"] and not plain[-1]["slip_held"]
     left = {"slip_held": None}
@@ -205,12 +207,12 @@ def test_rejected_state_leaves_the_one_before(tmp_path, monkeypatch):
     step = report.Report.step
 
     def noted(self, given, done):
-        tables.append(given.row["step"])
+        tables.append(given.state.step)
         step(self, given, done)
 
     monkeypatch.setattr(Solver, "imbalance", left_over)
     monkeypatch.setattr(report.Report, "step", noted)
-    monkeypatch.setattr(report.Fields, "write", lambda self, time: written.append(time))
+    monkeypatch.setattr(writing.Fields, "write", lambda self, time: written.append(time))
     history = [{"name": "press", "bone_height": -60e-6}, {"name": "charge", "voltage": 50.0}]
     summary = run(from_data(LEAN | {"history": history}), tmp_path, MPI.COMM_WORLD)
     assert "step 3 (charge): a force of 0.001 N/m is left at a node" in summary["failure"]
@@ -235,12 +237,12 @@ def test_headline_states_are_shown_on_the_final_mesh(tmp_path, titles):
         assert path in titles.get(name, path), name
     for name in ("finger_normal_contact", "finger_full_slip", "Normal contact", "Full slip"):
         assert end in titles[name], name
-    ridges = [row for row in rows_of(tmp_path, "ridges_final") if row["of"] == "slip"]
+    ridges = [row for row in rows_of(tmp_path, "ridges_final") if row["of"] == "full_slip"]
     assert sum(float(row["f_friction"]) for row in ridges) == pytest.approx(
         -summary["slip_f_t"], abs=summary["force_error"]
     )
     assert {float(row["mesh_contact"]) for row in ridges} == {final}
-    assert {row["of"] for row in rows_of(tmp_path, "receptors_final")} == {"normal", "slip"}
+    assert {row["of"] for row in rows_of(tmp_path, "receptors_final")} == {"charged", "full_slip"}
     with np.load(tmp_path / "surface.npz") as arrays:
         x, p = arrays["slip_x"], arrays["slip_p"]
     known = np.isfinite(x[1:] + x[:-1])
@@ -259,15 +261,16 @@ def test_headline_states_are_shown_on_the_final_mesh(tmp_path, titles):
 )
 def test_energy_hidden_by_its_error_is_not_said(released, error, words):
     """A jump cannot gain energy; what is released is at most the value and its error."""
-    assert report._released({"energy_released": released, "released_error": error}) == words
+    record = SimpleNamespace(energy_released=released, released_error=error)
+    assert console._released(SimpleNamespace(record=record)) == words
 
 
 def test_profile_is_sorted_along_each_ridge():
     """Two ridges, the second one's facets first: a line each, with a break between."""
-    profile = SimpleNamespace(ridge=np.array([1, 0]), values=np.ones((7, 2, 2)), d_eq=np.array([1e-6, 2e-6]))
+    profile = Profile(ridge=np.array([1, 0]), values=np.ones((7, 2, 2)), d_eq=np.array([1e-6, 2e-6]))
     profile.values[0] = [[3e-3, 2e-3], [1e-3, 0.0]]
-    row = {"f_ext": 1.0, "voltage": 0.0, "bone_x": 0.0, "contact_length": 1e-3}
-    found = drawing._along(profile, "full slip", row, "")
+    state = SimpleNamespace(f_ext=1.0, voltage=0.0, bone_x=0.0, contact_length=1e-3)
+    found = drawing._along(profile, "full slip", state, "")
     assert found.x[[0, 1, 3, 4]] == pytest.approx([0.0, 1e-3, 2e-3, 3e-3]) and np.isnan(found.x[[2, 5]]).all()
     assert found.d_eq[[0, 3]] == pytest.approx([1e-6, 2e-6])
 

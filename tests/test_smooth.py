@@ -9,6 +9,7 @@ from fingerpad.estimate import ONCE
 from fingerpad.scene import SceneError, from_data
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
+from variational.state import RESULTS, ContactState
 
 SCENE = {
     "f_ext": 2.1445,
@@ -25,16 +26,16 @@ def answer(tmp_path_factory):
 
 
 def test_everything_is_known(answer):
-    assert answer[0].missing() == []
-    assert answer[0].summary["full_slip"] is True
+    assert [name for state in answer[0].named.values() for name in RESULTS if np.isnan(getattr(state, name))] == []
+    assert set(answer[0].named) == {"charged", "full_slip"}
 
 
-@pytest.mark.parametrize("state", ["normal", "slip"])
+@pytest.mark.parametrize("state", ["charged", "full_slip"])
 def test_the_law_bears_the_load(answer, state):
     """Contact less attraction, read from the tables, against the force prescribed: the solver's 1e-9 and roundoff."""
-    s = answer[0].summary
-    assert s[f"{state}_f_contact"] - s[f"{state}_f_electrostatic"] == pytest.approx(2.1445, rel=1e-6)
-    assert s[f"{state}_bone_height"] < -10e-6
+    s = answer[0].named[state]
+    assert s.f_contact - s.f_electrostatic == pytest.approx(2.1445, rel=1e-6)
+    assert s.bone_height < -10e-6
 
 
 def test_contact_is_that_of_the_full_model(answer):
@@ -42,9 +43,9 @@ def test_contact_is_that_of_the_full_model(answer):
 
     Tolerance: an edge ridge on a facet of 10 um more or less; ridges beyond the tenth, which the run has.
     """
-    s = answer[0].summary
-    assert s["normal_contact_length"] == pytest.approx(0.1129e-3, rel=0.1)
-    assert s["normal_bone_height"] == pytest.approx(-82.42e-6, rel=0.03)
+    s = answer[0].charged
+    assert s.contact_length == pytest.approx(0.1129e-3, rel=0.1)
+    assert s.bone_height == pytest.approx(-82.42e-6, rel=0.03)
 
 
 def test_one_table_is_kept(answer):
@@ -71,43 +72,50 @@ def test_error_covers_the_difference_to_finer_facets(tmp_path):
     """Facets of 20 um at 100 V, against those of a quarter of their size."""
     coarse = smooth.solve(rough(100.0, 20e-6), tmp_path)
     finer = smooth._solved(rough(100.0, 5e-6), tmp_path, MPI.COMM_WORLD)[1]
-    for state in ("normal", "slip"):
-        for name in ("f_electrostatic", "contact_length"):
-            key = f"{state}_{name}"
-            assert 0 < abs(coarse.summary[key] - finer[key]) <= coarse.errors[key]
-    assert abs(coarse.summary["slip_mu_app"] - finer["slip_mu_app"]) <= coarse.errors["slip_mu_app"]
+    for name, state in coarse.named.items():
+        for quantity in ("f_electrostatic", "contact_length"):
+            change = abs(getattr(state, quantity) - getattr(finer[name], quantity))
+            assert 0 < change <= getattr(state.error, quantity), (name, quantity)
+    slip = coarse.full_slip
+    assert abs(slip.mu_app - finer["full_slip"].mu_app) <= slip.error.mu_app
+
+
+def contact(mu_app: float) -> ContactState:
+    rest = {"f_contact": 3.0, "f_electrostatic": 1.0, "ridges_in_contact": 16, "contact_length": 1e-3}
+    return ContactState(f_ext=2.0, voltage=200.0, mu_app=mu_app, f_t=2 * mu_app, **rest)
 
 
 def test_error_of_first_order():
     """1 + h: halving h = 0.2 changes 0.1, and the error left, 0.1, counts with its factor of safety."""
-    found = smooth.errors({"slip_mu_app": 1.2, "slip_ridges_in_contact": 16}, {"slip_mu_app": 1.1})
-    assert found == pytest.approx({"slip_mu_app": 0.1 + ONCE * 0.1}, rel=1e-12)
+    found = smooth.estimated(contact(1.2), contact(1.1))
+    assert found.mu_app == pytest.approx(0.1 + ONCE * 0.1, rel=1e-12)
+    assert found.contact_length == 0 and np.isnan(found.bone_height)
 
 
-def test_error_too_large_to_mean_anything_is_refused(monkeypatch, answer):
+def test_error_too_large_to_mean_anything_is_refused():
     """The issue's scene: 0.788 with facets of 20 um, 1.019 with those of half the size."""
-    known = {"full_slip": True, "normal_mu_app": 0.0, "slip_contact_length": 1e-3}
-    scene, coarse, fine = rough(200.0, 20e-6), known | {"slip_mu_app": 0.788}, known | {"slip_mu_app": 1.019}
-    with pytest.raises(SceneError, match=r"rung 2's slip_mu_app is 0.788 with an estimated .* error of 0.69") as caught:
-        smooth._refuse_coarse(scene, coarse, smooth.errors(coarse, fine))
+    scene, coarse = rough(200.0, 20e-6), {"full_slip": contact(0.788)}
+    words = "mu_app of full slip in the model 'smooth' is 0.788 with an estimated .* error of 0.69"
+    with pytest.raises(SceneError, match=words) as caught:
+        smooth._refuse_coarse(scene, coarse, {"full_slip": smooth.estimated(coarse["full_slip"], contact(1.019))})
     assert "give a mesh.contact of 1e-05 m or less" in str(caught.value)
     assert len(str(caught.value)) < 300
-    near = known | {"slip_mu_app": 0.80}
-    smooth._refuse_coarse(scene, coarse, smooth.errors(coarse, near))
+    smooth._refuse_coarse(scene, coarse, {"full_slip": smooth.estimated(coarse["full_slip"], contact(0.80))})
 
 
 def test_error_that_is_not_known_is_refused():
     """Full slip with one size of facets and none with the other."""
-    coarse, fine = {"full_slip": True, "slip_mu_app": 0.5}, {"full_slip": False}
-    with pytest.raises(SceneError, match="slip_mu_app is not known with facets of half the size"):
-        smooth._refuse_coarse(rough(200.0, 20e-6), coarse, smooth.errors(coarse, fine))
+    coarse = {"full_slip": contact(0.5)}
+    with pytest.raises(SceneError, match="mu_app of full slip .* is not known with facets of half the size"):
+        smooth._refuse_coarse(rough(200.0, 20e-6), coarse, {"full_slip": smooth.estimated(coarse["full_slip"], None)})
 
 
 def test_every_number_comes_with_its_error(answer):
-    """But ridges, which are counted, and what is zero by symmetry."""
-    s, errors = answer[0].summary, answer[0].errors
-    assert {key for key in s if isinstance(s[key], float)} == set(errors)
-    assert 0 < errors["slip_contact_length"] < 0.5 * s["slip_contact_length"]
+    """But ridges, which are counted."""
+    for state in answer[0].named.values():
+        assert set(state.error.known()) == set(RESULTS) - {"ridges_in_contact"}
+    slip = answer[0].full_slip
+    assert 0 < slip.error.contact_length < 0.5 * slip.contact_length
     assert answer[0].cost.factorisations > 0
 
 
@@ -129,7 +137,7 @@ def test_table_that_ends_too_soon_is_said(answer, monkeypatch):
 
 
 def test_history_is_refused(tmp_path):
-    with pytest.raises(SceneError, match="history is given; rung 2"):
+    with pytest.raises(SceneError, match="history is given; the model 'smooth'"):
         smooth.solve(from_data({"history": [{"name": "press", "f_ext": 5.0}]}), tmp_path, MPI.COMM_WORLD)
 
 

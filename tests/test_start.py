@@ -6,7 +6,7 @@ from mpi4py import MPI
 
 from fingerpad import simulation as simulation_module
 from fingerpad import smooth, start
-from fingerpad.accuracy import Keeper
+from fingerpad.again import Keeper
 from fingerpad.needs import plan
 from fingerpad.scene import from_data
 from fingerpad.simulation import Simulation
@@ -42,19 +42,19 @@ def path():
 @pytest.mark.slow
 def test_full_slip_is_that_of_the_path(started, path):
     """Tolerance: two loops over the scales that end at 1e-6 of d_eq, whose gain is below one half here."""
-    found, known = started.solve.states["slip"].row, path.states["slip"].row
-    assert found["ridges_in_contact"] == known["ridges_in_contact"]
-    assert found["f_t"] == pytest.approx(known["f_t"], rel=1e-6)
+    found, known = (solve.states["full_slip"].state for solve in (started.solve, path))
+    assert found.ridges_in_contact == known.ridges_in_contact
+    assert found.f_t == pytest.approx(known.f_t, rel=1e-6)
 
 
 @pytest.mark.slow
 def test_lengths_by_ridge_are_the_length(path):
     """Each ridge of the nine at its place: the length in contact is their sum, and the central ones touch."""
-    state = path.states["slip"]
+    state = path.states["full_slip"]
     assert state.lengths.shape == (9,)
-    assert state.lengths.sum() == pytest.approx(state.row["contact_length"], rel=1e-12, abs=0)
+    assert state.lengths.sum() == pytest.approx(state.state.contact_length, rel=1e-12, abs=0)
     touching = np.flatnonzero(state.lengths)
-    assert len(touching) == state.row["ridges_in_contact"] < 9
+    assert len(touching) == state.state.ridges_in_contact < 9
     assert abs(touching.mean() - 4) <= 0.5
     assert path.parts()["slip_contact_length"] is state.lengths
 
@@ -81,7 +81,7 @@ def test_another_squeeze_is_tried(started, folder, monkeypatch):
     monkeypatch.setattr(Simulation, "adopt", fail_first)
     found = start.full_slip(from_data(SCENE), folder, MPI.COMM_WORLD)
     assert len(set(squeezes)) == len(squeezes) == 2
-    first, second = (each.solve.states["slip"].row["f_t"] for each in (started, found))
+    first, second = (each.solve.states["full_slip"].state.f_t for each in (started, found))
     assert second == pytest.approx(first, rel=1e-6)
 
 
@@ -102,7 +102,7 @@ def test_state_that_is_not_full_slip_is_refused(folder):
 
 @pytest.mark.parametrize("other", [{"friction": 0.0}, {"numerics": {"element": "P2-P1"}}])
 def test_scene_without_a_full_slip_to_carry_is_refused(folder, other):
-    with pytest.raises(StepFailed, match="rung 2 has no full slip of a scene"):
+    with pytest.raises(StepFailed, match="the model 'smooth' has no full slip of a scene"):
         start.full_slip(from_data(SCENE | other), folder, MPI.COMM_WORLD)
 
 
@@ -112,10 +112,10 @@ def test_slip_that_is_never_steady_ends_with_the_slide(monkeypatch):
     monkeypatch.setattr(simulation_module, "_STEADY", -1.0)
     scene, places = from_data(SCENE | {"slide_length": 0.9e-3}), []
     simulation = Simulation(
-        scene, plan(scene), MPI.COMM_WORLD, lambda step, done: places.append(step.row["bone_x"]), lambda: None
+        scene, plan(scene), MPI.COMM_WORLD, lambda step, done: places.append(step.state.bone_x), lambda: None
     )
     simulation.run()
-    assert not any(row["slip_held"] for row in simulation.rows)
+    assert not any(state.slip_held for state in simulation.states)
     assert places == sorted(places)
     assert 0.9e-3 <= places[-1] <= 1.11e-3
 

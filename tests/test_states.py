@@ -1,10 +1,12 @@
 """Which states of a history have a name: histories that people invent, as rows without a finger."""
 
 import itertools
+from dataclasses import replace
 
 import pytest
 
 from fingerpad import states
+from variational.state import ContactState
 
 STEADY, LEAST = 1e-6, 1e-9
 MU_0 = 0.25
@@ -14,18 +16,30 @@ class History:
     """Rows of a finger that sticks for a tenth of a millimetre after each turn and slips from there on."""
 
     def __init__(self) -> None:
-        self.rows: list[dict] = []
+        self.rows: list[ContactState] = []
         self.x, self.voltage, self.f_ext, self.numbers = 0.0, 0.0, 1.0, itertools.count(1)
         self._anchor = 0.0  # where the bone turned last
 
     def _row(self, load: str, number: int, all_slip: bool, f_t: float) -> None:
-        row = {"step": len(self.rows) + 1, "load": load, "load_number": number, "f_ext": self.f_ext}
-        row |= {"voltage": self.voltage, "bone_x": self.x, "all_slip": all_slip, "slipping": float(all_slip)}
-        row |= {"f_t": f_t, "mu_app": f_t / self.f_ext if self.f_ext else 0.0, "bone_height": -1e-5}
-        row |= {"f_electrostatic": self._attraction, "f_contact": self.f_ext + self._attraction}
-        row |= {"ridges_in_contact": 3 if self.f_ext > 0 else 0, "contact_length": 1e-4 * self.f_ext}
-        began, held = states.full_slip(self.rows, row, STEADY, LEAST)
-        self.rows.append(row | {"slip_began": began, "slip_held": held})
+        state = ContactState(
+            step=len(self.rows) + 1,
+            load=load,
+            load_number=number,
+            f_ext=self.f_ext,
+            voltage=self.voltage,
+            bone_x=self.x,
+            bone_height=-1e-5,
+            f_t=f_t,
+            mu_app=f_t / self.f_ext if self.f_ext else 0.0,
+            f_contact=self.f_ext + self._attraction,
+            f_electrostatic=self._attraction,
+            ridges_in_contact=3 if self.f_ext > 0 else 0,
+            contact_length=1e-4 * self.f_ext,
+            slipping=float(all_slip),
+            all_slip=all_slip,
+        )
+        began, held = states.full_slip(self.rows, state, STEADY, LEAST)
+        self.rows.append(replace(state, slip_began=began, slip_held=held))
 
     @property
     def _attraction(self) -> float:
@@ -37,13 +51,13 @@ class History:
         for part in (0.5, 1.0):
             self.f_ext = start[0] if f_ext is None else start[0] + part * (f_ext - start[0])
             self.voltage = start[1] if voltage is None else start[1] + part * (voltage - start[1])
-            self._row(load, number, False, self.rows[-1]["f_t"] if self.rows else 0.0)
+            self._row(load, number, False, self.rows[-1].f_t if self.rows else 0.0)
         self._anchor = self.x
 
     def slide(self, load: str, x: float, voltages: float | None = None) -> None:
         """Slide by 50 um a step, at another voltage in each step where one is to be reached."""
         number, start, steps = next(self.numbers), (self.x, self.voltage), round(abs(x - self.x) / 50e-6)
-        if self.rows[-1]["f_t"] * (x - self.x) < 0:
+        if self.rows[-1].f_t * (x - self.x) < 0:
             self._anchor = self.x
         for k in range(1, steps + 1):
             self.x = start[0] + k / steps * (x - start[0])
@@ -57,7 +71,7 @@ class History:
     def names(self) -> dict[str, tuple[str, float, float]]:
         """Return load, voltage and place (mm) of each named state."""
         found = states.named(self.rows).items()
-        return {name: (row["load"], row["voltage"], round(row["bone_x"] * 1e3, 9)) for name, row in found}
+        return {name: (state.load, state.voltage, round(state.bone_x * 1e3, 9)) for name, state in found}
 
 
 @pytest.fixture
@@ -69,7 +83,7 @@ def pressed() -> History:
 
 def test_press_alone(pressed):
     """No voltage and no sliding: its end is both, and there is no full slip."""
-    assert pressed.names() == {"uncharged": ("press", 0.0, 0.0), "normal": ("press", 0.0, 0.0)}
+    assert pressed.names() == {"uncharged": ("press", 0.0, 0.0), "charged": ("press", 0.0, 0.0)}
     assert states.partial_slip(pressed.rows) is None
 
 
@@ -79,17 +93,17 @@ def test_press_charge_slide(pressed):
     pressed.slide("slide", 0.4e-3)
     assert pressed.names() == {
         "uncharged": ("press", 0.0, 0.0),
-        "normal": ("charge", 80.0, 0.0),
-        "slip": ("slide", 80.0, 0.1),
+        "charged": ("charge", 80.0, 0.0),
+        "full_slip": ("slide", 80.0, 0.1),
     }
-    assert states.partial_slip(pressed.rows)["bone_x"] < 0.1e-3 + 1e-12
+    assert states.partial_slip(pressed.rows).bone_x < 0.1e-3 + 1e-12
 
 
 @pytest.mark.parametrize(("end", "held"), [(0.25e-3, False), (0.3e-3, True)])
 def test_full_slip_counts_once_it_was_held(pressed, end, held):
     """0.15 mm of further sliding are too little, 0.2 mm are enough."""
     pressed.slide("slide", end)
-    assert ("slip" in pressed.names()) is held
+    assert ("full_slip" in pressed.names()) is held
 
 
 def test_slide_charge_slide(pressed):
@@ -97,8 +111,8 @@ def test_slide_charge_slide(pressed):
     pressed.slide("slide", 0.4e-3)
     pressed.still("charge", voltage=80.0)
     pressed.slide("slide on", 0.8e-3)
-    assert pressed.names()["slip"] == ("slide on", 80.0, 0.5)
-    assert pressed.names()["normal"] == ("press", 0.0, 0.0)
+    assert pressed.names()["full_slip"] == ("slide on", 80.0, 0.5)
+    assert pressed.names()["charged"] == ("press", 0.0, 0.0)
 
 
 def test_ends_in_the_middle_of_a_slip(pressed):
@@ -106,68 +120,69 @@ def test_ends_in_the_middle_of_a_slip(pressed):
     pressed.slide("slide", 0.4e-3)
     pressed.still("charge", voltage=80.0)
     pressed.slide("slide on", 0.55e-3)
-    assert pressed.rows[-1]["slip_began"] == pressed.rows[-2]["step"] and not pressed.rows[-1]["slip_held"]
-    assert pressed.names()["slip"] == ("slide", 0.0, 0.1)
+    assert pressed.rows[-1].slip_began == pressed.rows[-2].step and not pressed.rows[-1].slip_held
+    assert pressed.names()["full_slip"] == ("slide", 0.0, 0.1)
 
 
 def test_there_and_back(pressed):
     """A bone that comes back to x = 0 makes no normal contact, and its full slip is one the other way."""
     pressed.slide("there", 0.4e-3)
     pressed.slide("back", 0.0)
-    assert pressed.rows[-1]["bone_x"] == 0.0
-    assert pressed.names()["normal"] == ("press", 0.0, 0.0)
-    assert pressed.names()["slip"] == ("back", 0.0, 0.3)
-    assert states.named(pressed.rows)["slip"]["f_t"] < 0
+    assert pressed.rows[-1].bone_x == 0.0
+    assert pressed.names()["charged"] == ("press", 0.0, 0.0)
+    assert pressed.names()["full_slip"] == ("back", 0.0, 0.3)
+    assert states.named(pressed.rows)["full_slip"].f_t < 0
 
 
 def test_full_slip_at_x_0_on_the_way_back(pressed):
     """The bone has moved, wherever it is now."""
     pressed.slide("there", 0.1e-3)
     pressed.slide("back", -0.3e-3)
-    assert pressed.names()["slip"] == ("back", 0.0, 0.0)
+    assert pressed.names()["full_slip"] == ("back", 0.0, 0.0)
 
 
 def test_lift_after_the_slip(pressed):
     """Unloading that sticks leaves the full slip at the load that it had."""
     pressed.slide("slide", 0.4e-3)
     pressed.still("lift", f_ext=0.5)
-    assert states.named(pressed.rows)["slip"]["f_ext"] == 2.0
-    assert pressed.rows[-1]["f_ext"] == 0.5
+    assert states.named(pressed.rows)["full_slip"].f_ext == 2.0
+    assert pressed.rows[-1].f_ext == 0.5
 
 
 def test_charging_while_it_slides(pressed):
     """Each voltage is a full slip of its own, which none of these was held; where it stays, the slip is held."""
     pressed.slide("slide", 0.4e-3)
     pressed.slide("charge while sliding", 0.8e-3, voltages=200.0)
-    assert pressed.names()["slip"] == ("slide", 0.0, 0.1)
-    assert pressed.rows[-1]["slip_began"] == pressed.rows[-1]["step"]
+    assert pressed.names()["full_slip"] == ("slide", 0.0, 0.1)
+    assert pressed.rows[-1].slip_began == pressed.rows[-1].step
     pressed.slide("slide on", 1.1e-3)
-    assert pressed.names()["slip"] == ("charge while sliding", 200.0, 0.8)
+    assert pressed.names()["full_slip"] == ("charge while sliding", 200.0, 0.8)
 
 
 def test_voltage_that_goes_up_and_down(pressed):
     """Charged by turns while it slides: no full slip is held, and uncharged is what was before the first voltage."""
     for k, voltage in enumerate((80.0, 0.0, 80.0, 0.0), start=1):
         pressed.slide(f"part {k}", 0.3e-3 * k, voltages=voltage)
-    assert pressed.names() == {"uncharged": ("press", 0.0, 0.0), "normal": ("press", 0.0, 0.0)}
+    assert pressed.names() == {"uncharged": ("press", 0.0, 0.0), "charged": ("press", 0.0, 0.0)}
 
 
 def test_voltage_before_sliding_that_goes_up_and_down(pressed):
     for voltage in (80.0, 0.0, 80.0):
         pressed.still(f"to {voltage:g}", voltage=voltage)
-    assert pressed.names() == {"uncharged": ("press", 0.0, 0.0), "normal": ("to 80", 80.0, 0.0)}
+    assert pressed.names() == {"uncharged": ("press", 0.0, 0.0), "charged": ("to 80", 80.0, 0.0)}
 
 
 def test_all_points_slip_without_friction_before_the_bone_moves():
     """Without friction every state is on its cone; full slip begins with the sliding."""
-    base = {"f_ext": 1.0, "voltage": 0.0, "f_t": 0.0, "all_slip": True, "ridges_in_contact": 3}
-    rows: list[dict] = []
+    forces = {"f_ext": 1.0, "voltage": 0.0, "f_t": 0.0, "mu_app": 0.0, "f_contact": 1.0, "f_electrostatic": 0.0}
+    rows: list[ContactState] = []
     for step, x in enumerate((0.0, 0.0, 0.1e-3, 0.2e-3, 0.3e-3), start=1):
-        row = base | {"step": step, "bone_x": x}
-        began, held = states.full_slip(rows, row, STEADY, LEAST)
-        rows.append(row | {"slip_began": began, "slip_held": held})
-    assert [row["slip_began"] for row in rows] == [0, 0, 3, 3, 3]
-    assert [row["slip_held"] for row in rows] == [False] * 4 + [True]
+        touching = {"all_slip": True, "ridges_in_contact": 3, "contact_length": 1e-3}
+        state = ContactState(step=step, bone_x=x, **forces, **touching)
+        began, held = states.full_slip(rows, state, STEADY, LEAST)
+        rows.append(replace(state, slip_began=began, slip_held=held))
+    assert [row.slip_began for row in rows] == [0, 0, 3, 3, 3]
+    assert [row.slip_held for row in rows] == [False] * 4 + [True]
 
 
 @pytest.mark.parametrize(("name", "change"), [("f_t", 2e-6), ("f_ext", 2e-6), ("voltage", 1e-6)])
@@ -177,9 +192,10 @@ def test_forces_that_change_end_a_full_slip(pressed, name, change):
     pressed.slide("slide", 0.2e-3)
     last = pressed.rows[-1]
     for part, same in ((1.0, False), (0.25, name != "voltage")):
-        row = last | {"step": last["step"] + 1, "bone_x": 0.25e-3, name: last[name] * (1 + part * change)}
+        values = {"step": last.step + 1, "bone_x": 0.25e-3, name: getattr(last, name) * (1 + part * change)}
+        row = replace(last, **values)
         began, _ = states.full_slip(pressed.rows, row, STEADY, 0.0)
-        assert began == (last["slip_began"] if same else row["step"])
+        assert began == (last.slip_began if same else row.step)
 
 
 def test_each_load_has_its_summary(pressed):
@@ -187,7 +203,7 @@ def test_each_load_has_its_summary(pressed):
     pressed.slide("slide", 0.4e-3)
     pressed.still("charge", voltage=80.0)
     pressed.slide("slide on", 0.55e-3)
-    found = [states.summary(name, mine, None) for name, mine in states.by_load(pressed.rows)]
+    found = [states.load_result(name, mine, None).to_dict() for name, mine in states.by_load(pressed.rows)]
     assert [load["name"] for load in found] == ["press", "slide", "charge", "slide on"]
     assert [(load["full_slip_reached"], load["full_slip_held"]) for load in found] == [
         (False, False),
@@ -197,16 +213,15 @@ def test_each_load_has_its_summary(pressed):
     ]
     slide = found[1]
     assert slide["end"]["f_t"] == slide["extremes"]["f_t"]["max"] == pytest.approx(MU_0 * 2.0)
-    assert slide["extremes"]["f_t"]["min_step"] == pressed.rows[2]["step"]
-    assert slide["end"]["step"] == pressed.rows[9]["step"]
+    assert slide["extremes"]["f_t"]["min_step"] == pressed.rows[2].step
+    assert slide["end"]["step"] == pressed.rows[9].step
 
 
 def test_touch_belongs_to_the_load_on_the_way():
     """And a load that has the name of another one is a load of its own."""
     history = History()
     history.still("touch", f_ext=1.5)
-    for row in history.rows:
-        row["load_number"] = 1
+    history.rows = [replace(state, load_number=1) for state in history.rows]
     history.numbers = itertools.count(1)
     history.still("press", f_ext=2.0)
     history.still("press", f_ext=3.0)
@@ -224,8 +239,8 @@ def test_normal_contact_after_a_way_through_the_air():
     history.slide("slide", 1.5e-3)
     names = history.names()
     assert names["uncharged"] == ("press", 0.0, 1.0)
-    assert names["normal"] == ("charge", 100.0, 1.0)
-    assert names["slip"][0] == "slide" and names["slip"][2] > 1.0
+    assert names["charged"] == ("charge", 100.0, 1.0)
+    assert names["full_slip"][0] == "slide" and names["full_slip"][2] > 1.0
 
 
 def test_bone_that_moves_as_it_touches_has_no_normal_contact():
@@ -234,4 +249,4 @@ def test_bone_that_moves_as_it_touches_has_no_normal_contact():
     history.still("wait", f_ext=0.0)
     history.x, history.f_ext = 50e-6, 1.0
     history.slide("slide", 0.5e-3)
-    assert "normal" not in states.named(history.rows) and "slip" in states.named(history.rows)
+    assert "charged" not in states.named(history.rows) and "full_slip" in states.named(history.rows)

@@ -36,12 +36,12 @@ def slid(away: float, f_ext: float, voltage: float, tolerance: float) -> Simulat
 
 def highest_floor(made: Simulation) -> float:
     """Return the highest floor, over f_ext, that a row of the steps tells."""
-    return max(row["floor"] for row in made.rows)
+    return max(state.record.floor for state in made.states if state.record)
 
 
 def held(made: Simulation) -> bool:
     """Return whether full slip was reached and held."""
-    return made.rows[-1]["slip_held"]
+    return made.states[-1].slip_held
 
 
 def forces(made: Simulation) -> np.ndarray:
@@ -111,7 +111,7 @@ def test_points_of_little_friction_come_to_stick():
     finger = {"geometry": {"ridge_count": 5}, "mesh": FINGER["mesh"] | {"contact": 30e-6, "touching_half_arc": 0.6e-3}}
     scene = from_data(finger | {"friction": 0.002, "history": [{"name": "press", "f_ext": 0.2}]})
     needed, rows = plan(scene).with_both_halves(), []
-    made = Simulation(scene, needed, MPI.COMM_WORLD, lambda step, done: rows.append(step.row), lambda: None)
+    made = Simulation(scene, needed, MPI.COMM_WORLD, lambda step, done: rows.append(step.state.row()), lambda: None)
     made.run()
     assert not any(row["jump"] for row in rows)
     assert sum(row["cutbacks"] for row in rows) <= 1

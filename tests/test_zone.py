@@ -9,12 +9,12 @@ from mpi4py import MPI
 
 from fingerpad import full as run_module
 from fingerpad import needs
-from fingerpad.full import run
 from fingerpad.needs import plan
 from fingerpad.scene import from_data
 from fingerpad.simulation import Simulation
 from fingerpad.zone import Woken, Zone, ZoneExceeded
 from geometry.sizing import touching_ridges
+from tests.runs import run
 from variational.stability import Stability, StabilityCheck
 
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8}

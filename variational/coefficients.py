@@ -12,6 +12,11 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 
+def said(error: Exception) -> str:
+    """Return what an error of a user's law says, in one line."""
+    return " ".join(str(error).split()) or type(error).__name__
+
+
 class Law:
     """A law with numbers; derive a frozen dataclass from one of the laws' bases."""
 

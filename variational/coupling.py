@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 
 from variational.failure import NotConverged
 from variational.quantities import Observer, SurfaceState
-from variational.roughness.closure import Closure, air_gaps
+from variational.roughness.closure import Closure, air_gaps, check
 from variational.secant import Secants
 from variational.solver import Solver
 
@@ -84,6 +84,8 @@ class Coupling:
         Raises:
             ValueError: what is no closure; in one sentence.
         """
+        if closure is not None:
+            check(closure)
         self.solver, self.observer, self.closure = solver, observer, closure
         self.tolerance, self.cap, self.by_gap = tolerance, cap, by_gap
         self.history = CouplingHistory()
@@ -104,18 +106,10 @@ class Coupling:
             state = self.observer.state()
             if self.closure is None:
                 return self.d_eq, state
-            p_c = self.observer.ridge_loads(state, self.by_gap).p_c
-            d_eq = air_gaps(self.closure, p_c)
-        names = self.observer.surface.names
+            d_eq = air_gaps(self.closure, self.observer.ridge_loads(state, self.by_gap).p_c)
         if not np.isfinite(d_eq).all():
-            ridge = names[int(np.argmin(np.isfinite(d_eq)))]
+            ridge = self.observer.surface.names[int(np.argmin(np.isfinite(d_eq)))]
             raise NotConverged(f"NOT_A_NUMBER in the air gap of ridge {ridge}", False)
-        if not (d_eq > 0).all():
-            k = int(np.argmin(d_eq))
-            raise ValueError(
-                f"closure {type(self.closure).__name__} returns an air gap of {d_eq[k]:g} m for ridge {names[k]} under "
-                f"{p_c[k]:.4g} Pa; it must be greater than 0"
-            )
         return d_eq, state
 
     def solve(self, creep: bool = False) -> None:
@@ -125,7 +119,7 @@ class Coupling:
             creep: see :meth:`variational.solver.Solver.solve`.
 
         Raises:
-            ValueError: the closure returns another shape than the pressures', or a gap that is not positive.
+            ValueError: the closure returns another shape than the pressures'.
             NotConverged: the macroscale's, ``COUPLING_CAP`` with the ridge that moved most or the contact's error, or
                 ``NOT_A_NUMBER`` with the ridge of which the closure made one.
         """

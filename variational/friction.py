@@ -28,7 +28,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from variational.coefficients import Law
+from variational.coefficients import Law, said
 
 Array = NDArray[np.float64]
 CONE_ROUNDOFF = 1e-8  # relative: a traction this near the limit counts as on it
@@ -85,7 +85,7 @@ class Friction(Law, ABC):
                 found = np.asarray(self.limit(_PRESSURES), dtype=float)
                 one = float(self.limit(_JUMP))
         except Exception as error:  # whatever the user's limit raises
-            raise ValueError(f"the limit of {self} cannot be evaluated: {error}") from error
+            raise ValueError(f"the limit of {self} cannot be evaluated: {said(error)}") from error
         if found.shape != _PRESSURES.shape:
             raise ValueError(
                 f"the limit of {self} has the shape {found.shape} for {len(_PRESSURES)} pressures; it must have one "
@@ -130,6 +130,13 @@ class Derjaguin(Friction):
     (B. Derjaguin, Molekulartheorie der äußeren Reibung, Zeitschrift für Physik 88, 1934, pages 661 to 675, where the
     attraction adds a constant pressure p_0 to the load, :math:`\tau_0 = \mu_f p_0`.) The root is this program's, so
     that :math:`\tau_0` does not jump on where contact begins: at ten times p_reg half a percent of tau_0 is missing.
+
+    With the default p_reg of 1 kPa Newton's method takes as many iterations as for Coulomb's law: 88 and 88 without
+    voltage, 212 and 224 at 100 V (a small finger of nine ridges slid to full slip at 1 N/m, mu_f = 0.3, tau_0 of
+    5 kPa). With 100 Pa it took 226 and 548, with 10 Pa 462 and 777, and steps were cut. With a tau_0 of 20 kPa at 100 V
+    it took 534 at 1 kPa, 322 at 10 kPa, and found no full slip at 100 Pa and below. On that finger, whose ridges bear a
+    few kPa, the default takes 4 % off the friction of p_reg = 1 Pa, under voltage 2 %; where ridges bear 30 kPa it is
+    less than a thousandth of tau_0.
     """
 
     mu_f: float
@@ -137,7 +144,7 @@ class Derjaguin(Friction):
     tau_0: float
     """Friction without load (Pa of reference area)."""
     p_reg: float = 1e3
-    """Contact pressure (Pa) below which tau_0 fades out. *Assumption*."""
+    """Contact pressure (Pa) below which tau_0 fades out. *Assumption*; a larger tau_0 may need a larger one."""
 
     def limit(self, p):
         """Return the limit (Pa)."""

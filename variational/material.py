@@ -29,7 +29,7 @@ from ufl.algorithms.apply_algebra_lowering import apply_algebra_lowering
 from ufl.algorithms.apply_derivatives import apply_derivatives
 
 from variational import kinematics
-from variational.coefficients import Law
+from variational.coefficients import Law, said
 
 _NATURAL = 1e-8  # of the shear modulus: stress of the unloaded solid that is roundoff
 
@@ -130,7 +130,7 @@ class Material(Law):
         try:
             left = [abs(s) for s in self._unloaded()]
         except Exception as error:  # whatever the user's energy raises
-            raise ValueError(f"the energy of {self} cannot be evaluated unloaded: {error}") from error
+            raise ValueError(f"the energy of {self} cannot be evaluated unloaded: {said(error)}") from error
         if not max(left) <= _NATURAL * float(self.shear_modulus):
             raise ValueError(
                 f"{self} has a stress of {max(left):.3g} Pa unloaded; it must have none, which an energy of "

@@ -18,25 +18,20 @@ from variational.material import Material
 from variational.nitsche import Nitsche
 from variational.penalty import Penalty
 from variational.problem import Interface
-from variational.roughness.closure import AirGap
+from variational.roughness.closure import AirGap, Closure
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Smooth:
+class Smooth(Closure):
     """A screen and skin without roughness: one air gap (m) at any pressure."""
 
     d_eq: float
 
     def __call__(self, p_c: ArrayLike) -> AirGap:
         """Return the air gap, which does not follow the pressure."""
-        none = np.zeros_like(np.asarray(p_c, dtype=np.float64))
-        return AirGap(none + self.d_eq, none)
-
-    def state(self, p_c: float, voltage: float) -> str:
-        """Have nothing to say."""
-        return ""
+        return AirGap(self.d_eq + 0 * np.asarray(p_c, dtype=np.float64))
 
 
 def over_screen(

@@ -1,0 +1,232 @@
+"""The doors agree: a scene from Python, from TOML and from the command line is the same scene, or the same refusal."""
+
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fingerpad import scene as scenes
+from fingerpad.parameters import Contact, Load
+from fingerpad.scene import Scene, SceneError, override
+from geometry.parameters import Fingertip, MeshSize
+from tests.fuzz import mutant
+
+SCENES = Path(__file__).parent.parent / "demos/scenes"
+ASKED = {"mu_app": 0.01}
+LOADS = [{"name": "press", "f_ext": 20.0}, {"name": "charge", "voltage": 80.0}]
+
+
+def outcome(door: Callable[[], Scene]) -> Scene | str:
+    """Return a scene, or why there is none."""
+    try:
+        return door()
+    except SceneError as error:
+        return str(error)
+
+
+# -- Python and TOML -----------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "f_ext = 75.0\nvoltage = 200\nfriction = 0.25",
+        'f_ext = "0.05 N/mm"',
+        "accuracy = {mu_app = 0.01}",
+        "accuracy = {mu_app = 0.01}\nmesh = {contact = 10e-6}",
+        "accuracy = {sed = 0.1}",
+        'history = [{name = "press", f_ext = 20}, {name = "slide", bone_x = 1e-3, until_full_slip = true}]',
+        "materials.dermis.shear_modulus = 3e3",
+        'contact = {formulation = "augmented", eps_t = 1e11}',
+        "geometry.ridge_profile = [1, -0.2]",
+        # refused
+        "f_ext = -1",
+        "f_ext = 75e3",
+        'f_ext = "50 V"',
+        "f_ext = true",
+        "volts = 3",
+        "mesh = 3",
+        "mesh.contcat = 1",
+        "accuracy = {}",
+        "history = []",
+        'history = [{name = "press", f_ext = 20}]\nvoltage = 3',
+        'history = [{name = "press"}]',
+        "numerics.coupling_cap = 1.5",
+        "geometry.ridge_count = 55.0",
+        'contact = {formulation = "nitsche", eps_n = 1e12}',
+        "self = 3",
+    ],
+)
+def test_python_and_toml(write, text):
+    """Equal scenes, equal sentences."""
+    assert outcome(lambda: Scene(**tomllib.loads(text))) == outcome(lambda: scenes.load(write(text)))
+
+
+def test_mutants(write, tmp_path):
+    """Scenes as nobody should write them; of those that are TOML some are accepted, most refused."""
+    path, refused, accepted = tmp_path / "scene.toml", 0, 0
+    for k in range(100):
+        file = mutant(17, k).file
+        try:
+            data = tomllib.loads((file or b"\xff").decode("utf-8-sig"))
+        except (ValueError, RecursionError):
+            continue
+        path.write_bytes(file)
+        if len(file) > 1_000_000:  # refused as a file
+            continue
+        by_python, by_file = outcome(lambda data=data: Scene(**data)), outcome(lambda: scenes.load(path))
+        assert by_python == by_file, f"mutant {k}"
+        refused, accepted = refused + isinstance(by_file, str), accepted + isinstance(by_file, Scene)
+    assert refused > 15 and accepted > 5
+
+
+@pytest.mark.parametrize("path", sorted(SCENES.glob("*.toml")), ids=lambda path: path.stem)
+def test_scenes_that_come_along(path):
+    assert Scene(**tomllib.loads(path.read_text(encoding="utf-8"))) == scenes.load(path)
+
+
+# -- what only Python has ------------------------------------------------------------------------------
+def test_numpy_is_as_python():
+    given = Scene(
+        f_ext=np.float32(50), voltage=np.int64(100), geometry={"ridge_profile": np.array([1, -0.5])},
+        output={"receptors": np.False_}, numerics={"coupling_cap": np.int8(9)}, friction=np.longdouble(0.5),
+    )  # fmt: skip
+    assert given == Scene(
+        f_ext=50, voltage=100, geometry={"ridge_profile": (1.0, -0.5)}, output={"receptors": False},
+        numerics={"coupling_cap": 9}, friction=0.5,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("objects", "tables"),
+    [
+        ({"mesh": MeshSize(contact=10e-6), "accuracy": ASKED}, {"mesh": {"contact": 10e-6}, "accuracy": ASKED}),
+        ({"geometry": Fingertip(width=21e-3)}, {"geometry": {"width": 21e-3}}),
+        ({"history": tuple(Load(**load) for load in LOADS)}, {"history": LOADS}),
+        ({"contact": Contact(formulation="nitsche")}, {"contact": {"formulation": "nitsche"}}),
+    ],
+)
+def test_objects_are_as_tables(objects, tables):
+    assert Scene(**objects) == Scene(**tables)
+
+
+def test_accuracy_starts_coarse():
+    """In the sizes that are not given; coarser elements at the sites do not see the tips of intermediate ridges."""
+    mesh = Scene(accuracy=ASKED, mesh={"growth": 0.3}).mesh
+    assert (mesh.contact, mesh.receptor, mesh.growth) == (20e-6, 40e-6, 0.3)
+    assert Scene(accuracy={"sed": 0.1}).mesh.receptor == 10e-6
+
+
+def test_number_beyond_the_reals_is_refused():
+    assert outcome(lambda: Scene(friction=1 + 2j)) == "friction is '(1+2j)'; it must be a number"
+
+
+# -- copies --------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("before", "changes", "after"),
+    [
+        ({"f_ext": 50}, {"voltage": "0.1 kV"}, {"f_ext": 50, "voltage": 100}),
+        ({"mesh": {"contact": 9e-6}}, {"mesh": {"growth": 0.3}}, {"mesh": {"contact": 9e-6, "growth": 0.3}}),
+        ({"mesh": {"contact": 9e-6}}, {"mesh": MeshSize(growth=0.3)}, {"mesh": {"growth": 0.3}}),
+        (
+            {"materials": {"dermis": {"poisson": 0.4}}},
+            {"materials": {"dermis": {"alpha": 3}}},
+            {"materials": {"dermis": {"poisson": 0.4, "alpha": 3}}},
+        ),
+        ({}, {"accuracy": ASKED}, {"accuracy": ASKED}),
+        ({"mesh": {"contact": 9e-6}}, {"accuracy": ASKED}, {"mesh": {"contact": 9e-6}, "accuracy": ASKED}),
+        ({"mesh": {"contact": 9e-6}, "accuracy": ASKED}, {"accuracy": None}, {"mesh": {"contact": 9e-6}}),
+        ({"accuracy": ASKED}, {"accuracy": {"sed": 0.1}}, {"accuracy": ASKED | {"sed": 0.1}}),
+        ({"f_ext": 50}, {"history": LOADS}, {"history": LOADS}),
+        ({"history": LOADS}, {"history": None, "f_ext": 50}, {"f_ext": 50}),
+        ({"contact": {"eps_n": 1e12}}, {"contact": {"length": "gap"}}, {"contact": {"eps_n": 1e12, "length": "gap"}}),
+        (
+            {"contact": {"formulation": "augmented", "length": "gap"}},
+            {"contact": {"formulation": "nitsche"}},
+            {"contact": {"formulation": "nitsche", "length": "gap"}},
+        ),
+    ],
+)
+def test_copy_with_changes(before, changes, after):
+    """As if the scene had been given so from the start."""
+    assert Scene(**before).replace(**changes) == Scene(**after)
+
+
+@pytest.mark.parametrize(
+    ("before", "changes", "message"),
+    [
+        ({}, {"f_ext": -1}, "f_ext is -1 N/m; it must be from 0.001 to 5000 N/m"),
+        ({}, {"volts": 3}, "volts is not a key of a scene; did you mean voltage?"),
+        (
+            {"history": LOADS},
+            {"f_ext": 50},
+            "f_ext is 50 and history is given too; with a history each load states its own values",
+        ),
+    ],
+)
+def test_copy_is_checked(before, changes, message):
+    assert outcome(lambda: Scene(**before).replace(**changes)) == message
+
+
+# -- changes as text -----------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("text", "key", "value"),
+    [
+        ("f_ext=50", "f_ext", 50),
+        ("mesh.contact = 10e-6", "mesh.contact", 10e-6),
+        ("voltage=.5", "voltage", 0.5),
+        ("numerics.coupling_cap=9", "numerics.coupling_cap", 9),
+        ("output.receptors=false", "output.receptors", False),
+        ("contact.formulation=nitsche", "contact.formulation", "nitsche"),
+        ('contact.formulation="nitsche"', "contact.formulation", "nitsche"),
+        ("numerics.element=P2 reduced", "numerics.element", "P2 reduced"),
+        ("geometry.ridge_profile=[1, -0.2]", "geometry.ridge_profile", [1, -0.2]),
+        ("accuracy={mu_app = 0.01}", "accuracy", {"mu_app": 0.01}),
+        ("f_ext=50 N/m", "f_ext", "50 N/m"),
+        ("mesh.contact=5 µm", "mesh.contact", "5 µm"),
+        ("history[1].voltage=100", "history[1].voltage", 100),
+    ],
+)
+def test_change_as_text(text, key, value):
+    """Whole numbers stay whole, where a scene wants them so."""
+    found = override(text)
+    assert found == (key, value) and type(found[1]) is type(value)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("f_ext", "f_ext is no change of a scene; it must be key=value, as in mesh.contact=10e-6"),
+        ("f_ext=", "f_ext= is no change of a scene; it must be key=value, as in mesh.contact=10e-6"),
+        ("=5", "=5 is no change of a scene; it must be key=value, as in mesh.contact=10e-6"),
+        ("", "an empty text is no change of a scene; it must be key=value, as in mesh.contact=10e-6"),
+        ("f ext=5", "f ext=5 is no change of a scene; it must be key=value, as in mesh.contact=10e-6"),
+        ("a=[1,", "a is '[1,'; it must be a value as in TOML, with all brackets and quotes"),
+    ],
+)
+def test_change_as_text_is_refused(text, message):
+    with pytest.raises(SceneError) as error:
+        override(text)
+    assert str(error.value) == message
+
+
+def test_change_of_a_load():
+    """By its number in the file, from 0."""
+    path = SCENES / "voltage_while_sliding.toml"
+    before, after = scenes.load(path), scenes.load(path, {"history[1].name": "another"})
+    assert after.loads()[1] == before.loads()[1].model_copy(update={"name": "another"})
+    assert after.loads()[0] == before.loads()[0]
+
+
+@pytest.mark.parametrize(
+    ("key", "message"),
+    [
+        ("history[9].f_ext", "history[9] is not there; history has 1 entries"),
+        ("mesh[0].contact", "mesh is {}; it must be a list"),
+        ("history.f_ext", "history is [{"),
+    ],
+)
+def test_change_of_a_load_that_is_not_there(write, key, message):
+    path = write('mesh = {}\nhistory = [{name = "press", f_ext = 3.0}]')
+    assert str(outcome(lambda: scenes.load(path, {key: 1.0}))).startswith(message)

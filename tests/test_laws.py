@@ -1,0 +1,382 @@
+"""Laws of one's own in a scene: closure, materials, friction and mesh, refused in one sentence or used throughout."""
+
+import json
+import pickle
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+import ufl
+from mpi4py import MPI
+
+from fingerpad import closed_form, coarse, laws, reach, ridge_cell, smooth
+from fingerpad.laws import Laws, used
+from fingerpad.needs import plan
+from fingerpad.scene import Scene, SceneError, from_data
+from fingerpad.simulation import Simulation
+from geometry import tags
+from variational.coupling import Coupling
+from variational.cylinder import Cylinder
+from variational.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction
+from variational.material import Material
+from variational.neo_hooke import NeoHooke
+from variational.ogden import Ogden
+from variational.roughness.bam import BearingArea
+from variational.roughness.closure import AirGap, Closure, check
+
+DERJAGUIN = Derjaguin(0.3, tau_0=5e3)
+
+
+@dataclass(frozen=True)
+class Held(Closure):
+    """A constant gap, the least that a closure of one's own is."""
+
+    gap: float = 2e-6
+
+    def __call__(self, p_c):
+        return AirGap(self.gap + 0 * np.asarray(p_c, dtype=float))
+
+
+@dataclass(frozen=True)
+class Saturating(Friction):
+    """A friction law of one's own: it levels off at a shear strength."""
+
+    mu_f: float
+    t_most: float
+
+    def limit(self, p):
+        return self.mu_f * p / (1 + self.mu_f * p / self.t_most)
+
+
+@dataclass(frozen=True)
+class Mine(Material):
+    """A material of one's own."""
+
+    shear_modulus: float
+    bulk: float
+
+    def energy(self, F):
+        return self.shear_modulus / 2 * (ufl.det(F) ** (-2 / 3) * ufl.inner(F, F) - 3)
+
+
+OWN = {"closure": Held(), "materials": {"dermis": Mine(2.5e3, 6e4)}, "friction": Saturating(0.4, 2e4)}
+
+
+# -- in the scene ----------------------------------------------------------------------------------------------
+def test_scene_without_laws_has_its_own():
+    scene = Scene()
+    assert not scene.laws
+    assert "laws" not in scene.parameters()
+    assert scene.closure() == scene.roughness.bearing_area(scene.h_0)
+    assert scene.friction_law() == Coulomb(0.25)
+    assert scene.solids()[tags.DERMIS] == Ogden(2.55e3, -14.53, 0.48)
+
+
+def test_scene_takes_laws():
+    scene = Scene().with_laws(**OWN)
+    assert scene.closure() == Held()
+    assert scene.friction_law() == OWN["friction"]
+    solids = scene.solids()
+    assert solids[tags.DERMIS] == OWN["materials"]["dermis"]
+    assert solids[tags.SUBCUTIS] == Scene().solids()[tags.SUBCUTIS]
+    assert set(solids) == set(tags.LAYERS.values())
+
+
+def test_laws_are_kept_by_copies():
+    scene = Scene().with_laws(**OWN)
+    assert scene.model_copy(update={"f_ext": 10.0}).laws == scene.laws
+    assert pickle.loads(pickle.dumps(scene)) == scene != Scene()
+
+
+def test_laws_are_kept_by_changes():
+    """But for friction, whose number takes the place of a law: a series of runs over it is one over it."""
+    scene = Scene().with_laws(**OWN)
+    assert scene.replace(f_ext=10.0).laws == scene.laws
+    changed = scene.replace(friction=0.1)
+    assert changed.friction_law() == Coulomb(0.1)
+    assert changed.closure() == Held()
+
+
+def test_laws_are_added_to_those_there_are():
+    scene = Scene().with_laws(materials={"dermis": NeoHooke(2e3)}).with_laws(materials={"nail": NeoHooke(1e7)})
+    assert set(scene.with_laws(friction=0.1).laws.materials) == {"dermis", "nail"}
+
+
+@pytest.mark.parametrize(("given", "law"), [(0.4, Coulomb(0.4)), (0, None), (0.0, None), (DERJAGUIN, DERJAGUIN)])
+def test_friction_is_a_law_or_a_coefficient(given, law):
+    assert Scene().with_laws(friction=given).friction_law() == law
+
+
+def test_model_has_friction_where_the_law_is_one():
+    assert plan(from_data({"friction": 0.0}).with_laws(friction=DERJAGUIN)).friction
+    assert not plan(Scene().with_laws(friction=0.0)).friction
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        (
+            {"materials": {"derms": NeoHooke(1e3)}},
+            "materials has 'derms', which is no layer; layers are",
+        ),
+        ({"materials": {"dermis": 2.5e3}}, "materials['dermis'] is 2500; it must be a Material"),
+        ({"materials": NeoHooke(1e3)}, "it must be a table of materials by layer"),
+        ({"materials": {"dermis": NeoHooke(-1.0)}}, "materials['dermis']: NeoHooke(shear_modulus=-1.0, poisson=0.48)"),
+        ({"closure": 2e-6}, "closure is 2e-06; it must be a Closure"),
+        ({"closure": Held(-1e-6)}, "closure Held returns an air gap of -1e-06 m at a pressure of 0 Pa"),
+        ({"closure": Held(float("nan"))}, "closure Held returns an air gap of nan m"),
+        ({"friction": "smooth"}, "friction is 'smooth'; it must be a Friction, a friction coefficient"),
+        ({"friction": Derjaguin(0.3, -5e3)}, "it must be finite and not negative"),
+        ({"mesh": 3}, "mesh is 3; it must be the path of a file"),
+        ({"mesh": "nowhere.msh"}, "mesh is 'nowhere.msh', and there is no such file"),
+    ],
+)
+def test_what_is_no_law_is_refused(given, sentence):
+    with pytest.raises(SceneError) as error:
+        Scene().with_laws(**given)
+    assert sentence in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_files_hold_no_laws():
+    for make in (from_data, lambda data: Scene(**data)):
+        with pytest.raises(SceneError, match="laws is no key, since no file can hold one; give laws from Python"):
+            make({"laws": {"friction": {"mu_f": 0.3}}})
+
+
+# -- scenes apart ----------------------------------------------------------------------------------------------
+def test_parameters_tell_laws_apart(tmp_path):
+    """Equal laws give equal text, other numbers or another class another; the mesh counts by what is in it."""
+    file = tmp_path / "mine.msh"
+    file.write_text("one", encoding="utf-8")
+    given = [
+        *({name: law} for name, law in OWN.items()),
+        {"friction": Saturating(0.4, 3e4)},
+        {"friction": Coulomb(0.4)},
+    ]
+    scenes = [Scene(), *(Scene().with_laws(**one) for one in given), Scene().with_laws(mesh=file)]
+    texts = [json.dumps(scene.parameters(), sort_keys=True, allow_nan=False) for scene in scenes]
+    assert len(set(texts)) == len(texts)
+    again = Scene().with_laws(friction=Saturating(0.4, 20000))
+    assert json.dumps(again.parameters(), sort_keys=True) == texts[3]
+    file.write_text("other", encoding="utf-8")
+    assert json.dumps(scenes[-1].parameters(), sort_keys=True) != texts[-1]
+
+
+def test_names_of_the_laws():
+    found = used(Scene().with_laws(**OWN))
+    assert set(found) == {*laws.LAYERS, "contact", "friction", "attraction", "closure"}
+    assert found["dermis"] == "Mine(shear_modulus=2500, bulk=60000)"
+    assert found["subcutis"] == "Ogden(shear_modulus=25000, alpha=5, poisson=0.48, convention='printed')"
+    assert found["nail"] == "SaintVenant(young=170000000, poisson=0.3)"
+    assert found["friction"] == "Saturating(mu_f=0.4, t_most=20000)"
+    assert found["closure"] == "Held(gap=2e-06)"
+    assert found["contact"].startswith("Penalty(eps_n=")
+
+
+def test_names_of_what_is_left_out():
+    found = used(from_data({"voltage": 0.0, "friction": 0.0}))
+    assert (found["friction"], found["attraction"], found["closure"]) == ("none", "none", "none")
+
+
+def test_names_are_those_of_the_objects():
+    """What is named without finite elements is what the finite elements are given."""
+    scene = Scene()
+    for layer, tag in laws.LAYERS.items():
+        assert used(scene)[layer] == laws._words(scene.solids()[tag])
+    assert used(scene)["contact"] == laws._words(scene.contact.law())
+
+
+# -- closures --------------------------------------------------------------------------------------------------
+class Shape(Held):
+    def __call__(self, p_c):
+        return AirGap(np.array([1e-6, 1e-6]))
+
+
+class Plain(Held):
+    def __call__(self, p_c):
+        return np.full_like(p_c, 1e-6)
+
+
+class Failing(Held):
+    def __call__(self, p_c):
+        raise KeyError("no such pressure")
+
+
+class Speechless(Held):
+    def state(self, p_c, voltage):
+        return None
+
+
+@pytest.mark.parametrize(
+    ("closure", "sentence"),
+    [
+        (Shape(), r"closure Shape returns air gaps of shape \(2,\) for pressures of shape"),
+        (Plain(), "closure Plain returns ndarray; it must return an AirGap"),
+        (Failing(), "closure Failing cannot be evaluated: .*no such pressure"),
+        (Speechless(), "closure Speechless returns None as a ridge's state; it must be text"),
+        (lambda p_c: p_c, "it must be a Closure, with p_c in and an AirGap out"),
+        (Held(0.0), "an air gap of 0 m at a pressure of 0 Pa; it must be finite and greater than 0"),
+    ],
+)
+def test_what_is_no_closure_is_refused(closure, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        check(closure)
+    with pytest.raises(ValueError, match=sentence):
+        Coupling(None, None, closure)
+
+
+def test_closures_of_the_package_are_closures():
+    check(BearingArea(0.5e-6))
+    check(Held())
+    assert Held().state(1e4, 200.0) == ""
+
+
+# -- reduced models --------------------------------------------------------------------------------------------
+def test_cylinders_take_any_friction_law():
+    """f_T is the limit at each state's mean pressure over its length. Tolerance: roundoff."""
+    for law in (DERJAGUIN, OWN["friction"], Coulomb(0.25)):
+        found = closed_form.solve(Scene().with_laws(friction=law))
+        force, length = (found.summary[f"slip_{name}"] for name in ("f_contact", "contact_length"))
+        assert found.summary["slip_f_t"] == pytest.approx(law.limit(force / length) * length, rel=1e-14)
+        assert found.summary["slip_mu_app"] == pytest.approx(found.summary["slip_f_t"] / 75.0, rel=1e-14)
+
+
+def test_cylinders_take_any_closure():
+    """Each ridge is Maugis's cylinder at the closure's own gap."""
+    found = closed_form.solve(Scene().with_laws(closure=Held()))
+    assert found.more["slip_d_eq"] == 2e-6
+    assert found.summary["slip_f_electrostatic"] != closed_form.solve(Scene()).summary["slip_f_electrostatic"]
+
+
+def test_cylinders_know_the_default_fingers_lengths_alone():
+    scene = Scene().with_laws(materials={"stratum_corneum": NeoHooke(1e5)})
+    with pytest.raises(SceneError, match="materials are given for stratum_corneum, and a contact length is known of"):
+        closed_form.solve(scene)
+    given = closed_form.given(1.5e-3, 15)
+    assert closed_form.solve(scene, given).summary != closed_form.solve(Scene(), given).summary
+
+
+def test_modulus_of_the_skin_is_the_given_materials():
+    """The same solid given as a key and as an object has the same modulus. Tolerance: roundoff."""
+    own = Scene().with_laws(materials={"stratum_corneum": Ogden(86.76e3, -14.53, 0.48)})
+    assert laws.skin_modulus(own) == pytest.approx(laws.skin_modulus(Scene()), rel=1e-12)
+
+
+def test_smooth_finger_takes_a_coefficient_alone(tmp_path):
+    with pytest.raises(SceneError, match=r"friction is Derjaguin\(.*so that it takes a friction coefficient alone"):
+        smooth.solve(Scene().with_laws(friction=DERJAGUIN), tmp_path)
+
+
+def test_reduced_models_take_no_mesh(tmp_path):
+    file = tmp_path / "mine.msh"
+    file.write_text("", encoding="utf-8")
+    scene = Scene().with_laws(mesh=file)
+    for solve in (closed_form.solve, lambda scene: smooth.solve(scene, tmp_path)):
+        with pytest.raises(SceneError, match="answers for fingers of the scene's own geometry"):
+            solve(scene)
+
+
+def test_layer_of_another_material_between_walls():
+    """The stretch under a pressure is a root of the material's own stress, here of the same solid in another form."""
+    neo, ogden = NeoHooke(2.5e3, 0.48), Ogden(2.5e3, 2.0, 0.48, "abaqus")
+    assert ridge_cell.confined(neo, 2e4) == pytest.approx(ridge_cell.confined(ogden, 2e4), rel=1e-12)
+
+
+def test_tables_of_a_ridge_depend_on_its_laws():
+    names = [
+        json.dumps(ridge_cell._made_of(scene), sort_keys=True)
+        for scene in (
+            Scene(),
+            Scene().with_laws(closure=Held()),
+            Scene().with_laws(materials={"dermis": NeoHooke(2e3)}),
+            Scene().with_laws(friction=0.3),
+        )
+    ]
+    assert len(set(names)) == 4
+    subcutis = Scene().with_laws(materials={"subcutis": NeoHooke(2e3)})  # not in the cell
+    assert json.dumps(ridge_cell._made_of(subcutis), sort_keys=True) == names[0]
+
+
+def test_rule_of_thumb_takes_a_law():
+    """More friction rolls the finger further, by the coefficient at a ridge's pressure."""
+    plain, rough = (reach.by_rule(Scene().with_laws(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
+    assert rough.mesh.touching_half_arc > plain.mesh.touching_half_arc == 5e-3
+
+
+def test_coarse_finger_takes_a_law():
+    """The dragged finger's coefficient is that of charged cylinders: the law's at their pressure, with attraction."""
+    scene = Scene().with_laws(friction=DERJAGUIN, closure=Held())
+    finger = coarse._Finger.__new__(coarse._Finger)
+    finger.scene, finger.loads, finger.modulus = scene, scene.loads(), laws.skin_modulus(scene)
+    finger.solver = type("Solver", (), {"reaction": np.array([0.0, 75.0])})()
+    ridge = Cylinder(closed_form.tip_radius(scene.geometry), finger.modulus, scene.h_0, Held()).under_load(5.0, 200.0)
+    expected = DERJAGUIN.limit(ridge.p_c) * ridge.length * 15 / 75.0
+    assert finger.friction(DERJAGUIN, 15) == pytest.approx(expected, rel=1e-9)
+
+
+# -- all at once -----------------------------------------------------------------------------------------------
+SMALL = {
+    "f_ext": 1.0,
+    "voltage": 100.0,
+    "slide_length": 1e-3,
+    "geometry": {"ridge_count": 9},
+    "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
+    "output": {"errors": False, "receptors": False},
+}
+
+
+@pytest.fixture(scope="module")
+def slid() -> Simulation:
+    """A small finger with a closure, a dermis and a friction law of one's own, pressed, charged and slid."""
+    scene = from_data(SMALL).with_laws(**OWN)
+    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
+    simulation.run()
+    return simulation
+
+
+@pytest.mark.mpi
+def test_finger_of_own_laws_reaches_full_slip(slid):
+    """f_T is the sum of the limits of its points. Tolerance: forces left at nodes, roundoff of the limit."""
+    row, loads = slid.rows[-1], slid.ridge_loads()
+    assert row["all_slip"]
+    limit = float(loads.f_limit.sum())
+    assert row["f_t"] == pytest.approx(limit, abs=slid.force_error + CONE_ROUNDOFF * limit)
+    assert row["f_contact"] - row["f_electrostatic"] == pytest.approx(1.0, abs=slid.force_error)
+
+
+@pytest.mark.mpi
+def test_friction_of_own_law_is_below_coulombs(slid):
+    """It levels off with the pressure."""
+    loads = slid.ridge_loads()
+    assert 0 < loads.f_limit.sum() < 0.95 * 0.4 * loads.f_contact.sum()
+
+
+@pytest.mark.mpi
+def test_air_gaps_are_the_closures(slid):
+    assert (slid.coupling.d_eq == 2e-6).all()
+
+
+@pytest.mark.mpi
+def test_dermis_is_the_given_material(slid):
+    group = next(group for group in slid.problem.laws if tags.DERMIS in group)
+    assert group == (tags.DERMIS,)
+    assert isinstance(slid.problem.laws[group], Mine)
+
+
+@pytest.mark.mpi
+def test_energies_of_own_laws_balance(slid):
+    """What friction spends is positive, and steps that do not jump release little of it."""
+    sliding = [row for row in slid.rows if row["load"] == "slide" and not row["jump"]]
+    spent = sum(row["dissipation"] for row in sliding)
+    assert spent > 0
+    assert sum(abs(row["energy_released"]) for row in sliding) < 0.1 * spent
+
+
+def test_laws_of_a_run_tell_its_folder():
+    """Kept results are found by the parameters, which have the laws with module and numbers."""
+    given = Laws(**OWN).parameters()
+    assert given["friction"] == {"law": f"{Saturating.__module__}.Saturating", "mu_f": 0.4, "t_most": 2e4}
+    assert given["materials"]["dermis"]["bulk"] == 6e4
+    assert Path(__file__).stem in given["closure"]["law"]

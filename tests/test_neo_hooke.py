@@ -1,0 +1,286 @@
+"""The neo-Hookean solid against closed forms, and what a material of one's own must and need not have."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import pytest
+import ufl
+from scipy.optimize import brentq
+
+from benchmarks.verification.points import Points
+from geometry import tags
+from tests.test_problem import H_0, anchor_apart, direction, make, rates, taylor, wave
+from variational.material import Material
+from variational.neo_hooke import NeoHooke
+from variational.nitsche import Nitsche
+from variational.ogden import Ogden
+from variational.penalty import Penalty
+from variational.problem import Interface, Problem
+from variational.saint_venant import SaintVenant
+from variational.surface import Surface
+
+G, NU = 2.5e3, 0.45
+K = 2 * G * (1 + NU) / (3 * (1 - 2 * NU))
+ROUNDOFF = 1e-12  # of the bulk modulus: a dozen operations on numbers of its size
+
+
+@pytest.fixture(scope="module")
+def evaluate():
+    """Energy, P, Cauchy stress and tangent of the solid in plane strain at deformation gradients (n, 2, 2)."""
+    points = Points(NeoHooke(1.0))
+    return lambda F: points(np.asarray(F, dtype=float), G, K)
+
+
+def cauchy_3d(F):
+    """Return J^(-5/3) G dev(B) + K (J - 1) I of a deformation gradient (3, 3), by hand."""
+    J, B = np.linalg.det(F), F @ F.T
+    return G * J ** (-5 / 3) * (B - np.trace(B) / 3 * np.eye(3)) + K * (J - 1) * np.eye(3)
+
+
+def in_space(F):
+    found = np.eye(3)
+    found[:2, :2] = F
+    return found
+
+
+@pytest.mark.parametrize("stretch", [0.5, 0.9, 1.0, 1.2, 2.0])
+def test_confined_compression(evaluate, stretch):
+    """sigma = 2/3 G J^(-5/3) (J^2 - 1) + K (J - 1) with one stretch J and none sideways."""
+    sigma = evaluate([[[1.0, 0.0], [0.0, stretch]]])[2][0]
+    axial = 2 / 3 * G * stretch ** (-5 / 3) * (stretch**2 - 1) + K * (stretch - 1)
+    assert sigma[1, 1] == pytest.approx(axial, abs=ROUNDOFF * K)
+    assert sigma[2, 2] == pytest.approx(sigma[0, 0], abs=ROUNDOFF * K)  # neither of the two is stretched
+
+
+@pytest.mark.parametrize("amount", [0.1, 1.0, 3.0])
+def test_simple_shear(evaluate, amount):
+    """sigma_xy = G k and sigma_xx - sigma_yy = G k^2: Rivlin's universal relation; the volume stays."""
+    sigma = evaluate([[[1.0, amount], [0.0, 1.0]]])[2][0]
+    assert sigma[0, 1] == pytest.approx(G * amount, abs=ROUNDOFF * K)
+    assert sigma[0, 0] - sigma[1, 1] == pytest.approx(G * amount**2, abs=ROUNDOFF * K)
+
+
+@pytest.mark.parametrize("stretch", [0.7, 1.3])
+def test_uniaxial_in_plane_strain(evaluate, stretch):
+    """With the lateral stretch at which sigma_xx vanishes, the others are those of the law in three dimensions."""
+
+    def lateral(x):
+        return cauchy_3d(np.diag([x, stretch, 1.0]))[0, 0]
+
+    x = brentq(lateral, 0.5, 2.0, xtol=1e-15)
+    sigma = evaluate([np.diag([x, stretch])])[2][0]
+    assert sigma[0, 0] == pytest.approx(0, abs=ROUNDOFF * K)
+    np.testing.assert_allclose(sigma, cauchy_3d(np.diag([x, stretch, 1.0])), atol=ROUNDOFF * K)
+
+
+def test_stress_normal_to_the_plane_is_differentiated(evaluate):
+    """sigma_zz comes from the energy written for three dimensions, at any deformation of the plane."""
+    F = np.eye(2) + np.random.default_rng(3).uniform(-0.3, 0.3, (20, 2, 2))
+    for ours, f in zip(evaluate(F)[2], F, strict=True):
+        np.testing.assert_allclose(ours, cauchy_3d(in_space(f)), atol=ROUNDOFF * K)
+
+
+def test_stress_is_the_energys_derivative(evaluate):
+    """P against central differences of W; their error is h^2/6 of a third derivative of order K."""
+    F, h = np.array([[1.1, 0.2], [-0.1, 0.9]]), 1e-5
+    P = evaluate([F])[1][0]
+    for k in np.ndindex(2, 2):
+        there = np.zeros((2, 2))
+        there[k] = h
+        W = evaluate([F - there, F + there])[0]
+        assert (W[1] - W[0]) / (2 * h) == pytest.approx(P[k], abs=1e-8 * K)
+
+
+def test_is_ogdens_solid_with_exponent_two(evaluate):
+    """I1-bar is the sum of squares of the stretches."""
+    ogden = Ogden(G, 2.0, NU, "abaqus")
+    F = np.array([[[1.2, 0.3], [0.0, 0.8]], [[0.7, 0.0], [0.1, 1.1]]])
+    values = [getattr(ogden, name) for name in ogden.names()]
+    for ours, theirs in zip(evaluate(F), Points(Ogden(1.0, 1.0, 0.3))(F, *values), strict=True):
+        np.testing.assert_allclose(ours, theirs, atol=10 * ROUNDOFF * K)
+
+
+@pytest.mark.parametrize("formulation", [Penalty(1e12, 1e11), Nitsche(10.0, 0)], ids=["penalty", "nitsche"])
+@pytest.mark.parametrize("element", ["P2", "P2 reduced"])
+def test_jacobian(square, element, formulation):
+    """The remainder is of second order in the step; tolerance as of the other solids' (test_problem.py)."""
+    problem = make(square, solid=NeoHooke(G), element=element, formulation=formulation)
+    problem.voltage.value = 200.0
+    wave(problem)
+    anchor_apart(problem)
+    remainders, linear = taylor(problem, direction(problem))
+    assert remainders[0] < 1e-2 * linear
+    np.testing.assert_allclose(rates(remainders), 2, atol=0.02)
+
+
+# -- one's own -------------------------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class Mine(Material):
+    """The least there is: numbers and an energy."""
+
+    shear_modulus: float
+    bulk: float
+
+    def energy(self, F):
+        return self.shear_modulus / 2 * (ufl.det(F) ** (-2 / 3) * ufl.inner(F, F) - 3)
+
+
+@dataclass(frozen=True)
+class Hencky(Material):
+    """A solid without a volumetric part of its own: all of its energy is in one piece."""
+
+    lame: float
+    shear_modulus: float
+
+    @property
+    def constrained_modulus(self):
+        return self.lame + 2 * self.shear_modulus
+
+    def energy(self, F):
+        C = F.T * F
+        I3 = ufl.det(C)
+        return self.shear_modulus / 2 * (ufl.tr(C) - 3 - ufl.ln(I3)) + self.lame / 8 * ufl.ln(I3) ** 2
+
+
+def problem_of(body, solids, element="P2"):
+    surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
+    return Problem(body.mesh, body.cell_tags, surface, solids, Interface(Penalty(1e12, 1e11), 0.25, H_0), element)
+
+
+def test_own_material_is_that_of_the_package():
+    F = np.array([[[1.2, 0.3], [0.0, 0.8]]])
+    for ours, theirs in zip(Points(Mine(1.0, 1.0))(F, G, K), Points(NeoHooke(1.0))(F, G, K), strict=True):
+        np.testing.assert_array_equal(ours, theirs)
+
+
+def test_own_material_in_one_piece(square):
+    """Without a bulk modulus the mixed element gives it no pressure, and the tangent is still its residual's."""
+    assert problem_of(square, {tags.STRATUM_CORNEUM: Hencky(1e5, 1e4)}, "P2-P1").pressure is None
+    problem = problem_of(square, {tags.STRATUM_CORNEUM: Hencky(1e5, 1e4)})
+    wave(problem)
+    anchor_apart(problem)
+    np.testing.assert_allclose(rates(taylor(problem, direction(problem))[0]), 2, atol=0.02)
+
+
+def test_mixed_element_takes_any_bulk_modulus(square):
+    problem = problem_of(square, {tags.STRATUM_CORNEUM: Mine(G, K)}, "P2-P1")
+    assert problem.pressure is not None and problem.pressure.owned > 0
+
+
+def test_layers_of_one_law_share_a_form(square):
+    """Other numbers are other values of the same fields: one group, one kernel, and no form compiled again."""
+    problem = problem_of(square, {1: Mine(G, K), 2: Mine(2 * G, 3 * K), 3: SaintVenant(1e6, 0.3), 4: NeoHooke(G)})
+    assert list(problem.laws) == [(1, 2), (3,), (4,)]
+    other = problem_of(square, {1: Mine(7 * G, K), 2: Mine(G, K), 3: SaintVenant(1e5, 0.2), 4: NeoHooke(3 * G)})
+    assert other.residual.module.__name__ == problem.residual.module.__name__
+
+
+def test_numbers_of_a_layer_are_its_own(square):
+    field = problem_of(square, {tags.STRATUM_CORNEUM: Mine(G, K)}).laws[(tags.STRATUM_CORNEUM,)].bulk
+    cells = square.cell_tags.find(tags.STRATUM_CORNEUM)
+    assert len(cells) and (field.x.array[cells] == K).all()
+
+
+@dataclass(frozen=True)
+class Keeping(Material):
+    """A solid whose bulk modulus is made of its numbers once, and is not named as one of a form's."""
+
+    shear_modulus: float
+    ratio: float
+    energy = Mine.energy
+
+    @cached_property
+    def bulk(self):
+        return self.ratio * self.shear_modulus
+
+
+def test_made_numbers_are_not_those_of_the_first_layer():
+    """A modulus that was computed before the copy, and kept, is not the copy's."""
+    solid = Keeping(2.0, 3.0)
+    assert solid.bulk == 6.0
+    assert solid.with_values({"shear_modulus": 5.0, "ratio": 7.0}).bulk == 35.0
+    assert solid.bulk == 6.0
+
+
+def test_numbers_that_a_form_does_not_read_are_gone():
+    """A form that read one by mistake would have the first layer's in all of them."""
+    assert NeoHooke(G).with_values({"shear_modulus": 1.0, "bulk": 2.0}).poisson is None
+
+
+def test_constrained_and_plane_moduli():
+    """K + 4 G / 3 and 2 G / (1 - nu)."""
+    solid = NeoHooke(G, NU)
+    assert solid.constrained_modulus == pytest.approx(K + 4 * G / 3, rel=1e-14)
+    assert solid.plane_modulus == pytest.approx(2 * G / (1 - NU), rel=1e-12)
+    assert SaintVenant(1e6, 0.3).plane_modulus == pytest.approx(1e6 / (1 - 0.3**2), rel=1e-12)
+
+
+# -- refusals --------------------------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class NoEnergy(Material):
+    shear_modulus: float = 1.0
+    bulk: float = 1.0
+
+
+@dataclass(frozen=True)
+class NoModulus(Material):
+    bulk: float = 1.0
+
+    def energy(self, F):
+        return 0 * ufl.tr(F)
+
+
+@dataclass(frozen=True)
+class Prestressed(Mine):
+    def energy(self, F):
+        return self.shear_modulus / 2 * (ufl.inner(F, F) - 3)
+
+
+@dataclass(frozen=True)
+class Failing(Mine):
+    def energy(self, F):
+        return self.shear_modulus * np.linalg.det(F)
+
+
+@dataclass(frozen=True)
+class InThePlaneAlone(Mine):
+    energy = Material.energy
+
+    def distortion(self, H):
+        return self.shear_modulus * ufl.inner(H, H)
+
+
+@dataclass(frozen=True)
+class NoBulk(Material):
+    shear_modulus: float = 1.0
+    energy = Mine.energy
+
+
+@dataclass
+class Changing(Material):
+    shear_modulus: float = 1.0
+
+
+@pytest.mark.parametrize(
+    ("solid", "sentence"),
+    [
+        (NoEnergy(), r"NoEnergy has no energy; it must have a method energy\(F\)"),
+        (InThePlaneAlone(1.0, 1.0), "InThePlaneAlone has no energy"),
+        (NoModulus(), "NoModulus has no shear_modulus"),
+        (NoBulk(), "has no bulk modulus; it must have a constrained_modulus"),
+        (Mine(1.0, -2.0), "bulk is -2 Pa; it must be finite and greater than 0"),
+        (NeoHooke(1.0, 0.6), "bulk is -5.33333 Pa; it must be finite and greater than 0"),
+        (Mine(0.0, 1.0), "shear_modulus is 0 Pa; it must be finite and greater than 0"),
+        (Mine(float("nan"), 1.0), "shear_modulus is nan; it must be a finite number"),
+        (Mine("soft", 1.0), "shear_modulus is 'soft'; it must be a finite number"),
+        (Prestressed(1.0, 1.0), "has a stress of 1 Pa unloaded; it must have none"),
+        (Failing(1.0, 1.0), "the energy of .* cannot be evaluated unloaded"),
+        (Changing(), "Changing is a law; it must be a @dataclass"),
+    ],
+    ids=lambda value: type(value).__name__ if isinstance(value, Material) else None,
+)
+def test_what_is_no_solid_is_refused(square, solid, sentence):
+    with pytest.raises(ValueError, match=sentence) as error:
+        problem_of(square, {tags.STRATUM_CORNEUM: solid})
+    assert "\n" not in str(error.value)

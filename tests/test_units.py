@@ -1,0 +1,104 @@
+"""Numbers with units as text: the same number as in SI, or refused in one sentence that names the unit wanted."""
+
+import pytest
+
+from fingerpad import scene as scenes
+from fingerpad.scene import SceneError
+from geometry.units import QUANTITIES, to_si
+from tests.test_light import HEAVY, without
+
+
+def value(scene: scenes.Scene, key: str) -> float:
+    """Return a scene's value by dotted key."""
+    found = scene
+    for part in key.split("."):
+        found = getattr(found, part)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("key", "text", "number"),
+    [
+        ("f_ext", "50 N/m", 50.0),
+        ("f_ext", "0.05 N/mm", 50.0),
+        ("f_ext", "50 N·m⁻¹", 50.0),
+        ("f_ext", "50 N m^-1", 50.0),
+        ("mesh.contact", "5 µm", 5e-6),  # the micro sign
+        ("mesh.contact", "5 μm", 5e-6),  # the Greek letter
+        ("mesh.contact", "5um", 5e-6),
+        ("mesh.contact", "5e-3mm", 5e-6),
+        ("roughness.h_rms", "1.97 µm", 1.97e-6),
+        ("geometry.sc_thickness", "425 µm", 425e-6),
+        ("voltage", "0.2 kV", 200.0),
+        ("voltage", "0 V", 0.0),
+        ("materials.dermis.shear_modulus", "2.55 kPa", 2.55e3),
+        ("contact.eps_n", "1500 MPa/mm", 1.5e12),
+        ("numerics.memory", "16 GB", 16e9),
+        ("numerics.memory", "2 GiB", 2.0 * 2**30),
+    ],
+)
+def test_text_is_the_number(key, text, number):
+    """To the last bit: a text is converted in decimals and rounded once, as the number is by Python."""
+    assert value(scenes.load(None, {key: text}), key) == number
+
+
+def test_texts_in_a_file(write):
+    """Also in tables, lists of tables and with a sign."""
+    path = write('[mesh]\ncontact = "10 µm"\n[[history]]\nname = "press"\nbone_height = "-0.1 mm"\n')
+    scene = scenes.load(path)
+    assert (scene.mesh.contact, scene.loads()[0].bone_height) == (10e-6, -1e-4)
+
+
+@pytest.mark.parametrize(
+    ("key", "text", "message"),
+    [
+        ("f_ext", "50", "it has no unit; it must be a number in N/m or a text such as '50 N/m'"),
+        (
+            "f_ext",
+            "50 V",
+            "its unit is not a unit of force per length; it must be a number in N/m or a text such as '50 N/m'",
+        ),
+        ("mesh.contact", "5 xm", "its unit is not known; it must be a number in m or a text such as '5 m'"),
+        ("mesh.contact", "5 m(", "its unit is not known; it must be a number in m or a text such as '5 m'"),
+        ("voltage", "20 degC", "its unit is not a unit of voltage; it must be a number in V or a text such as '20 V'"),
+        ("voltage", "3 dB", "its unit is not a unit of voltage; it must be a number in V or a text such as '3 V'"),
+        (
+            "numerics.memory",
+            "16 rad",
+            "its unit is not a unit of memory; it must be a number in B or a text such as '16 B'",
+        ),
+        ("voltage", "9**9**9 V", "its unit is not known; it must be a number in V or a text such as '9 V'"),
+        ("voltage", "V", "it must be a number in V or a text such as '1 V'"),
+        ("friction", "0.25 V", "it must be a number"),
+    ],
+)
+def test_refused(key, text, message):
+    with pytest.raises(SceneError) as error:
+        scenes.load(None, {key: text})
+    assert str(error.value) == f"{key} is '{text}'; {message}"
+
+
+def test_range_is_of_the_converted_number():
+    """A text names its unit, so the refusal does not ask whether another unit was meant."""
+    with pytest.raises(SceneError) as error:
+        scenes.load(None, {"mesh.contact": "5 m"})
+    assert str(error.value) == "mesh.contact is 5 m; it must be from 1e-08 to 0.01 m"
+
+
+@pytest.mark.parametrize("unit", QUANTITIES)
+def test_every_unit_of_a_parameter_is_known(unit):
+    assert to_si(f"1.5 {unit}", unit) == 1.5
+
+
+def test_text_without_pint_is_refused():
+    """Where it is not installed, in a sentence."""
+    done = without("from fingerpad import scene; scene.load(None, {'f_ext': '50 N/m'})", *HEAVY, "pint")
+    assert done.stderr.splitlines()[-1].endswith(
+        "SceneError: f_ext is '50 N/m'; its unit needs the package pint, which is not installed; it must be a number "
+        "in N/m or a text such as '50 N/m'"
+    )
+
+
+def test_numbers_do_not_import_pint():
+    done = without("from fingerpad import scene; scene.load(None, {'f_ext': 50, 'mesh.contact': 5e-6})", *HEAVY, "pint")
+    assert done.returncode == 0, done.stderr
