@@ -18,7 +18,7 @@ help:
 	@sed -n 's/^# make/make/p' Makefile
 
 demo:
-	$(run) python3 demos/demo_fingerpad.py --out results/demo
+	$(run) python3 -m fingerpad run --out results/demo
 
 lint:
 	environment/lint

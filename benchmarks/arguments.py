@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from fingerpad.command import positive
+from fingerpad.cli.arguments import positive
 
 _ROOT = Path(__file__).resolve().parents[1]
 

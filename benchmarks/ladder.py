@@ -61,9 +61,9 @@ Each rung tells an estimated discretisation error (±). Rung 1 has no mesh, and 
 with the ridge's tables of facets of `mesh.contact` and of half of it; where the ridge is lost before it lets go, or the
 error is more than half of the answer, the mesh is refused. Rung 3 solves its states again on other meshes.
 
-    environment/run python3 -m fingerpad compare scene.toml
+    environment/run python3 -m fingerpad compare scene.toml --model cylinders smooth full
 
-Rung 3's full slip can be solved for from rung 2's (`fingerpad/start.py`), without its path, and
+With `--from-smooth` rung 3's full slip is solved for from rung 2's (`fingerpad/start.py`), without its path, and
 checked; where that does not succeed, the path is followed and a note says so.
 """  # noqa: E501
 

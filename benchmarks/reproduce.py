@@ -18,7 +18,7 @@ from benchmarks.paper import friction, micro, page, scenes, section, sed, tables
 from benchmarks.paper.statement import Statement
 from benchmarks.paper.style import draw
 from benchmarks.runs import Run
-from fingerpad.command import positive
+from fingerpad.cli.arguments import positive
 from fingerpad.scene import Scene, check
 from fingerpad.study import sweep
 

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from benchmarks import arguments, traces
 from benchmarks.paper.style import BLUE, VERMILION, draw
 from benchmarks.runs import Run
-from fingerpad.command import positive
+from fingerpad.cli.arguments import positive
 from fingerpad.files import replace
 from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, SceneError, check, from_data

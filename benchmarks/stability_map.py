@@ -15,7 +15,7 @@ from pathlib import Path
 from benchmarks.stability import pictures, plan, table
 from benchmarks.stability.cache import Cache, run_all
 from benchmarks.stability.case import Case, Outcome
-from fingerpad.command import positive
+from fingerpad.cli.arguments import positive
 from variational.roughness.bam import BearingArea
 
 _ROOT = Path(__file__).resolve().parents[1]

@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.command import positive
+from fingerpad.cli.arguments import positive
 from fingerpad.files import replace
 from fingerpad.pictures import BLUE, GREEN, ORANGE, VERMILION
 from variational.roughness.selfaffine import SelfAffine

@@ -1,13 +1,14 @@
 """Where the time of a run goes: seconds by phase, counts and memory.
 
-python3 benchmarks/trace.py [the options of demos/demo_fingerpad.py]
+python3 benchmarks/trace.py [the options of fingerpad run]
 """
 
-import argparse
 import sys
 
-from fingerpad.command import add_arguments, command_line
+from fingerpad.cli import refuse
+from fingerpad.cli.arguments import Parser, scene_of
 from fingerpad.entry import MPI, start
+from fingerpad.sentences import SceneError
 
 _PHASES = {
     "setup": "meshing, compiling, setting up",
@@ -22,9 +23,14 @@ _COUNTS = ("unknowns", "steps", "jumps", "cutbacks", "newton_iterations", "facto
 
 def main(comm: MPI.Comm) -> int:
     """Run a scene and print its trace."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    add_arguments(parser)
-    scene, args, petsc = command_line(parser, quiet=comm.rank != 0)
+    parser = Parser("benchmarks/trace.py", "Where the time of a run goes.", "benchmarks/trace.py --set voltage=0")
+    parser.add_scene()
+    parser.add_out("results/trace", "folder of the results")
+    try:
+        args, petsc = parser.read_with_petsc(sys.argv[1:])
+        scene = scene_of(args)
+    except SceneError as error:
+        return refuse(str(error))
     start(petsc)
     from fingerpad.full import exit_code, run
 

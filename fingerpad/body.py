@@ -8,7 +8,8 @@ The example at the door::
     print(ridge.state.mu_app, ridge.state.d_eq, ridge.displacement)
 
 The body is in plane strain, so that forces and energies are per out-of-plane length, in N/m and J/m. Under mpirun all
-ranks construct the body and call its loads together; what it then holds is the same on every rank.
+ranks construct the body and call its loads together; what it then holds is the same on every rank. A load is a number
+in SI or a text with a unit.
 """
 
 import math
@@ -27,6 +28,7 @@ from fingerpad.states import full_slip
 from fingerpad.steps import force_error
 from geometry.mesh import TaggedMesh, load
 from geometry.meshfile import file
+from geometry.units import to_si
 from variational import body as setup
 from variational.contact import Formulation
 from variational.continuation import Attempt, StepFailed, Target
@@ -40,6 +42,8 @@ from variational.roughness.closure import Closure, check
 from variational.state import ContactState, RidgeStates, Skin, StepRecord
 
 Array = NDArray[np.float64]
+Quantity = float | str
+"""A number in SI, or a text with a unit: ``"0.0044 N/mm"``."""
 _TOLERANCE = 1e-9  # of the solves, over the force scale
 _STEADY = 1e-6  # relative change of a force by sliding on at full slip that means nothing
 _BEARS = 1e-6  # part of the force scale above which the bone is said to be pressed
@@ -132,7 +136,7 @@ class Body:
         self.state = self._present(None)
 
     # -- loads -------------------------------------------------------------------------------------------
-    def press(self, f_ext: float | None = None, *, height: float | None = None) -> "Body":
+    def press(self, f_ext: Quantity | None = None, *, height: Quantity | None = None) -> "Body":
         """Press the body, by a force or by the height of the bone; return the body.
 
         Args:
@@ -147,11 +151,12 @@ class Body:
             raise ValueError("press takes either f_ext, in N/m, or height, in m")
         if f_ext is None:
             return self._reach(Target("press", bone_height=_finite("height", height, "m")))
-        if _finite("f_ext", f_ext, "N/m") <= 0:
-            raise ValueError(f"f_ext is {f_ext:g} N/m; it must be positive; lift() takes a body off the screen")
-        return self._reach(Target("press", f_ext=float(f_ext)))
+        force = _finite("f_ext", f_ext, "N/m")
+        if force <= 0:
+            raise ValueError(f"f_ext is {force:g} N/m; it must be positive; lift() takes a body off the screen")
+        return self._reach(Target("press", f_ext=force))
 
-    def lift(self, height: float = 0.0) -> "Body":
+    def lift(self, height: Quantity = 0.0) -> "Body":
         """Lift the bone by displacement; return the body.
 
         Args:
@@ -163,20 +168,21 @@ class Body:
         """
         return self._reach(Target("lift", bone_height=_finite("height", height, "m")))
 
-    def charge(self, voltage: float) -> "Body":
+    def charge(self, voltage: Quantity) -> "Body":
         """Change the voltage U (V) between screen and body; return the body.
 
         Raises:
             ValueError: the body has no roughness, or ``voltage`` is negative.
             StepFailed: see :meth:`slide`.
         """
-        if _finite("voltage", voltage, "V") < 0:
-            raise ValueError(f"voltage is {voltage:g} V; it must not be negative")
+        u = _finite("voltage", voltage, "V")
+        if u < 0:
+            raise ValueError(f"voltage is {u:g} V; it must not be negative")
         if self._closure is None:
             raise ValueError("the body has no roughness, so that it has no air gap to charge; give Body a roughness")
-        return self._reach(Target("charge", voltage=float(voltage)))
+        return self._reach(Target("charge", voltage=u))
 
-    def slide(self, distance: float | None = None, *, until_full_slip: bool = False) -> "Body":
+    def slide(self, distance: Quantity | None = None, *, until_full_slip: bool = False) -> "Body":
         """Move the bone sideways; return the body.
 
         Args:
@@ -299,7 +305,13 @@ def _solids(mesh: TaggedMesh, material: Material | Mapping[str, Material]) -> di
     return {tag: material[name] for name, tag in layers.items()}
 
 
-def _finite(name: str, value: float | None, unit: str) -> float:
+def _finite(name: str, value: Quantity | None, unit: str) -> float:
+    """Return a number in SI; a text has a unit of its own."""
+    if isinstance(value, str):
+        try:
+            return to_si(value, unit)
+        except ValueError as error:
+            raise ValueError(f"{name} is {value!r}; {error}") from None
     if value is None or not math.isfinite(value):
         raise ValueError(f"{name} is {value} {unit}; it must be a finite number")
     return float(value)

@@ -19,10 +19,11 @@ voltage; how much that is: ``docs/ladder.md``.
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from fingerpad.laws import skin_modulus
+from fingerpad.laws import skin_modulus, used
 from fingerpad.result import Cost, Result
 from fingerpad.rungs import STATES, Stopwatch, at_rest, at_slip, refuse_others
 from fingerpad.scene import Scene, SceneError
@@ -155,9 +156,10 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         found[state] = at_rest(scene, contact) if state == "charged" else at_slip(scene, contact)
         states[state] = ridge
         notes += _remarks(scene, state, ridge)
-    more = {
+    more: dict[str, Any] = {
         f"{PREFIXES[state]}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
     }
+    more["laws"] = used(scene)
     cost = Cost(processor_seconds=clock.seconds())
     return Result(
         scene, "cylinders", None, found["charged"], found["full_slip"], cost=cost, notes=tuple(notes), record=more

@@ -3,6 +3,7 @@
 from mpi4py import MPI
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from fingerpad.terminal import watched
 from fingerpad.words import PER_LENGTH
 from variational.state import ContactState
 
@@ -35,7 +36,7 @@ class Console:
             disable=comm.rank != 0,
             transient=True,
         )
-        self._progress.disable |= not self._progress.console.is_terminal
+        self._progress.disable |= not watched()
         self._task = self._progress.add_task("meshing the finger", total=1.0)
         self._progress.start()
 

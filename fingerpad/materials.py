@@ -4,12 +4,13 @@ A range is wider than anything that was measured by a factor of ten or more on e
 parameter has the reason.
 """
 
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, model_validator
+from pydantic import BaseModel, Field, ValidationError, model_validator
 
-from fingerpad.sentences import show
+from fingerpad.sentences import clip, show
 from fingerpad.table import Finite, Part
 from geometry.bounds import within
 from variational.insulator import insulator_thickness
@@ -84,6 +85,45 @@ class Electric(Part):
         return insulator_thickness(d_sc, self.eps_sc, self.d_i, self.eps_i)
 
 
+Length = Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)]
+
+
+class Topography(Part):
+    """A measured height map, from which the roughness is taken; see :mod:`variational.roughness.heightfile`."""
+
+    file: str
+    """Of the map: text, NumPy or an instrument's; beside the scene file, or a whole path."""
+    unit: Literal["m", "cm", "mm", "um", "µm", "nm"] | None = None
+    """Of the heights; text and NumPy's files need it, an instrument's have their own."""
+    size: tuple[Length, Length] | None = None
+    """Lengths of the map along x and y; a matrix needs them, or those of a pixel."""
+    pixel: tuple[Length, Length] | None = None
+    """Lengths of a pixel, in place of the map's."""
+    size_unit: Literal["m", "cm", "mm", "um", "µm", "nm"] | None = None
+    """Of these lengths; without it that of the heights."""
+    missing: str | None = None
+    """How missing pixels are marked, beside nan and empty places."""
+
+    def roughness(self) -> dict[str, float]:
+        """Return h_rms and wavelength (m) of the map.
+
+        Raises:
+            ValueError: the file cannot be read, or is no height map.
+        """
+        from variational.roughness.heightfile import is_plain, scan
+        from variational.roughness.spectrum import roughness_table
+
+        if self.unit is None and is_plain(Path(self.file)):
+            raise ValueError(f"topography.unit is missing; {clip(self.file)} holds numbers without a unit")
+        try:
+            found = scan(self.file, self.size, self.unit, self.size_unit, self.missing, self.pixel)
+            return roughness_table(found.map)
+        except OSError as error:
+            raise ValueError(f"topography.file is {show(self.file)}: {error.strerror or error}") from None
+        except (ValueError, ImportError) as error:
+            raise ValueError(f"topography: {error}") from None
+
+
 class Roughness(Part):
     """Roughness of a ridge (Table 3), see :class:`variational.roughness.bam.BearingArea`."""
 
@@ -101,6 +141,23 @@ class Roughness(Part):
     p_floor: Annotated[Finite, within(1e-3, 1e9, "Pa")] = 1e3
     """Pressure (Pa) below which the air gap is held (*assumption*): above that of light, below the pressure at zero
     separation."""
+
+    topography: Annotated[Topography | None, Field(exclude=True)] = None
+    """Measured height map in place of h_rms and wavelength. It is read at once: a scene holds the two numbers alone."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _measured(cls, data: Any) -> Any:
+        if not isinstance(data, dict) or data.get("topography") is None:
+            return data
+        for name in ("h_rms", "wavelength"):
+            if name in data:
+                raise ValueError(f"{name} is {show(data[name])} and topography is given too, which has it; give one")
+        try:
+            found = Topography.model_validate(data["topography"])
+        except ValidationError:
+            return data  # to be refused where it is
+        return {key: value for key, value in data.items() if key != "topography"} | found.roughness()
 
     def largest_gap(self, h_0: float) -> float:
         """Return the air gap (m) at which it is held, infinite where the surfaces no longer see each other."""

@@ -1,6 +1,7 @@
-"""From a scene file to plain data: read within bounds, whatever the path leads to and whatever is in it."""
+"""From a scene file, or from changes of one, to plain data: read within bounds, whatever is in it."""
 
 import os
+import re
 import stat
 import tomllib
 from collections.abc import Mapping
@@ -10,13 +11,15 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel
 
-from fingerpad.sentences import SceneError, clip, key_of
+from fingerpad.sentences import SceneError, clip, key_of, show
 
 _MOST_BYTES = 1_000_000  # of a file; the longest scene that comes along has 1000
 _MOST_DEPTH = 8  # of tables in lists in tables; a scene has 3
 _DEPTH = f"a scene has at most {_MOST_DEPTH} inside one another"
 _MOST_BITS = 1000  # of a whole number; floating point has 1024
 _PATH = 80  # characters of a path in a sentence
+_NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
+_KEY = re.compile(rf"{_NAME}(\.{_NAME})*")
 
 
 def read(path: Path) -> dict[str, Any]:
@@ -84,3 +87,60 @@ def plain(value: Any, place: tuple[int | str, ...] = ()) -> Any:
 def _text(text: str) -> str:
     """Return a text that can be written as UTF-8."""
     return text.encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+# -- changes -------------------------------------------------------------------------------------------
+def override(text: str) -> tuple[str, Any]:
+    """Return key and value of ``key=value``, for :func:`fingerpad.scene.load`.
+
+    Args:
+        text: a dotted key and a value as in TOML: a number, true or false, a quoted text, a list or a table. Any other
+            value is a text without quotation marks: ``f_ext=50 N/m``, ``contact.formulation=nitsche``.
+
+    Raises:
+        SceneError: no key, no value, or a value with a bracket or a quotation mark left open.
+    """
+    key, equals, value = (part.strip() for part in text.partition("="))
+    if not (equals and value and _KEY.fullmatch(key)):
+        raise SceneError(
+            f"{clip(text) or 'an empty text'} is no change of a scene; it must be key=value, as in mesh.contact=10e-6"
+        )
+    try:
+        found = tomllib.loads(f"value = {value}") if value.isprintable() else {}
+    except (ValueError, RecursionError):
+        found = {}
+    if found.keys() == {"value"}:
+        return key, plain(found["value"])
+    if value[0] in "[{\"'":
+        raise SceneError(f"{clip(key)} is {show(value)}; it must be a value as in TOML, with all brackets and quotes")
+    try:
+        return key, float(value)
+    except ValueError:
+        return key, plain(value)
+
+
+def put(data: dict[str, Any], key: str, value: Any) -> None:
+    """Put a value at a dotted key (``history[0].f_ext``), with the tables on the way to it; a list keeps its length.
+
+    Raises:
+        SceneError: a table, or an entry of a list, that is not there.
+    """
+    parts = [
+        int(part[1:-1]) if part.startswith("[") else part for part in re.split(r"\.|(?=\[[0-9]{1,6}\](?:\.|$))", key)
+    ]
+    here: Any = data
+    for depth, part in enumerate(parts):
+        name = key_of(parts[:depth])
+        if isinstance(part, int):
+            if not isinstance(here, list):
+                raise SceneError(f"{name} is {show(here)}; it must be a list")
+            if part >= len(here):
+                raise SceneError(f"{key_of(parts[: depth + 1])} is not there; {name} has {len(here)} entries")
+        elif not isinstance(here, dict):
+            raise SceneError(f"{name} is {show(here)}; it must be a table of keys")
+        if depth == len(parts) - 1:
+            here[part] = value
+        elif isinstance(part, int):
+            here = here[part]
+        else:
+            here = here.setdefault(part, [] if isinstance(parts[depth + 1], int) else {})

@@ -13,7 +13,7 @@ from mpi4py import MPI
 from fingerpad import states
 from fingerpad.console import Console
 from fingerpad.drawing import Drawing, End
-from fingerpad.laws import coefficient
+from fingerpad.laws import coefficient, used
 from fingerpad.place import Place
 from fingerpad.provenance import provenance
 from fingerpad.result import Cost, Result
@@ -236,7 +236,7 @@ class Report:
             cost=self._cost(unknowns),
             **words,
             notes=notes,
-            record=self._record(unknowns) | more | {"provenance": provenance()},
+            record=self._record(unknowns) | more | {"laws": used(self.scene), "provenance": provenance()},
             folder=self._folder,
             drawing=drawing,
         )

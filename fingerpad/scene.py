@@ -5,7 +5,6 @@ A number is in SI units, or a text with its unit (:mod:`geometry.units`).
 
 import json
 import re
-import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -17,8 +16,9 @@ from fingerpad.laws import LAYERS, Laws
 from fingerpad.materials import Electric, Materials, Roughness
 from fingerpad.names import first_clash
 from fingerpad.parameters import FORMULATION_KEYS, Accuracy, Contact, Load, Numerics, Output, Voltage
-from fingerpad.reading import plain, read
-from fingerpad.sentences import SceneError, clip, first_error, key_of, qualify, show
+from fingerpad.reading import override as override
+from fingerpad.reading import plain, put, read
+from fingerpad.sentences import SceneError, first_error, qualify, show
 from fingerpad.table import Finite, Part
 from geometry import sizing
 from geometry.bounds import within
@@ -153,9 +153,9 @@ class Scene(Part):
     def replace(self, **changes: Any) -> "Scene":
         """Return a checked copy with some values changed.
 
-        Laws given from Python stay, but for a law of friction where ``friction`` changes. What the changes make meaningless goes: the sizes of a coarse start with another
-        ``accuracy``, the values of the default loads with a ``history``, and the values of one
-        ``contact.formulation`` with another.
+        Laws given from Python stay, but for a law of friction where ``friction`` changes. What the changes make
+        meaningless goes: the sizes of a coarse start with another ``accuracy``, the values of the default loads with a
+        ``history``, and the values of one ``contact.formulation`` with another.
 
         Args:
             changes: values by key. A table given as a mapping keeps the keys that are not in it; any other value, also
@@ -272,8 +272,6 @@ _LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
 _START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}
 _START_AT_SITES = 10e-6  # m; coarser elements do not see the tips of 6 µm, and to halve them tells nothing of the error
 _DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
-_NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
-_KEY = re.compile(rf"{_NAME}(\.{_NAME})*")
 
 
 # -- files ---------------------------------------------------------------------------------------------
@@ -289,9 +287,20 @@ def load(path: Path | None = None, overrides: Mapping[str, Any] | None = None) -
         SceneError: the file cannot be read, or the first key at fault.
     """
     data: dict[str, Any] = plain(read(Path(path))) if path is not None else {}
+    if path is not None:
+        _beside(data, Path(path).parent)
     for key, value in (overrides or {}).items():
-        _put(data, key, value)
+        put(data, key, value)
     return from_data(data)
+
+
+def _beside(data: dict[str, Any], folder: Path) -> None:
+    """Put the folder of a scene file before the name of a height map."""
+    place: Any = data
+    for key in ("roughness", "topography"):
+        place = place.get(key) if isinstance(place, dict) else None
+    if isinstance(place, dict) and isinstance(place.get("file"), str):
+        place["file"] = str(folder / place["file"])
 
 
 def from_data(data: Mapping[str, Any]) -> Scene:
@@ -304,35 +313,6 @@ def from_data(data: Mapping[str, Any]) -> Scene:
     if not isinstance(data, dict):
         raise SceneError(f"a scene is {show(data)}; it must be a table of keys")
     return Scene(**data)
-
-
-def override(text: str) -> tuple[str, Any]:
-    """Return key and value of ``key=value``, for :func:`load`.
-
-    Args:
-        text: a dotted key and a value as in TOML: a number, true or false, a quoted text, a list or a table. Any other
-            value is a text without quotation marks: ``f_ext=50 N/m``, ``contact.formulation=nitsche``.
-
-    Raises:
-        SceneError: no key, no value, or a value with a bracket or a quotation mark left open.
-    """
-    key, equals, value = (part.strip() for part in text.partition("="))
-    if not (equals and value and _KEY.fullmatch(key)):
-        raise SceneError(
-            f"{clip(text) or 'an empty text'} is no change of a scene; it must be key=value, as in mesh.contact=10e-6"
-        )
-    try:
-        found = tomllib.loads(f"value = {value}") if value.isprintable() else {}
-    except (ValueError, RecursionError):
-        found = {}
-    if found.keys() == {"value"}:
-        return key, plain(found["value"])
-    if value[0] in "[{\"'":
-        raise SceneError(f"{clip(key)} is {show(value)}; it must be a value as in TOML, with all brackets and quotes")
-    try:
-        return key, float(value)
-    except ValueError:
-        return key, plain(value)
 
 
 def _coarse_start(data: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -369,29 +349,6 @@ def check(scene: Scene) -> None:
     except GeometryError as error:
         message = re.sub(r"\bcontact size (\S+) m is", r"mesh.contact is \1 m,", str(error))
         raise SceneError(qualify(message, "geometry.", Fingertip.model_fields)) from None
-
-
-def _put(data: dict[str, Any], key: str, value: Any) -> None:
-    """Put a value at a dotted key, with the tables on the way to it; a list keeps its length."""
-    parts = [
-        int(part[1:-1]) if part.startswith("[") else part for part in re.split(r"\.|(?=\[[0-9]{1,6}\](?:\.|$))", key)
-    ]
-    here: Any = data
-    for depth, part in enumerate(parts):
-        name = key_of(parts[:depth])
-        if isinstance(part, int):
-            if not isinstance(here, list):
-                raise SceneError(f"{name} is {show(here)}; it must be a list")
-            if part >= len(here):
-                raise SceneError(f"{key_of(parts[: depth + 1])} is not there; {name} has {len(here)} entries")
-        elif not isinstance(here, dict):
-            raise SceneError(f"{name} is {show(here)}; it must be a table of keys")
-        if depth == len(parts) - 1:
-            here[part] = value
-        elif isinstance(part, int):
-            here = here[part]
-        else:
-            here = here.setdefault(part, [] if isinstance(parts[depth + 1], int) else {})
 
 
 def _merged(present: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:

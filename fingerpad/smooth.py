@@ -24,7 +24,7 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from fingerpad import ridge_cell
+from fingerpad import laws, ridge_cell
 from fingerpad.estimate import Knob
 from fingerpad.reach import by_rule
 from fingerpad.result import Cost, Result
@@ -105,7 +105,7 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Result
     notes = [made, "receptors are not in this model", counted]
     if "full_slip" not in found:
         notes.append(f"no full slip within {scene.slide_length:g} m of sliding")
-    more = {
+    more: dict[str, Any] = {
         "table_seconds": made_in,
         "table_factorisations": sum(tables.factorisations for tables in used),
         "table_version": ridge_cell.VERSION,
@@ -113,6 +113,7 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Result
     size = fingers[0].solver.layout.global_size
     cost = Cost(processor_seconds=clock.seconds(), factorisations=sum(counts), unknowns=size, ranks=comm.size)
     states = (None, found["charged"], found.get("full_slip"))
+    more["laws"] = laws.used(scene)
     return Result(scene, "smooth", *states, cost=cost, notes=tuple(notes), record=more)
 
 

@@ -18,10 +18,11 @@ Normal contact is left out, since friction makes it depend on the path, of which
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from mpi4py import MPI
 
-from fingerpad import ridge_cell, smooth
+from fingerpad import laws, ridge_cell, smooth
 from fingerpad.accuracy import Search
 from fingerpad.again import Keeper, Solve
 from fingerpad.needs import plan
@@ -93,11 +94,12 @@ def answer(scene: Scene, folder: Path, comm: MPI.Comm) -> Result:
     found = full_slip(scene, folder, comm)
     states = {"full_slip": found.solve.states["full_slip"].state}
     states, notes = _with_errors(by_rule(scene), found.solve, states, comm)
-    more = {
+    more: dict[str, Any] = {
         "table_version": ridge_cell.VERSION,
         "rung_2_factorisations": found.smooth.factorisations,
         "rung_2_unknowns": found.smooth.unknowns,
     }
+    more["laws"] = laws.used(scene)
     solve, seconds = found.solve, clock.seconds()
     cost = Cost(processor_seconds=seconds, factorisations=solve.factorisations, unknowns=solve.unknowns)
     notes = [*found.notes, *notes]

@@ -19,6 +19,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from fingerpad.processes import End, Pool, limit_processor_time, run
 from fingerpad.scene import Scene
+from fingerpad.terminal import watched
 
 Summary = dict[str, Any]
 _LIMIT = 900.0  # s of processor time for one scene
@@ -42,7 +43,7 @@ def progress() -> Progress:
     """Return a bar of things done, time taken and time remaining; nothing where the output is no terminal."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
     bar = Progress(*columns, TimeElapsedColumn(), TimeRemainingColumn(), transient=True)
-    bar.disable = not bar.console.is_terminal
+    bar.disable = not watched()
     return bar
 
 

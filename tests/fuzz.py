@@ -26,9 +26,12 @@ from typing import Any, get_args
 import numpy as np
 from pydantic import BaseModel
 
-from fingerpad import command, needs
+from fingerpad import needs
 from fingerpad.budget import estimate
+from fingerpad.cli import refuse
+from fingerpad.cli.arguments import Parser, scene_of
 from fingerpad.closed_form import tip_radius
+from fingerpad.folder import check_folder
 from fingerpad.scene import Scene, SceneError
 from variational.cylinder import Cylinder, NoEquilibriumError
 
@@ -61,12 +64,12 @@ _OTHERS = (
     "true", "false", "[]", "[1.0]", "[nan]", "[[[]]]", "{}", "{a = 1}", "1979-05-27", "07:32:00",
     "[" * 100 + "]" * 100, "[" * 5000 + "]" * 5000, "[" + "1, " * 5000 + "]", "[1.0, -0.6]", "[-1]", "[inf]", "",
 )  # fmt: skip
-_OPTIONS = ("--f-ext", "--voltage", "--contact-size", "--friction")
+_OPTIONS = ("f_ext", "voltage", "mesh.contact", "friction", "roughness.h_rms", "f_ext.x", "mesh", "", " ")
 _STRAY = (
     "-voltage", "-f_ext", "-snes_monitor", "--volts", "--f", "results", "-", "--", "---", "-5", "", "\udcff",
     "x" * 5000,
-    "-fingerpad_", "-fingerpad_snes_rtol", "-h_rms", "--scene=", "--voltage=", "-fingerpad_ksp_type=\n",
-    "--voltage=200 V",
+    "-fingerpad_", "-fingerpad_snes_rtol", "-h_rms", "--set", "--set=", "--set=voltage", "--voltage=3",
+    "-fingerpad_ksp_type=\n", "--set=voltage=200 V",
 )  # fmt: skip
 _ODD_FILES = ("/dev/zero", "/dev/null", "/dev/stdout", "/", "none.toml", "n" * 300, "n/" * 3000, "\udcff.toml", "")
 _ODD_FOLDERS = (
@@ -101,9 +104,9 @@ def mutant(seed: int, number: int) -> Mutant:
     file, argv = None, []
     if chance.random() < 0.85:
         file = _file(chance)
-        argv += ["--scene", "{folder}/scene.toml"]
+        argv += ["{folder}/scene.toml"]
     elif chance.random() < 0.3:
-        argv += ["--scene", chance.choice((*_ODD_FILES, "{folder}", "{folder}/pipe", "{folder}/large.toml"))]
+        argv += [chance.choice((*_ODD_FILES, "{folder}", "{folder}/pipe", "{folder}/large.toml"))]
     if chance.random() < 0.3:
         argv += _arguments(chance)
     return Mutant(number, file, tuple(argv))
@@ -164,8 +167,8 @@ def _arguments(chance: random.Random) -> list[str]:
         kind = chance.random()
         if kind < 0.45:
             value = _value(chance).strip('"').replace("\0", "")
-            option = chance.choice(_OPTIONS)
-            found += [f"{option}={value}"] if chance.random() < 0.5 else [option, value]
+            given = f"{chance.choice(_OPTIONS)}={value}"
+            found += [f"--set={given}"] if chance.random() < 0.5 else ["--set", given]
         elif kind < 0.7:
             found += ["--out", "{folder}/" + chance.choice(_ODD_FOLDERS) if kind < 0.6 else chance.choice(_ODD_FOLDERS)]
         else:
@@ -223,20 +226,25 @@ def fault(case: Mutant, folder: Path) -> tuple[str, str]:
     if case.file is not None:
         (folder / "scene.toml").write_bytes(case.file)
     argv = [word.replace("{folder}", str(folder)) for word in case.argv]
-    parser = argparse.ArgumentParser(prog="fuzz")
-    command.add_arguments(parser)
+    parser = Parser("fingerpad run", "Press, charge and slide a finger.", "fingerpad run")
+    parser.add_scene()
+    parser.add_out("results", "folder of the results")
     out, err = io.StringIO(), io.StringIO()
     start = time.perf_counter()
     try:
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), warnings.catch_warnings():
             warnings.simplefilter("error")
-            scene, _, _ = command.command_line(parser, argv)
-            return _unready(scene), "ready"
+            try:
+                args, _ = parser.read_with_petsc(argv)
+                scene = scene_of(args)
+                check_folder(args.out)
+                return _unready(scene), "ready"
+            except SceneError as error:
+                code = refuse(str(error))
+        return _bad_refusal(code, err.getvalue()), err.getvalue()
     except SystemExit as stop:
-        text = err.getvalue()
-        if stop.code == 0 and out.getvalue().startswith("usage: "):
-            return "", "help"
-        return _bad_refusal(stop.code, text), text
+        helped = stop.code == 0 and out.getvalue().startswith("usage: ")
+        return ("", "help") if helped else (f"exit code {stop.code}", "")
     except Exception as error:  # noqa: BLE001 (whatever it is, it is what is looked for)
         return f"{type(error).__name__}: {error}"[:500], ""
     finally:

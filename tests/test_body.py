@@ -166,6 +166,14 @@ def test_press_by_height_and_by_force_agree():
     assert np.isnan(by_force.state.d_eq).all()
 
 
+def test_load_is_a_text_with_a_unit():
+    """The texts are converted in decimals, so that the loads are the same numbers."""
+    text = ridge(roughness=None).press("0.0044 N/mm").slide("1 µm").state
+    number = ridge(roughness=None).press(4.4).slide(1e-6).state
+    assert text.bone_x == number.bone_x
+    assert text.f_t == pytest.approx(number.f_t, rel=1e-12)
+
+
 # -- materials, meshes -------------------------------------------------------------------------------------
 def test_material_of_a_layer_by_its_name():
     by_name = Body(RIDGE, {"stratum corneum": SKIN}, contact=SPRINGS).press(height=-10e-6)
@@ -181,6 +189,7 @@ def test_material_of_a_layer_by_its_name():
         (lambda b: b.press(1.0, height=-1e-6), "press takes either f_ext"),
         (lambda b: b.press(-1.0), "f_ext is -1 N/m; it must be positive"),
         (lambda b: b.press(float("nan")), "f_ext is nan N/m; it must be a finite number"),
+        (lambda b: b.press("4.4 N"), "f_ext is '4.4 N'; its unit is not a unit of force per length"),
         (lambda b: b.slide(), "slide takes a distance, in m, or until_full_slip=True"),
         (lambda b: b.slide(1e-3, until_full_slip=True), "the body has no friction"),
         (lambda b: b.charge(-1.0), "voltage is -1 V; it must not be negative"),

@@ -102,7 +102,7 @@ def test_refinement_ends_where_memory_does():
     scene = from_data({"accuracy": {"mu_app": 0.01}, "mesh": COARSE, "contact": {"formulation": "nitsche"}})
     numerics = scene.numerics.model_copy(update={"memory": 3e8})
     scene = scene.model_copy(update={"numerics": numerics})
-    path = Solve({"slip": None}, scene.mesh, 1, 1, 0.0)
+    path = Solve({"full_slip": None}, scene.mesh, 1, 1, 0.0)
     search = Search(scene, plan(scene), path, MPI.COMM_SELF, lambda line: None, lambda: None)
     search.run()
     assert search.failure.startswith("the accuracy asked for could not be established: the mesh would have some ")

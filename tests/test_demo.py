@@ -11,16 +11,15 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-DEMO = ROOT / "demos" / "demo_fingerpad.py"
 COARSE = ROOT / "demos" / "scenes" / "coarse.toml"
 MU_0 = 0.25
 
 
 def run(folder: Path, *options: str, ranks: int = 1) -> subprocess.CompletedProcess[str]:
-    """Run the demo in a process of its own."""
+    """Run the command in a process of its own."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     launcher = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
-    command = [*launcher, sys.executable, str(DEMO), "--out", str(folder), *options]
+    command = [*launcher, sys.executable, "-m", "fingerpad", "run", "--out", str(folder), *options]
     return subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
 
 
@@ -33,7 +32,7 @@ def steps(folder: Path) -> list[dict[str, str]]:
 @pytest.fixture(scope="module")
 def coarse(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("coarse")
-    done = run(folder, "--scene", str(COARSE))
+    done = run(folder, str(COARSE))
     assert done.returncode == 0, done.stdout + done.stderr
     return folder
 
@@ -130,7 +129,7 @@ def test_receptor_sites(coarse):
 
 def test_two_ranks_agree_with_one(summary, tmp_path):
     """The same numbers to 1e-6: the coupling's tolerance on the air gap, times its contraction."""
-    done = run(tmp_path, "--scene", str(COARSE), ranks=2)
+    done = run(tmp_path, str(COARSE), ranks=2)
     assert done.returncode == 0, done.stdout + done.stderr
     other = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
     for state in ("normal", "slip"):
@@ -142,10 +141,10 @@ def test_two_ranks_agree_with_one(summary, tmp_path):
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        (("--f-ext", "-3"), "f_ext is -3"),
-        (("--voltage", "high"), "voltage is 'high'"),
-        (("--voltage", "nan"), "voltage is nan"),
-        (("--contact-size", "1e-3"), "mesh.contact is 0.001"),
+        (("--set", "f_ext=-3"), "f_ext is -3"),
+        (("--set", "voltage=high"), "voltage is 'high'"),
+        (("--set", "voltage=nan"), "voltage is nan"),
+        (("--set", "mesh.contact=1e-3"), "mesh.contact is 0.001"),
         (("--nonsense", "1"), "--nonsense is not an option"),
     ],
 )
@@ -159,7 +158,7 @@ def test_bad_input_is_one_sentence(tmp_path, options, sentence):
 
 def test_failure_keeps_the_accepted_steps(tmp_path):
     """A Newton iteration cut short cannot converge: the run names step and reason, and leaves what it has."""
-    done = run(tmp_path, "--scene", str(COARSE), "-fingerpad_snes_max_it", "2")
+    done = run(tmp_path, str(COARSE), "-fingerpad_snes_max_it", "2")
     assert done.returncode == 1
     assert "found no equilibrium" in done.stdout
     assert "DIVERGED_MAX_IT" in done.stdout
@@ -174,7 +173,7 @@ def test_other_formulations(tmp_path, formulation):
     loads = '[[history]]\nname = "press"\nf_ext = 0.5\n[[history]]\nname = "charge"\nvoltage = 50.0\n'
     mesh = COARSE.read_text(encoding="utf-8").partition("[mesh]")
     scene.write_text(f'{loads}[contact]\nformulation = "{formulation}"\n{mesh[1]}{mesh[2]}', encoding="utf-8")
-    done = run(tmp_path / "out", "--scene", str(scene))
+    done = run(tmp_path / "out", str(scene))
     assert done.returncode == 0, done.stdout + done.stderr
     end = steps(tmp_path / "out")[-1]
     force = float(end["f_contact"]) - float(end["f_electrostatic"])
@@ -193,7 +192,7 @@ def test_contact_survives_without_force(tmp_path):
     history = "".join(f'[[history]]\nname = "{name}"\n{load}\n' for name, load in loads)
     mesh = "contact = 15e-6\nreceptor = 80e-6\ninterface = 150e-6\ngrowth = 0.8\ntouching_half_arc = 1.3e-3\n"
     scene.write_text(f"{history}[mesh]\n{mesh}", encoding="utf-8")
-    done = run(tmp_path / "out", "--scene", str(scene))
+    done = run(tmp_path / "out", str(scene))
     assert done.returncode == 0, done.stdout + done.stderr
     rows = steps(tmp_path / "out")
     unloaded = next(row for row in rows[::-1] if row["load"] == "unload")

@@ -28,7 +28,7 @@ def start(folder: Path, ranks: int = 1) -> subprocess.Popen:
     """
     scene = ROOT / "demos" / "scenes" / "coarse.toml"
     command = ["env", "--default-signal", *(["mpirun", "-n", str(ranks)] if ranks > 1 else []), sys.executable]
-    command += [str(ROOT / "demos" / "demo_fingerpad.py"), "--scene", str(scene), "--out", str(folder)]
+    command += ["-m", "fingerpad", "run", str(scene), "--out", str(folder)]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     until = time.monotonic() + 300
@@ -153,9 +153,9 @@ def test_full_disk(tmp_path):
     """ADIOS2 cannot write the first load's fields; a limit of file sizes stands for the disk."""
     code = "import resource, runpy, sys\nfrom fingerpad.entry import start; start()\n"
     code += "resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))\n"
-    code += "sys.argv = sys.argv[1:]\nrunpy.run_path(sys.argv[0], run_name='__main__')"
-    demo, scene = ROOT / "demos" / "demo_fingerpad.py", ROOT / "demos" / "scenes" / "coarse.toml"
-    command = [sys.executable, "-c", code, str(demo), "--scene", str(scene), "--out", str(tmp_path)]
+    code += "runpy.run_module('fingerpad', run_name='__main__')"
+    scene = ROOT / "demos" / "scenes" / "coarse.toml"
+    command = [sys.executable, "-c", code, "run", str(scene), "--out", str(tmp_path)]
     done = subprocess.run(command, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True)
     assert done.returncode == 1
     said = done.stderr.strip()

@@ -145,7 +145,7 @@ def test_folder_that_is_gone(checkout, tmp_path):
 
 def test_modules_of_the_project_are_not_looked_for_in_the_current_folder(checkout):
     show = "import os; print(os.environ.get('PYTHONSAFEPATH'))"
-    assert enter(checkout, sys.executable, "-c", show, "-m fingerpad.ladder").stdout == "1\n"
+    assert enter(checkout, sys.executable, "-c", show, "-m fingerpad run").stdout == "1\n"
     assert enter(checkout, sys.executable, "-c", show, "-m mine").stdout == "None\n"
 
 

@@ -237,17 +237,17 @@ def test_closures_of_the_package_are_closures():
 def test_cylinders_take_any_friction_law():
     """f_T is the limit at each state's mean pressure over its length. Tolerance: roundoff."""
     for law in (DERJAGUIN, OWN["friction"], Coulomb(0.25)):
-        found = closed_form.solve(Scene().with_laws(friction=law))
-        force, length = (found.summary[f"slip_{name}"] for name in ("f_contact", "contact_length"))
-        assert found.summary["slip_f_t"] == pytest.approx(law.limit(force / length) * length, rel=1e-14)
-        assert found.summary["slip_mu_app"] == pytest.approx(found.summary["slip_f_t"] / 75.0, rel=1e-14)
+        slip = closed_form.solve(Scene().with_laws(friction=law)).full_slip
+        length = slip.contact_length
+        assert slip.f_t == pytest.approx(law.limit(slip.f_contact / length) * length, rel=1e-14)
+        assert slip.mu_app == pytest.approx(slip.f_t / 75.0, rel=1e-14)
 
 
 def test_cylinders_take_any_closure():
     """Each ridge is Maugis's cylinder at the closure's own gap."""
     found = closed_form.solve(Scene().with_laws(closure=Held()))
-    assert found.more["slip_d_eq"] == 2e-6
-    assert found.summary["slip_f_electrostatic"] != closed_form.solve(Scene()).summary["slip_f_electrostatic"]
+    assert found.record["slip_d_eq"] == 2e-6
+    assert found.full_slip.f_electrostatic != closed_form.solve(Scene()).full_slip.f_electrostatic
 
 
 def test_cylinders_know_the_default_fingers_lengths_alone():
@@ -255,7 +255,8 @@ def test_cylinders_know_the_default_fingers_lengths_alone():
     with pytest.raises(SceneError, match="materials are given for stratum_corneum, and a contact length is known of"):
         closed_form.solve(scene)
     given = closed_form.given(1.5e-3, 15)
-    assert closed_form.solve(scene, given).summary != closed_form.solve(Scene(), given).summary
+    own, default = (closed_form.solve(one, given).full_slip.f_electrostatic for one in (scene, Scene()))
+    assert own != default
 
 
 def test_modulus_of_the_skin_is_the_given_materials():
@@ -339,11 +340,10 @@ def slid() -> Simulation:
 @pytest.mark.mpi
 def test_finger_of_own_laws_reaches_full_slip(slid):
     """f_T is the sum of the limits of its points. Tolerance: forces left at nodes, roundoff of the limit."""
-    row, loads = slid.rows[-1], slid.ridge_loads()
-    assert row["all_slip"]
-    limit = float(loads.f_limit.sum())
-    assert row["f_t"] == pytest.approx(limit, abs=slid.force_error + CONE_ROUNDOFF * limit)
-    assert row["f_contact"] - row["f_electrostatic"] == pytest.approx(1.0, abs=slid.force_error)
+    state, limit = slid.states[-1], float(slid.ridge_loads().f_limit.sum())
+    assert state.all_slip
+    assert state.f_t == pytest.approx(limit, abs=slid.force_error + CONE_ROUNDOFF * limit)
+    assert state.f_contact - state.f_electrostatic == pytest.approx(1.0, abs=slid.force_error)
 
 
 @pytest.mark.mpi
@@ -368,10 +368,10 @@ def test_dermis_is_the_given_material(slid):
 @pytest.mark.mpi
 def test_energies_of_own_laws_balance(slid):
     """What friction spends is positive, and steps that do not jump release little of it."""
-    sliding = [row for row in slid.rows if row["load"] == "slide" and not row["jump"]]
-    spent = sum(row["dissipation"] for row in sliding)
+    sliding = [state.record for state in slid.states if state.load == "slide" and not state.record.jump]
+    spent = sum(record.dissipation for record in sliding)
     assert spent > 0
-    assert sum(abs(row["energy_released"]) for row in sliding) < 0.1 * spent
+    assert sum(abs(record.energy_released) for record in sliding) < 0.1 * spent
 
 
 def test_laws_of_a_run_tell_its_folder():
@@ -380,3 +380,11 @@ def test_laws_of_a_run_tell_its_folder():
     assert given["friction"] == {"law": f"{Saturating.__module__}.Saturating", "mu_f": 0.4, "t_most": 2e4}
     assert given["materials"]["dermis"]["bulk"] == 6e4
     assert Path(__file__).stem in given["closure"]["law"]
+
+
+def test_answers_name_their_laws():
+    """The summary of a model has every law in words."""
+    scene = Scene().with_laws(friction=DERJAGUIN)
+    summary = json.loads(json.dumps(closed_form.solve(scene).to_dict(), allow_nan=False))
+    assert summary["laws"] == used(scene)
+    assert summary["parameters"]["laws"]["friction"]["tau_0"] == 5e3

@@ -1,6 +1,7 @@
 """Every way of installing names the packages of environment/packages.txt, and the same versions of dolfinx."""
 
 import importlib.util
+import os
 import re
 import shutil
 import subprocess
@@ -108,6 +109,15 @@ def test_wheel_holds_licence_and_command(wheel, project):
         assert wheel.read(f"{info}/licenses/{name}") == (ROOT / name).read_bytes()
     assert f"License-Expression: {project['project']['license']}\n" in wheel.read(f"{info}/METADATA").decode()
     assert "fingerpad = fingerpad.cli:main" in wheel.read(f"{info}/entry_points.txt").decode()
+
+
+def test_wheel_runs(wheel, tmp_path):
+    """By itself, away from the checkout: nothing that it needs is left out of it."""
+    wheel.extractall(tmp_path)
+    code = 'import fingerpad as fp; print(fp.__file__, fp.run(fp.Scene(f_ext=50), model="cylinders").full_slip.mu_app)'
+    variables = os.environ | {"PYTHONPATH": str(tmp_path), "PYTHONSAFEPATH": "1"}
+    done = subprocess.run([sys.executable, "-c", code], env=variables, capture_output=True, text=True, check=False)
+    assert done.stdout.startswith(str(tmp_path / "fingerpad/__init__.py 0.")), done.stderr
 
 
 def test_papers_name_the_same_version_and_licence(project):

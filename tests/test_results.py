@@ -104,7 +104,7 @@ def test_demo_passes(tmp_path, history, load, f_ext):
         f"[{name}]\n" + "\n".join(f"{k} = {json.dumps(v)}" for k, v in t.items()) for name, t in tables.items()
     )
     (tmp_path / "scene.toml").write_text(f"{loads}\n{rest}\n", encoding="utf-8")
-    done = test_demo.run(tmp_path / "out", "--scene", str(tmp_path / "scene.toml"))
+    done = test_demo.run(tmp_path / "out", str(tmp_path / "scene.toml"))
     assert done.returncode == 0, done.stdout + done.stderr
     summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
     assert summary["slip_load"] == load

@@ -112,6 +112,6 @@ def test_pool_reports_every_job_once():
 
 
 def test_crash_says_its_last_words():
-    end = run_module("fingerpad.study", ["no scene.json", "nowhere", "5"], 5.0)
+    end = run_module("fingerpad.study", ["no scene.json", "nowhere", "5", "full"], 5.0)
     assert end.reason == "CRASH_1"
     assert "no scene.json" in end.message

@@ -67,10 +67,23 @@ class BearingArea(Closure):
         area, _ = self._twice_area(u_bar)
         return np.asarray(self.h_0 * (np.sqrt(2 / area) - 1))
 
+    def contact_area(self, u_bar: ArrayLike) -> Array:
+        r"""Return the real area of contact over the nominal one at mean separation ``u_bar`` (m).
+
+        It is the bearing area, the part of the surface that is higher than the separation: second term of Eq. 11,
+
+        .. math:: A_c / A_0 = \tfrac12 \operatorname{erfc}(\bar u / \sqrt2 h_{rms}).
+        """
+        return np.asarray(erfc(np.asarray(u_bar, dtype=float) / (np.sqrt(2) * self.h_rms)) / 2)
+
+    def attraction(self, u_bar: ArrayLike, voltage: float) -> Array:
+        """Return the attraction (Pa) at mean separation ``u_bar`` (m) and ``voltage`` (V): sigma_0 A_att / A_0."""
+        area, _ = self._twice_area(u_bar)
+        return np.asarray(_EPS_0 * voltage**2 / (4 * self.h_0**2) * area)
+
     def external_pressure(self, u_bar: ArrayLike, voltage: float) -> Array:
         """Return p_ext (Pa) at mean separation ``u_bar`` (m) and ``voltage`` (V), Eq. 9."""
-        area, _ = self._twice_area(u_bar)
-        return np.asarray(self.contact_pressure(u_bar) - _EPS_0 * voltage**2 / (4 * self.h_0**2) * area)
+        return np.asarray(self.contact_pressure(u_bar) - self.attraction(u_bar, voltage))
 
     def __call__(self, p_c: ArrayLike) -> AirGap:
         """Return the air gap at mean contact pressures (Pa), held below p_floor and above full_pressure."""

@@ -1,0 +1,111 @@
+"""The command ``fingerpad``: one module a subcommand, imported when it is called.
+
+Each module has a function ``main(argv) -> int`` that returns the exit code: 0, 1 for a run that failed, 2 for what was
+refused in one sentence, and what the shell calls a signal for a run that was stopped.
+"""
+
+import importlib
+import os
+import sys
+import tomllib
+from collections.abc import Sequence
+from difflib import get_close_matches
+from importlib import metadata
+from pathlib import Path
+
+from fingerpad import terminal
+from fingerpad.sentences import SceneError, clip
+
+COMMANDS = {
+    "estimate": "friction over force and voltage by a closed form, in seconds, without finite elements",
+    "run": "press, charge and slide a finger: tables, pictures and fields",
+    "sweep": "run a scene over values of its keys; a table, kept on disk and taken up again",
+    "compare": "cheaper models of a scene beside the full one, with what each of them costs",
+    "check": "what a run will hold, leave out and cost, and a picture of its mesh; solves nothing",
+    "mesh": "write the finger's mesh for gmsh, with names of its parts",
+    "microscale": "air gap, attraction and real area of contact of a ridge over its pressure",
+    "topography": "roughness of a scene from a measured height map",
+    "params": "every key of a scene: unit, default, range and meaning",
+}
+_COLLECTIVE = ("run", "compare")  # use all ranks; the others are answered by rank 0
+_OPTIONAL = ("dolfinx", "ufl", "basix", "ffcx", "petsc4py", "mpi4py", "gmsh", "matplotlib")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a subcommand; return the exit code.
+
+    Args:
+        argv: words after ``fingerpad``; those of the process if None.
+    """
+    words = sys.argv[1:] if argv is None else list(argv)
+    try:
+        return _call(words)
+    except SceneError as error:
+        return refuse(str(error))
+    except ModuleNotFoundError as error:
+        missing = (error.name or "").partition(".")[0]
+        if missing not in _OPTIONAL:
+            raise
+        return refuse(f"{words[0]} needs {missing}, which is not installed; the README says how to install it")
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:  # of `fingerpad params | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+
+
+def refuse(sentence: str) -> int:
+    """Print one sentence on rank 0; return the exit code of a refusal."""
+    if terminal.rank() == 0:
+        print(f"fingerpad: {sentence}", file=sys.stderr)
+    return 2
+
+
+def _call(words: list[str]) -> int:
+    if not words or words[0] in ("-h", "--help"):
+        if terminal.rank() == 0:
+            print(_help())
+        return 0 if words else 2
+    if words[0] == "--version":
+        if terminal.rank() == 0:
+            print(f"fingerpad {version()}")
+        return 0
+    name = words[0]
+    if name not in COMMANDS:
+        near = get_close_matches(name[:60], COMMANDS, n=1)
+        instead = f"did you mean {near[0]}?" if near else f"commands are {', '.join(COMMANDS)}"
+        raise SceneError(f"{clip(name) or 'an empty text'} is not a command; {instead}")
+    if terminal.rank() and name not in _COLLECTIVE:
+        return 0
+    try:
+        return int(importlib.import_module(f"fingerpad.cli.{name}").main(words[1:]))
+    except SystemExit as stop:  # of --help
+        return int(stop.code or 0)
+
+
+def version() -> str:
+    """Return the version: that of the folder of sources, or of the package that is installed."""
+    project = Path(__file__).parents[2] / "pyproject.toml"
+    if project.is_file():
+        return str(tomllib.loads(project.read_text(encoding="utf-8"))["project"]["version"])
+    return metadata.version("fingerpad")
+
+
+def _help() -> str:
+    commands = "\n".join(f"  {name:11s} {what}" for name, what in COMMANDS.items())
+    return f"""usage: fingerpad COMMAND [SCENE] [--set KEY=VALUE ...]
+
+How a fingertip sticks, slides and feels on a touchscreen under electroadhesion.
+
+commands:
+{commands}
+
+A scene is a TOML file, the default press, charge and slide where none is given. Every key of a scene can be given as an
+option, with a unit where one helps: --set f_ext="50 N/m" --set roughness.h_rms=2e-6. Forces are per metre of finger
+along the screen, in N/m: 75 N/m are 1.5 N on 20 mm of finger.
+
+examples:
+  fingerpad estimate --f-ext 20:75:3 --voltage 0:200:5
+  fingerpad run --set voltage=150 --out results/mine
+
+fingerpad COMMAND --help says more. --version prints the version."""

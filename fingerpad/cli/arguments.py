@@ -1,0 +1,200 @@
+"""What subcommands have in common on the command line: a scene, values for its keys, and PETSc's own options."""
+
+import argparse
+import math
+import re
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any, NoReturn
+
+from fingerpad import terminal
+from fingerpad.cli.keys import every
+from fingerpad.scene import Scene, check, load, override
+from fingerpad.sentences import SceneError, clip
+
+_PETSC = "-fingerpad_"  # prefix of PETSc's options
+_NEAR = 0.6  # likeness, from 0 to 1, at which an option may have been meant
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that refuses by :class:`SceneError` and prints on rank 0 alone."""
+
+    def __init__(self, program: str, description: str, examples: str) -> None:
+        """Start with the options that all subcommands have.
+
+        Args:
+            program: what is typed before the options.
+            description: a line or two on what it does.
+            examples: command lines, one a line.
+        """
+        lines = "\n".join(f"  {line.strip()}" for line in examples.strip().splitlines())
+        super().__init__(
+            prog=program,
+            description=description,
+            epilog=f"examples:\n{lines}",
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+            allow_abbrev=False,
+        )
+
+    def error(self, message: str) -> NoReturn:
+        """Refuse what argparse refuses, without its usage.
+
+        Raises:
+            SceneError: the message.
+        """
+        raise SceneError(f"command line: {message}")
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        if terminal.rank() == 0:
+            super()._print_message(message, file)
+
+    def add_scene(self) -> None:
+        """Add a scene file and values for its keys."""
+        self.add_argument(
+            "scene", nargs="?", type=path, metavar="SCENE", help="scene in TOML (default: press, charge, slide)"
+        )
+        self.add_argument(
+            "--set", action="append", default=[], metavar="KEY=VALUE", help="a key of the scene, as often as wanted"
+        )
+
+    def add_out(self, default: str | None, what: str) -> None:
+        """Add the folder or file that results go to."""
+        chosen = None if default is None else Path(default)
+        self.add_argument("--out", type=path, metavar="PATH", default=chosen, help=what)
+
+    def read(self, argv: Sequence[str]) -> argparse.Namespace:
+        """Return the options of a command line that has none of PETSc's.
+
+        Raises:
+            SceneError: the first word at fault.
+        """
+        return self.read_with_petsc(argv, petsc=False)[0]
+
+    def read_with_petsc(self, argv: Sequence[str], petsc: bool = True) -> tuple[argparse.Namespace, list[str]]:
+        """Return options, and PETSc's options where they are allowed.
+
+        Raises:
+            SceneError: the first word at fault, with the nearest option there is.
+        """
+        words, passed = separate(argv) if petsc else (list(argv), [])
+        options = list(self._option_string_actions)
+        # -voltage and -help are no options, but argparse would take the latter for -h and more.
+        for word in words:
+            if re.match(r"-[A-Za-z]", word) and word not in options:
+                self._refuse(word, petsc)
+        args, rest = self.parse_known_args(words)
+        if rest:
+            self._refuse(rest[0], petsc)
+        return args, passed
+
+    def _refuse(self, word: str, petsc: bool) -> NoReturn:
+        instead = _instead(word, self._option_string_actions, petsc)
+        raise SceneError(f"{clip(word) or 'an empty text'} is not an option; {instead}")
+
+
+def scene_of(args: argparse.Namespace, meshed: bool = True) -> Scene:
+    """Return the scene that options of :meth:`Parser.add_scene` ask for.
+
+    Args:
+        args: the parsed options.
+        meshed: whether its finger must be one that can be built and meshed.
+
+    Raises:
+        SceneError: the first key at fault.
+    """
+    scene = load(args.scene, dict(override(text) for text in args.set))
+    if meshed:
+        check(scene)
+    return scene
+
+
+def separate(argv: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Return a program's own words and those for PETSc: ``-fingerpad_name`` or ``-fingerpad_name value``.
+
+    A word after an option of PETSc's is its value, unless it is an option itself or the name of a TOML file.
+    """
+    own: list[str] = []
+    petsc: list[str] = []
+    value_allowed = False
+    for word in argv:
+        is_option = re.match(r"-[A-Za-z-]", word)
+        if re.fullmatch(_PETSC + r"[A-Za-z][A-Za-z0-9_]*", word):
+            petsc.append(word)
+            value_allowed = True
+        elif value_allowed and word and not is_option and not word.endswith(".toml"):
+            petsc.append(word)
+            value_allowed = False
+        else:
+            own.append(word)
+            value_allowed = False
+    return own, petsc
+
+
+def _instead(word: str, options: Iterable[str], petsc: bool) -> str:
+    """Return what may have been meant by a word that is no option."""
+    own = [option for option in options if option.startswith("--")]
+    name = word[:60].lstrip("-").partition("=")[0].lower()
+    near = get_close_matches(name.replace("_", "-"), [option[2:] for option in own], n=1, cutoff=_NEAR)
+    if near:
+        return f"did you mean --{near[0]}?"
+    key = _key(name.replace("-", "_")) if "--set" in own else None
+    if key:
+        return f"did you mean --set {key}=...?"
+    if petsc and re.fullmatch(r"-[A-Za-z][A-Za-z0-9_]*", word) and len(word) <= 60:
+        return f"did you mean {_PETSC}{word[1:]}? (PETSc's options have this prefix)"
+    more = f", and PETSc's own with the prefix {_PETSC}" if petsc else ""
+    return f"options are {', '.join(own)}{more}"
+
+
+def _key(name: str) -> str | None:
+    """Return the key of a scene that a name may have been meant for, with its table or without."""
+    whole = [key.name for key in every() if "[" not in key.name]
+    names = {key.rpartition(".")[2]: key for key in reversed(whole)} | {key: key for key in whole}
+    near = get_close_matches(name, names, n=1, cutoff=0.8)
+    return names[near[0]] if near else None
+
+
+def path(text: str) -> Path:
+    """Return a path; without a text there is none."""
+    if not text:
+        raise argparse.ArgumentTypeError("it is empty; it must be a path")
+    return Path(text)
+
+
+def positive(kind: type[int] | type[float]) -> Callable[[str], float]:
+    """Return a type of arguments: positive numbers of a kind."""
+
+    def read(text: str) -> float:
+        try:
+            value = kind(text)
+        except ValueError:
+            value = kind(0)
+        if not 0 < value < math.inf:
+            words = "whole number" if kind is int else "number"
+            raise argparse.ArgumentTypeError(f"{clip(text)} is not allowed; it must be a {words} greater than 0")
+        return value
+
+    return read
+
+
+def writable(file: Path | None) -> None:
+    """Refuse a file that cannot be written to; nothing is made.
+
+    Raises:
+        SceneError: its folder is not there, or it is a folder itself.
+    """
+    if file is None:
+        return
+    name = clip(str(file), 80)
+    if file.is_dir():
+        raise SceneError(f"{name} is a folder; give a name of a file")
+    if not file.absolute().parent.is_dir():
+        raise SceneError(f"{name} cannot be written, since its folder is not there; make it first")
+
+
+def say(text: str = "", end: str = "\n") -> None:
+    """Print on rank 0."""
+    if terminal.rank() == 0:
+        print(text, end=end, file=sys.stdout)

@@ -1,0 +1,105 @@
+"""``fingerpad check``: what a run of a scene will hold, leave out and cost; solves nothing."""
+
+import importlib.util
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from fingerpad.budget import estimate
+from fingerpad.cli import cost
+from fingerpad.cli.arguments import Parser, say, scene_of
+from fingerpad.folder import check_folder
+from fingerpad.laws import used
+from fingerpad.needs import Plan, plan
+from fingerpad.reach import by_rule
+from fingerpad.scene import Load, Scene
+from geometry.sizing import touching_ridges
+
+_EXAMPLES = """
+    fingerpad check scene.toml --out results/check
+    fingerpad check --set mesh.contact=2e-6 --set f_ext="100 N/m"
+"""
+
+
+def main(argv: Sequence[str]) -> int:
+    """Describe a run; return the exit code."""
+    parser = Parser(
+        "fingerpad check", "What a run will hold, leave out and cost, and its mesh; solves nothing.", _EXAMPLES
+    )
+    parser.add_scene()
+    parser.add_out("results", "folder of the picture mesh.png (default: results)")
+    args = parser.read(argv)
+    scene = scene_of(args)
+    check_folder(args.out)
+    needed = plan(scene)
+    for title, lines in (
+        ("Loads, in order", _loads(scene)),
+        ("Laws, numbers in SI units", (f"{name.replace('_', ' ')}: {law}" for name, law in used(scene).items())),
+        ("Model", _model(scene, needed)),
+        ("Left out", (f"{omission.what}: {omission.reason}" for omission in needed.omitted)),
+        ("Cost, within a factor of 2", _cost(scene, needed)),
+    ):
+        said = list(lines) or ["nothing"]
+        say("\n".join([title, *(f"  {line}" for line in said)]))
+    say(_picture(scene, needed, args.out))
+    say("The scene can be run.")
+    return 0
+
+
+def _loads(scene: Scene) -> Iterator[str]:
+    for k, load in enumerate(scene.loads(), start=1):
+        yield f"{k}. {load.name}: {', '.join(_aims(load))}"
+
+
+def _aims(load: Load) -> Iterator[str]:
+    if load.f_ext is not None:
+        yield f"force to {load.f_ext:g} N/m (per metre of finger)"
+    if load.bone_height is not None:
+        yield f"bone's height to {load.bone_height * 1e3:+g} mm of the unloaded one"
+    if load.voltage is not None:
+        yield f"voltage to {load.voltage:g} V"
+    if load.bone_x is not None:
+        yield f"bone sideways to {load.bone_x * 1e3:g} mm{', or until full slip' if load.until_full_slip else ''}"
+
+
+def _model(scene: Scene, needed: Plan) -> Iterator[str]:
+    found, touching = estimate(scene, needed), by_rule(scene)
+    ridges = touching_ridges(touching.geometry, touching.mesh)
+    given = scene.mesh.touching_half_arc is not None
+    how = "as mesh.touching_half_arc gives" if given else "by a rule of thumb; a run asks a coarse finger first"
+    yield f"some {_about(found.triangles)} triangles of element {scene.numerics.element}"
+    yield f"some {_about(found.unknowns)} unknowns, within a factor of 1.5"
+    yield f"{len(ridges)} of {scene.geometry.ridge_count} ridges can touch, {how}"
+    yield f"some {found.memory * 1e-9:.2g} GB of memory, of the {scene.numerics.memory * 1e-9:.3g} GB allowed"
+
+
+def _cost(scene: Scene, needed: Plan) -> Iterator[str]:
+    found = cost.expected(scene, needed)
+    yield f"some {_about(found.factorisations)} factorisations"
+    yield f"some {_duration(found.seconds)} of processor time, by a rule from kept runs (fingerpad/cli/cost.py)"
+    if scene.accuracy is not None:
+        yield "and that of finer meshes, to the accuracy asked for: perhaps several times as much"
+
+
+def _duration(seconds: float) -> str:
+    for size, unit in ((3600.0, "hours"), (60.0, "minutes")):
+        if seconds >= 2 * size:
+            return f"{_about(seconds / size)} {unit}"
+    return f"{_about(seconds)} s"
+
+
+def _about(value: float) -> str:
+    """Return a number of two digits, as it is read."""
+    rounded = float(f"{value:.2g}")
+    return f"{rounded:,.0f}".replace(",", " ") if rounded >= 10 else f"{rounded:g}"
+
+
+def _picture(scene: Scene, needed: Plan, folder: Path) -> str:
+    """Draw the mesh; return what was drawn, or why nothing was."""
+    missing = [name for name in ("gmsh", "matplotlib") if importlib.util.find_spec(name) is None]
+    if missing:
+        return f"The mesh is not drawn, since {missing[0]} is not installed."
+    from fingerpad.cli import section
+
+    folder.mkdir(parents=True, exist_ok=True)
+    section.draw(folder / "mesh.png", section.section(scene, needed), by_rule(scene))
+    return f"Mesh drawn: {folder / 'mesh.png'}"

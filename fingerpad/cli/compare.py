@@ -1,0 +1,65 @@
+"""``fingerpad compare``: models of one scene side by side, the cheapest first."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from fingerpad import closed_form
+from fingerpad.api import MODELS, solved
+from fingerpad.cli.arguments import Parser, path, positive, say, scene_of
+from fingerpad.folder import check_folder
+from fingerpad.result import Result
+from fingerpad.scene import Scene
+from fingerpad.sentences import SceneError
+
+_EXAMPLES = """
+    fingerpad compare --set voltage=100
+    fingerpad compare scene.toml --model cylinders smooth full --out results/compare
+"""
+
+
+def main(argv: Sequence[str]) -> int:
+    """Compare models; return the exit code."""
+    parser = Parser("fingerpad compare", "Models of a scene side by side, with what each of them costs.", _EXAMPLES)
+    parser.add_scene()
+    parser.add_out("results", "folder of the full run and of the ridge's tables (default: results)")
+    parser.add_argument("--model", nargs="+", choices=MODELS, default=list(MODELS[:2]), help="models to compare")
+    parser.add_argument("--from-smooth", action="store_true", help="start the full slip of full from that of smooth")
+    parser.add_argument("--contact-length", type=positive(float), metavar="M", help="cylinders: the length in contact")
+    parser.add_argument("--ridges", type=positive(int), metavar="N", help="cylinders: on so many ridges")
+    parser.add_argument("--run", type=path, metavar="DIR", help="cylinders: contact lengths of this full run")
+    args, petsc = parser.read_with_petsc(argv)
+    if args.from_smooth and "full" not in args.model:
+        raise SceneError("--from-smooth is given without the model full, which it starts; add --model full")
+    given = [name for name in ("contact_length", "ridges", "run") if getattr(args, name) is not None]
+    if given and "cylinders" not in args.model:
+        raise SceneError(f"--{given[0].replace('_', '-')} is given without the model cylinders, which reads it; add it")
+    scene = scene_of(args)
+    check_folder(args.out)
+    footprint = _footprint(scene, args.contact_length, args.ridges, args.run)
+    from fingerpad import entry
+
+    entry.start(petsc)
+    from fingerpad import ladder
+
+    def answer(model: str) -> Result:
+        if model == "cylinders":
+            return closed_form.solve(scene, footprint)
+        if model == "full" and args.from_smooth:
+            return ladder.started(scene, args.out)
+        return solved(scene, model, args.out / "full" if model == "full" else args.out, lines=True)
+
+    results = [answer(model) for model in MODELS if model in args.model]
+    say(ladder.table(results))
+    return max(1 if result.failure else 0 for result in results)
+
+
+def _footprint(
+    scene: Scene, length: float | None, ridges: int | None, run: Path | None
+) -> closed_form.Footprint | None:
+    if run is not None:
+        if length is not None or ridges is not None:
+            raise SceneError("--run is given and a contact length too; give one of the two")
+        return closed_form.from_run(scene, run)
+    if (length is None) != (ridges is None):
+        raise SceneError("one of --contact-length and --ridges is given without the other; give both or none")
+    return None if length is None or ridges is None else closed_form.given(length, ridges)

@@ -1,0 +1,127 @@
+"""``fingerpad estimate``: friction over force and voltage by the closed form, without finite elements."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from fingerpad import closed_form
+from fingerpad.cli import ranges, tables
+from fingerpad.cli.arguments import Parser, path, say, scene_of, writable
+from fingerpad.scene import Scene, from_data
+from fingerpad.sentences import SceneError
+from fingerpad.words import PER_LENGTH
+
+# Largest errors at full slip against the full runs of the default finger in docs/ladder.json, over their forces (N/m)
+# and voltages (V); tests/test_command.py compares.
+KNOWN_ERROR = {"mu_app": 0.0243, "contact_length": 0.0618}
+KNOWN_RUNS, KNOWN_FORCES, KNOWN_VOLTAGES = 40, (5.0, 150.0), (0.0, 200.0)
+_COLUMNS = (
+    tables.Column("f_ext", "force", "N/m"),
+    tables.Column("voltage", "voltage", "V"),
+    tables.Column("mu_app", "mu_app", digits=".3f"),
+    tables.Column("f_t", "friction", "N/m"),
+    tables.Column("f_electrostatic", "attraction", "N/m"),
+    tables.Column("contact_length", "contact", "mm", 1e3, ".3f"),
+    tables.Column("ridges_in_contact", "ridges", digits=".0f"),
+)
+_EXAMPLES = """
+    fingerpad estimate --f-ext 20:75:3 --voltage 0:200:41 --plot mu.png
+    fingerpad estimate --set friction=0.3 --f-ext 50 --voltage 0,100,200 --csv mu.csv
+"""
+
+
+def main(argv: Sequence[str]) -> int:
+    """Estimate friction over a grid; return the exit code."""
+    parser = Parser(
+        "fingerpad estimate", "Friction at full slip, every ridge taken for the same charged cylinder.", _EXAMPLES
+    )
+    parser.add_scene()
+    parser.add_argument("--f-ext", metavar="RANGE", help="forces (N/m): 75, or 20,50,75, or first:last:count")
+    parser.add_argument("--voltage", metavar="RANGE", help="voltages (V), written likewise")
+    parser.add_argument("--plot", type=path, metavar="PNG", help="picture: one curve a force")
+    parser.add_argument("--csv", type=path, metavar="CSV", help="table in SI units, unrounded")
+    args = parser.read(argv)
+    for file in (args.plot, args.csv):
+        writable(file)
+    scene = scene_of(args, meshed=False)
+    forces, voltages = (_axis(scene, key, getattr(args, key)) for key in ("f_ext", "voltage"))
+    rows, lost = grid(scene, forces, voltages)
+    say("Friction at full slip by a closed form, every ridge in contact the same charged cylinder.")
+    say(f"Friction coefficient {scene.friction:g}.\n")
+    say(tables.text(_COLUMNS, rows))
+    say("\nmu_app is friction over force, at full slip; contact is the length of skin on the screen.")
+    for note in (PER_LENGTH, *_known(scene, rows), *lost):
+        say(note)
+    if args.csv:
+        tables.write(args.csv, _COLUMNS, rows)
+    if args.plot:
+        draw(args.plot, rows)
+    for file in filter(None, (args.csv, args.plot)):
+        say(f"Written: {file}")
+    return 0
+
+
+def _axis(scene: Scene, key: str, text: str | None) -> list[float]:
+    """Return the values of a key, checked; the scene's own if none are given."""
+    if text is None:
+        return [getattr(scene, key)]
+    values = ranges.read(f"--{key.replace('_', '-')}", text)
+    return [getattr(_with(scene, **{key: value}), key) for value in values]
+
+
+def _with(scene: Scene, **values: float | str) -> Scene:
+    return from_data(scene.parameters() | values)
+
+
+def grid(scene: Scene, forces: Sequence[float], voltages: Sequence[float]) -> tuple[list[dict[str, Any]], list[str]]:
+    """Return a row for each force (N/m) and voltage (V), and what was refused, a sentence a point.
+
+    Raises:
+        SceneError: every point is refused.
+    """
+    rows, lost = [], []
+    for f_ext in forces:
+        for voltage in voltages:
+            row: dict[str, Any] = {"f_ext": f_ext, "voltage": voltage}
+            try:
+                found = closed_form.solve(_with(scene, f_ext=f_ext, voltage=voltage)).full_slip
+                row |= {c.key: getattr(found, c.key) for c in _COLUMNS if c.key not in row}
+            except SceneError as error:
+                lost.append(f"At {f_ext:g} N/m and {voltage:g} V: {error}.")
+            rows.append(row)
+    if len(lost) == len(rows):
+        raise SceneError(lost[0].partition(": ")[2].rstrip("."))
+    return rows, lost
+
+
+def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return what is known of the error of these rows."""
+    mu, length = (f"{100 * value:.1f} %" for value in KNOWN_ERROR.values())
+    (low, high), (none, most) = KNOWN_FORCES, KNOWN_VOLTAGES
+    where = f"{low:g} to {high:g} N/m and {none:g} to {most:g} V"
+    said = [f"Known error: mu_app within {mu}, contact within {length} of {KNOWN_RUNS} full runs at {where}."]
+    default, outside = Scene(), [r for r in rows if not (low <= r["f_ext"] <= high and none <= r["voltage"] <= most)]
+    if outside:
+        said.append(f"{len(outside)} of {len(rows)} points are outside of that; their error is not known.")
+    changed = [name for name in ("friction", "electric", "roughness") if getattr(scene, name) != getattr(default, name)]
+    if changed:
+        said.append(f"Those runs have the default {', '.join(changed)}; here the error may be larger.")
+    return said
+
+
+def draw(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Draw friction over voltage, one curve a force; over force where there is one voltage."""
+    from fingerpad.cli import plot
+
+    forces, voltages = (list(dict.fromkeys(row[key] for row in rows)) for key in ("f_ext", "voltage"))
+    over, each = ("voltage", "f_ext") if len(voltages) > 1 or len(forces) == 1 else ("f_ext", "voltage")
+    label = {"voltage": "{:g} V", "f_ext": "{:g} N/m"}
+    axis = {"voltage": "voltage U (V)", "f_ext": "normal force per length $f_{ext}$ (N/m)"}
+    figure, (ax,) = plot.figure("Friction at full slip, closed form")
+    for k, value in enumerate(forces if each == "f_ext" else voltages):
+        points = [row for row in rows if row[each] == value and "mu_app" in row]
+        plot.curve(ax, k, [p[over] for p in points], [p["mu_app"] for p in points], label[each].format(value))
+    ax.set(xlabel=axis[over], ylabel=r"apparent friction coefficient $\mu_{app}$")
+    ax.legend(title={"f_ext": "$f_{ext}$", "voltage": "U"}[each])
+    ax.grid(alpha=0.3)
+    plot.save(figure, file)

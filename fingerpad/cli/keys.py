@@ -1,0 +1,115 @@
+"""Every key of a scene: unit, default, range and meaning, from the models themselves.
+
+What a key means is the text under it in the source of its model, by the standard library's ``ast``: pydantic's own
+``use_attribute_docstrings`` would ask every model to be configured for it.
+"""
+
+import ast
+import inspect
+import re
+import textwrap
+import types
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+from pydantic import BaseModel, WrapValidator
+
+from fingerpad.scene import Scene
+from geometry.bounds import Range
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key of a scene."""
+
+    name: str
+    """With its tables, as in ``roughness.h_rms``; entries of a list of tables have ``[]``."""
+    unit: str
+    default: Any
+    allowed: str
+    """What it may be, in words."""
+    meaning: str
+    """From the docstring of the key."""
+    required: bool = False
+    """Whether a table of its kind must give it."""
+
+
+def every() -> Iterator[Key]:
+    """Yield every key of a scene, tables in the order in which a scene has them."""
+    yield from _of(Scene, "", None)
+
+
+def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Iterator[Key]:
+    inner = []
+    for name, field in model.model_fields.items():
+        parts = tuple(_parts(field.annotation)) + tuple(field.metadata)
+        tables = [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
+        many = "[]" if tuple in parts else ""
+        value = getattr(instance, name) if instance is not None else field.get_default(call_default_factory=True)
+        if tables:
+            inner.append((tables[0], f"{table}{name}{many}.", value if isinstance(value, tables[0]) else None))
+            continue
+        unit, allowed = _allowed(parts)
+        required = instance is None and field.is_required()
+        yield Key(table + name, unit, None if required else value, allowed, _docstrings(model).get(name, ""), required)
+    for kind, where, value in inner:
+        yield from _of(kind, where, value)
+
+
+def _parts(annotation: Any) -> Iterator[Any]:
+    """Yield everything that an annotation such as ``Annotated[float, within(...)] | None`` is made of."""
+    origin = get_origin(annotation)
+    yield annotation if origin is None else origin
+    if origin is Annotated:
+        yield from _parts(annotation.__origin__)
+        yield from annotation.__metadata__
+    elif origin in (Union, types.UnionType, tuple):
+        for part in get_args(annotation):
+            yield from _parts(part)
+    elif origin is Literal:
+        yield annotation
+
+
+def _allowed(parts: tuple[Any, ...]) -> tuple[str, str]:
+    """Return unit and range of a key."""
+    for part in parts:
+        found = part.func if isinstance(part, WrapValidator) else None
+        if isinstance(found, Range):
+            sign = ", either sign" if found.sides == 2 else ""
+            zero = "0 or " if found.zero else ""
+            several = "list: " if tuple in parts else ""
+            return found.unit, f"{several}{zero}{found.low:g} to {found.high:g}{sign}"
+    for part in parts:
+        if get_origin(part) is Literal:
+            return "", ", ".join(repr(value) for value in get_args(part)).replace("'", '"')
+    bounds = [part for meta in parts for part in getattr(meta, "metadata", [meta])]  # of Field(...), or bare
+    low, high = (next((getattr(b, n) for b in bounds if hasattr(b, n)), None) for n in ("ge", "le"))
+    if low is not None and high is not None:
+        return "", f"whole, {low} to {high}"
+    if bool in parts:
+        return "", "true or false"
+    return "", "text" if str in parts else ""
+
+
+@cache
+def _docstrings(model: type[BaseModel]) -> dict[str, str]:
+    """Return what is written under the keys of a model, in one line each; empty where there is no source."""
+    try:
+        body = ast.parse(textwrap.dedent(inspect.getsource(model))).body[0]
+    except (OSError, TypeError):
+        return {}
+    found = {}
+    lines = getattr(body, "body", [])
+    for line, after in zip(lines, lines[1:], strict=False):
+        if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name):
+            if isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant):
+                found[line.target.id] = _plain(str(after.value.value))
+    return found
+
+
+def _plain(text: str) -> str:
+    """Return a docstring as a line of text, without the marks of reStructuredText."""
+    text = re.sub(r":\w+:`~?([^`]*)`", r"\1", " ".join(text.split()))
+    return text.replace("``", "").replace("*Assumption*", "Assumption").replace("*assumption*", "assumption")

@@ -1,0 +1,36 @@
+"""``fingerpad mesh``: the finger's mesh as a file for gmsh."""
+
+from collections.abc import Sequence
+
+from fingerpad.cli.arguments import Parser, path, say, scene_of, writable
+from fingerpad.sentences import SceneError
+
+_EXAMPLES = """
+    fingerpad mesh --out finger.msh --plot finger.png
+    fingerpad mesh scene.toml --set mesh.contact=20e-6 --out coarse.msh
+"""
+
+
+def main(argv: Sequence[str]) -> int:
+    """Write a mesh; return the exit code."""
+    parser = Parser(
+        "fingerpad mesh", "Write the mesh of the whole unloaded finger, in m, with names of its parts.", _EXAMPLES
+    )
+    parser.add_scene()
+    parser.add_out("finger.msh", "file for gmsh (default: finger.msh)")
+    parser.add_argument("--plot", type=path, metavar="PNG", help="picture of the mesh")
+    args = parser.read(argv)
+    for file in (args.out, args.plot):
+        writable(file)
+    if args.out.suffix != ".msh":
+        raise SceneError(f"--out {args.out.name[:60]} does not end with .msh, by which gmsh knows its format")
+    scene = scene_of(args)
+    from fingerpad.cli import section
+
+    found = section.write(scene, args.out)
+    say(f"{len(found.triangles)} triangles, {len(found.points)} vertices, {found.ridges} ridges that can touch")
+    say(f"Written: {args.out}")
+    if args.plot:
+        section.draw(args.plot, found, scene)
+        say(f"Written: {args.plot}")
+    return 0

@@ -1,0 +1,118 @@
+"""``fingerpad microscale``: what the roughness of a ridge makes of its pressure, without finite elements."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fingerpad.cli import ranges, tables
+from fingerpad.cli.arguments import Parser, path, say, scene_of, writable
+from fingerpad.scene import Scene, from_data
+from fingerpad.sentences import SceneError
+
+_PRESSURES = "1e3:1e6:13:log"
+_COLUMNS = (
+    tables.Column("voltage", "voltage", "V"),
+    tables.Column("p_c", "pressure", "kPa", 1e-3),
+    tables.Column("u_bar", "separation", "µm", 1e6),
+    tables.Column("d_eq", "air gap", "µm", 1e6),
+    tables.Column("p_el", "attraction", "kPa", 1e-3),
+    tables.Column("p_ext", "external", "kPa", 1e-3),
+    tables.Column("area", "real area", "%", 100.0, ".3g"),
+)
+_EXAMPLES = """
+    fingerpad microscale --voltage 100,200 --p 1e3:1e6:50:log --plot micro.png
+    fingerpad microscale --set roughness.h_rms=2e-6 --csv micro.csv
+"""
+
+
+def main(argv: Sequence[str]) -> int:
+    """Print the microscale over pressure; return the exit code."""
+    parser = Parser(
+        "fingerpad microscale", "Bearing area model of a rough ridge over its mean contact pressure.", _EXAMPLES
+    )
+    parser.add_scene()
+    parser.add_argument("--voltage", metavar="RANGE", help="voltages (V): 200, or 0,100, or first:last:count")
+    parser.add_argument("--p", metavar="RANGE", default=_PRESSURES, help=f"pressures (Pa); default {_PRESSURES}")
+    parser.add_argument("--plot", type=path, metavar="PNG", help="picture")
+    parser.add_argument("--csv", type=path, metavar="CSV", help="table in SI units, unrounded")
+    args = parser.read(argv)
+    for file in (args.plot, args.csv):
+        writable(file)
+    scene = scene_of(args, meshed=False)
+    voltages = [scene.voltage] if args.voltage is None else _voltages(scene, args.voltage)
+    rows = table(scene, voltages, _pressures(args.p))
+    closure = scene.roughness.bearing_area(scene.h_0)
+    say(
+        f"A ridge of rms roughness {scene.roughness.h_rms * 1e6:.3g} µm, largest wavelength "
+        f"{scene.roughness.wavelength * 1e6:.3g} µm; insulators: h_0 = {scene.h_0 * 1e6:.3g} µm.\n"
+    )
+    say(tables.text(_COLUMNS, rows))
+    say("\npressure: mean contact pressure of the ridge; external: that less the attraction, what the finger presses")
+    say("with; separation: mean, of skin and screen; air gap: equivalent one; real area: of the nominal area.")
+    say(f"The air gap is held below {scene.roughness.p_floor * 1e-3:g} kPa (roughness.p_floor); at zero separation")
+    say(f"the pressure is {closure.full_pressure * 1e-3:.4g} kPa. A ridge would stick without any force from ", end="")
+    say(f"{closure.threshold():.0f} V.")
+    if args.csv:
+        tables.write(args.csv, _COLUMNS, rows)
+    if args.plot:
+        draw(args.plot, rows)
+    for file in filter(None, (args.csv, args.plot)):
+        say(f"Written: {file}")
+    return 0
+
+
+def _voltages(scene: Scene, text: str) -> list[float]:
+    return [from_data(scene.parameters() | {"voltage": v}).voltage for v in ranges.read("--voltage", text)]
+
+
+def _pressures(text: str) -> list[float]:
+    values = ranges.read("--p", text)
+    for value in values:
+        if not (isinstance(value, float) and value > 0):
+            raise SceneError(f"--p has the value {value}; pressures are numbers greater than 0, in Pa")
+    return [float(value) for value in values]
+
+
+def table(scene: Scene, voltages: Sequence[float], pressures: Sequence[float]) -> list[dict[str, Any]]:
+    """Return a row for each voltage (V) and mean contact pressure (Pa), in SI units.
+
+    Pressures beyond the one at zero mean separation, where the law of repulsion ends, are held there as in a run.
+    """
+    closure = scene.roughness.bearing_area(scene.h_0)
+    p_c = np.array(pressures)
+    u_bar = closure.separation(np.clip(p_c, scene.roughness.p_floor, closure.full_pressure)) + 0.0  # no negative zero
+    d_eq, area = closure(p_c).d_eq, closure.contact_area(u_bar)
+    rows = []
+    for voltage in voltages:
+        p_el = closure.attraction(u_bar, voltage)
+        for k, p in enumerate(pressures):
+            row = {"p_c": p, "u_bar": u_bar[k], "d_eq": d_eq[k], "p_el": p_el[k], "p_ext": p - p_el[k]}
+            rows.append({"voltage": voltage} | {name: float(v) for name, v in row.items()} | {"area": float(area[k])})
+    return rows
+
+
+def draw(file: Path, rows: Sequence[dict[str, Any]]) -> None:
+    """Draw lengths, attraction and real area over pressure."""
+    from fingerpad.cli import plot
+
+    voltages = list(dict.fromkeys(row["voltage"] for row in rows))
+    first = [row for row in rows if row["voltage"] == voltages[0]]
+    p = [row["p_c"] * 1e-3 for row in first]
+    figure, (gaps, stress, area) = plot.figure("Microscale of a ridge: bearing area model", 3)
+    plot.curve(gaps, 0, p, [row["d_eq"] * 1e6 for row in first], "equivalent air gap $d_{eq}$")
+    plot.curve(gaps, 1, p, [row["u_bar"] * 1e6 for row in first], r"mean separation $\bar u$")
+    gaps.set(ylabel="length (µm)", ylim=(0, None))
+    for k, voltage in enumerate(voltages):
+        found = [row["p_el"] * 1e-3 for row in rows if row["voltage"] == voltage]
+        plot.curve(stress, k, p, found, f"{voltage:g} V")
+    stress.set(ylabel="attraction $p_{el}$ (kPa)", ylim=(0, None))
+    plot.curve(area, 0, p, [100 * row["area"] for row in first], "")
+    area.set(ylabel="real area of contact (% of the nominal)", yscale="log")
+    for ax in (gaps, stress, area):
+        ax.set(xlabel="mean contact pressure $p_c$ (kPa)", xscale="log")
+        ax.grid(alpha=0.3)
+    for ax in (gaps, stress):
+        ax.legend()
+    plot.save(figure, file)

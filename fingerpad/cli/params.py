@@ -1,0 +1,82 @@
+"""``fingerpad params``: every key of a scene, as a table or as a scene file with comments."""
+
+import textwrap
+from collections.abc import Sequence
+from typing import Any
+
+from fingerpad.cli.arguments import Parser, say
+from fingerpad.cli.keys import Key, every
+from fingerpad.scene import Scene
+from fingerpad.sentences import SceneError, clip
+
+_WIDTH = 120
+_EXAMPLES = """
+    fingerpad params roughness
+    fingerpad params --toml > scene.toml
+"""
+
+
+def main(argv: Sequence[str]) -> int:
+    """Print keys; return the exit code."""
+    parser = Parser("fingerpad params", "Every key of a scene: unit, default, range and meaning.", _EXAMPLES)
+    parser.add_argument("filter", nargs="?", default="", metavar="FILTER", help="keys with this in their name")
+    parser.add_argument("--toml", action="store_true", help="as a complete scene file of the defaults, with comments")
+    args = parser.read(argv)
+    found = [key for key in every() if args.filter.lower() in key.name.lower()]
+    if not found:
+        raise SceneError(f"no key of a scene has {clip(args.filter)} in its name; fingerpad params lists all of them")
+    say(toml(found) if args.toml else table(found))
+    return 0
+
+
+def table(found: Sequence[Key]) -> str:
+    """Return keys in aligned columns, what they mean below each."""
+    rows = [("key", "unit", "default", "allowed")]
+    rows += [(key.name, key.unit, _default(key), key.allowed) for key in found]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = []
+    for k, row in enumerate(rows):
+        lines.append("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+        if k:
+            indent = "    "
+            lines += textwrap.wrap(found[k - 1].meaning, _WIDTH, initial_indent=indent, subsequent_indent=indent)
+    return "\n".join(lines)
+
+
+def toml(found: Sequence[Key]) -> str:
+    """Return a scene file of the defaults; keys without one, and those another choice would read, are comments."""
+    unread = {f"contact.{name}" for name in Scene().contact.unread()}
+    lines = ["# A scene of fingerpad with every key at its default. SI units; forces per metre of finger (N/m)."]
+    table = ""
+    for key in found:
+        where, _, name = key.name.rpartition(".")
+        if where != table:
+            table, many = where, "[]" in where
+            plain = where.replace("[]", "")
+            lines += ["", f"# [[{plain}]]" if many else f"[{plain}]" if _has_values(found, where) else f"# [{plain}]"]
+        lines += textwrap.wrap(key.meaning, _WIDTH, initial_indent="# ", subsequent_indent="# ")
+        off = key.default is None or key.name in unread or "[]" in key.name
+        given = f"{'# ' * off}{name} ={'' if key.default is None else ' ' + _value(key.default)}"
+        lines.append(f"{given}  # {', '.join(filter(None, (key.unit, key.allowed)))}")
+    return "\n".join(lines)
+
+
+def _has_values(found: Sequence[Key], table: str) -> bool:
+    return any(key.default is not None for key in found if key.name.rpartition(".")[0] == table)
+
+
+def _default(key: Key) -> str:
+    if key.required:
+        return "(required)"
+    return "–" if key.default is None else _value(key.default)
+
+
+def _value(value: Any) -> str:
+    """Return a value as TOML has it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return f'"{value}"'
+    if isinstance(value, tuple):
+        return f"[{', '.join(_value(part) for part in value)}]"
+    return repr(value)

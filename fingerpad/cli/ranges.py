@@ -1,0 +1,54 @@
+"""Several values of a quantity in one text, written alike for every option and in every study.
+
+``75`` is one value, ``0, 50, 200`` are three, ``0:200:5`` are five from 0 to 200 at equal distances, both ends among
+them, and ``1e3:1e6:4:log`` are four at equal ratios. A unit may follow: ``0:0.2:5 kV``.
+"""
+
+import re
+
+import numpy as np
+
+from fingerpad.sentences import SceneError, clip
+
+_MOST = 10_000  # values of one range
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_HOW = "write one value, several as 0, 50, 200, or first:last:count as in 0:200:5 (1e3:1e6:4:log for equal ratios)"
+
+
+def read(name: str, text: str) -> list[float | str]:
+    """Return the values of a text: numbers, or texts of a number and a unit where a unit is given.
+
+    Args:
+        name: of the key or option, for a refusal.
+        text: one value, several, or a range.
+
+    Raises:
+        SceneError: a text that is none of the three.
+    """
+    found = re.fullmatch(r"([-+0-9.,:\seE]*?(?::log)?)\s*([A-Za-zµ°%][^,:]*)?", text.strip())
+    numbers, unit = (found[1].strip(), (found[2] or "").strip()) if found else ("", "")
+    values = _range(name, numbers) if ":" in numbers else _list(numbers)
+    if not values:
+        raise SceneError(f"{name} is {clip(text) or 'empty'}; {_HOW}")
+    return [f"{value!r} {unit}" for value in values] if unit else [*values]
+
+
+def _list(text: str) -> list[float]:
+    parts = [part.strip() for part in text.split(",")]
+    return [float(part) for part in parts] if all(re.fullmatch(_NUMBER, part) for part in parts) else []
+
+
+def _range(name: str, text: str) -> list[float]:
+    found = re.fullmatch(rf"({_NUMBER}):({_NUMBER}):(\d+)(:log)?", text.replace(" ", ""))
+    if found is None:
+        return []
+    first, last, count = float(found[1]), float(found[2]), int(found[3][:9])
+    if not 1 <= count <= _MOST:
+        raise SceneError(f"{name} is {clip(text)}, of {count} values; it must be of 1 to {_MOST}")
+    if count == 1 and first != last:
+        raise SceneError(f"{name} is {clip(text)}, one value with two ends; give a count of 2 or more")
+    if found[4] and not (first > 0 and last > 0):
+        raise SceneError(f"{name} is {clip(text)}; both ends must be greater than 0 for equal ratios")
+    space = np.geomspace if found[4] else np.linspace
+    values = [float(f"{value:.12g}") for value in space(first, last, count)]
+    return [first, *values[1:-1], last] if count > 1 else [first]

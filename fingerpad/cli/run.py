@@ -1,0 +1,52 @@
+"""``fingerpad run``: press, charge and slide a finger, from a scene to tables, pictures and fields."""
+
+from collections.abc import Sequence
+
+from fingerpad import terminal
+from fingerpad.api import MODELS, solved
+from fingerpad.cli import refuse
+from fingerpad.cli.arguments import Parser, say, scene_of
+from fingerpad.folder import check_folder
+from fingerpad.sentences import SceneError
+
+_EXAMPLES = """
+    fingerpad run --set f_ext="50 N/m" --set voltage=150 --out results/mine
+    mpirun -n 2 fingerpad run scene.toml --out results/scene -fingerpad_snes_monitor
+"""
+
+
+def main(argv: Sequence[str]) -> int:
+    """Run a scene; return the exit code."""
+    parser = Parser("fingerpad run", "Press, charge and slide a finger: tables, pictures and fields.", _EXAMPLES)
+    parser.add_scene()
+    parser.add_out("results", "folder of the results (default: results)")
+    parser.add_argument(
+        "--model",
+        choices=MODELS,
+        default="full",
+        help="every ridge (full), a smooth finger with the law of one ridge, or a closed form (default: full)",
+    )
+    args, petsc = parser.read_with_petsc(argv)
+    scene = scene_of(args, meshed=args.model != "cylinders")
+    check_folder(args.out)
+    if args.model == "cylinders":
+        if petsc:
+            raise SceneError(f"{petsc[0]} is given and --model is cylinders, which solves nothing by PETSc")
+        say(str(solved(scene, args.model, args.out if terminal.rank() == 0 else None)))
+        return 0
+    from fingerpad.entry import start
+
+    start(petsc)
+    # PETSc has its options from here on.
+    from fingerpad.balance import broken
+    from fingerpad.full import exit_code
+
+    result = solved(scene, args.model, args.out, lines=True)
+    if args.model != "full":
+        say(str(result))
+        return exit_code(result)
+    defect = broken(result.to_dict(), scene.friction)
+    if defect:
+        refuse(defect)
+        return 1
+    return exit_code(result)

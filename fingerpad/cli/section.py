@@ -1,0 +1,154 @@
+"""The mesh of a finger by gmsh alone: triangles and layers for a picture, or a file for gmsh."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fingerpad.needs import Plan
+from fingerpad.reach import by_rule
+from fingerpad.scene import Scene
+from fingerpad.sentences import SceneError
+from geometry import tags
+from geometry.profiles import GeometryError
+
+_COLOURS = {  # Okabe and Ito's, told apart with any colour vision
+    tags.STRATUM_CORNEUM: "#E69F00",
+    tags.VIABLE_EPIDERMIS: "#56B4E9",
+    tags.DERMIS: "#CC79A7",
+    tags.SUBCUTIS: "#F0E442",
+    tags.NAIL: "#999999",
+    tags.NAIL_BED: "#009E73",
+}
+_FINEST_EDGES = 60_000  # triangles of the whole finger up to which their edges are drawn
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """The cross-section of a finger in triangles."""
+
+    points: NDArray[np.float64]
+    """Vertices (m), shape (points, 2)."""
+    triangles: NDArray[np.int_]
+    """Vertices of each triangle, shape (triangles, 3)."""
+    layer: NDArray[np.int_]
+    """Tag of each triangle's layer, of :mod:`geometry.tags`."""
+    ridges: int
+    """Number of ridges that can touch."""
+
+
+@contextmanager
+def meshed(scene: Scene, receptors: bool, half: bool) -> Iterator[Any]:
+    """Mesh a scene's finger in a session of gmsh; ridges that can touch by the rule of thumb if none are given.
+
+    Yields:
+        The module ``gmsh``, lengths of its model in mm.
+
+    Raises:
+        SceneError: the finger cannot be meshed.
+    """
+    import gmsh
+
+    from geometry import fingertip
+
+    scene = by_rule(scene)
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.model.add("finger")
+        try:
+            fingertip.build(scene.geometry, scene.mesh, receptors, half)
+        except GeometryError as error:
+            raise SceneError(f"the finger cannot be meshed: {error}") from None
+        yield gmsh
+    finally:
+        gmsh.finalize()
+
+
+def section(scene: Scene, needed: Plan) -> Section:
+    """Return the mesh of what a run of a scene would hold, for a picture."""
+    with meshed(scene, needed.receptors, not needed.both_halves) as gmsh:
+        return _read(gmsh)
+
+
+def write(scene: Scene, file: Path) -> Section:
+    """Write the mesh of the whole finger as gmsh's format 2.2, lengths in m, groups named; and return it."""
+    with meshed(scene, scene.output.receptors, False) as gmsh:
+        gmsh.option.setNumber("Mesh.ScalingFactor", 1e-3)
+        gmsh.option.setNumber("Mesh.MshFileVersion", 2.2)
+        part = file.with_name(f".{file.stem}.part.msh")
+        try:
+            gmsh.write(str(part))
+            part.replace(file)
+        except Exception as error:  # gmsh's own are of no other kind
+            part.unlink(missing_ok=True)
+            raise SceneError(f"{file} cannot be written: {error}") from None
+        return _read(gmsh)
+
+
+def _read(gmsh: Any) -> Section:
+    numbers, coordinates, _ = gmsh.model.mesh.getNodes()
+    triangles, layers = [], []
+    for tag in tags.LAYERS.values():
+        for entity in gmsh.model.getEntitiesForPhysicalGroup(2, tag):
+            for nodes in gmsh.model.mesh.getElements(2, entity)[2]:
+                triangles.append(nodes.astype(int).reshape(-1, 3))
+                layers.append(np.full(len(triangles[-1]), tag))
+    ridges = sum(tags.is_ridge(tag) for dimension, tag in gmsh.model.getPhysicalGroups(1))
+    every = np.concatenate(triangles)
+    used = np.unique(every)  # the others guide the element size
+    order = np.argsort(numbers)
+    points = coordinates.reshape(-1, 3)[order[np.searchsorted(numbers, used, sorter=order)], :2] * 1e-3
+    return Section(points, np.searchsorted(used, every), np.concatenate(layers), ridges)
+
+
+def draw(file: Path, found: Section, scene: Scene) -> None:
+    """Draw the mesh: the whole finger, some ridges, and one ridge's tip; layers in colour, axes in mm."""
+    from fingerpad.cli import plot
+
+    shape = scene.geometry
+    period, deep = shape.ridge_wavelength, shape.sc_thickness + shape.ve_thickness
+    size = scene.mesh.contact
+    views = (
+        ("whole finger", None),
+        (f"ridge 0, of {period * 1e3:.3g} mm", (1.5 * deep, 2 * deep)),
+        (f"tip of ridge 0: facets of {size * 1e6:.3g} µm", (20 * size, 25 * size)),
+    )
+    made, panels = plot.figure("", 3)
+    made.suptitle(f"Mesh of the unloaded finger: {len(found.triangles)} triangles, {found.ridges} ridges can touch")
+    x, y = found.points.T * 1e3
+    for ax, (title, view) in zip(panels, views, strict=True):
+        _fill(ax, x, y, found, view)
+        ax.set(xlabel="x (mm)", ylabel="height above the screen (mm)", aspect="equal", title=title)
+        ax.axhline(0, color="k", lw=2)
+        if view is not None:
+            left = 0.0 if x.min() > -1e-6 else -view[0] * 1e3
+            ax.set(xlim=(left, view[0] * 1e3), ylim=(-0.03 * view[1] * 1e3, view[1] * 1e3))
+    names = {tag: name for name, tag in tags.LAYERS.items()}
+    handles = [plot.patch(_COLOURS[tag], names[tag]) for tag in tags.LAYERS.values()]
+    made.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+    plot.save(made, file)
+
+
+def _fill(
+    ax: Any, x: NDArray[np.float64], y: NDArray[np.float64], found: Section, view: tuple[float, float] | None
+) -> None:
+    """Fill the triangles that are in a view, with edges where there is room for them."""
+    triangles, layer = found.triangles, found.layer
+    if view is not None:
+        centre = found.points[triangles].mean(axis=1)
+        inside = (np.abs(centre[:, 0]) < 1.2 * view[0]) & (centre[:, 1] < 1.2 * view[1])
+        triangles, layer = triangles[inside], layer[inside]
+    tagged = list(tags.LAYERS.values())
+    colours = [_COLOURS[tag] for tag in tagged]
+    width = 0.25 if view is not None else 0.05 if len(triangles) < _FINEST_EDGES else 0.0
+    from matplotlib.colors import ListedColormap
+
+    ax.tripcolor(
+        x, y, triangles, facecolors=np.searchsorted(tagged, layer).astype(float), cmap=ListedColormap(colours),
+        vmin=-0.5, vmax=len(tagged) - 0.5, edgecolors="k" if width else "none", linewidth=width,
+    )  # fmt: skip

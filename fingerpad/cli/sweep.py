@@ -1,0 +1,94 @@
+"""``fingerpad sweep``: a scene over values of its keys, each run in a process of its own and kept on disk."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from fingerpad.api import MODELS
+from fingerpad.cli import ranges
+from fingerpad.cli.arguments import Parser, positive, say
+from fingerpad.folder import check_folder
+from fingerpad.grid import sweep
+from fingerpad.reading import plain, read
+from fingerpad.scene import from_data, override
+from fingerpad.sentences import SceneError, clip, show
+from fingerpad.words import PER_LENGTH
+
+_EXAMPLES = """
+    fingerpad sweep --over voltage=0:200:5 --over f_ext=25,75 --jobs 2 --out results/sweep
+    fingerpad sweep study.toml --set friction=0.3
+"""
+
+
+def main(argv: Sequence[str]) -> int:
+    """Run a study; return the exit code."""
+    parser = Parser(
+        "fingerpad sweep", "A scene over values of its keys; runs that are in the folder are not repeated.", _EXAMPLES
+    )
+    parser.add_scene()
+    parser.add_argument(
+        "--over", action="append", default=[], metavar="KEY=RANGE", help="values of a key: 0,50 or first:last:count"
+    )
+    parser.add_out("results/sweep", "folder of all runs and of table.csv (default: results/sweep)")
+    parser.add_argument("--jobs", type=positive(int), default=2, metavar="N", help="runs at a time (default: 2)")
+    parser.add_argument("--model", choices=MODELS, default="full", help="model to run (default: full)")
+    args = parser.read(argv)
+    check_folder(args.out)
+    base, axes = study(args.scene, args.set, args.over)
+    scene = from_data(base)
+    found = sweep(scene, args.out, jobs=args.jobs, model=args.model, **axes)
+    say(str(found))
+    say(PER_LENGTH)
+    say(f"Written: {args.out / 'table.csv'}")
+    return 1 if any(result.failure for result in found) else 0
+
+
+def study(file: Path | None, given: Sequence[str], over: Sequence[str]) -> tuple[dict[str, Any], dict[str, list[Any]]]:
+    """Return the data of a scene, and the values of each key that is varied.
+
+    Args:
+        file: a scene with a table ``[sweep]``, of a list or a range for each key.
+        given: ``KEY=VALUE`` for the scene.
+        over: ``KEY=RANGE``, which win over the table's.
+
+    Raises:
+        SceneError: nothing is varied, or a key is given twice.
+    """
+    data: dict[str, Any] = plain(read(file)) if file is not None else {}
+    axes: dict[str, list[Any]] = {}
+    table = data.pop("sweep", {})
+    if not isinstance(table, dict):
+        raise SceneError(f'sweep is {show(table)}; it must be a table such as [sweep] with voltage = "0:200:5"')
+    for key, value in _flat(table):
+        axes[key] = ranges.read(f"sweep.{key}", value) if isinstance(value, str) else value
+        if not isinstance(axes[key], list) or not axes[key]:
+            raise SceneError(f'sweep.{key} is {show(value)}; it must be a list or a range such as "0:200:5"')
+    for text in over:
+        key, equals, values = text.partition("=")
+        if not (equals and key.strip()):
+            raise SceneError(f"--over {clip(text) or 'an empty text'} is no KEY=RANGE; write --over voltage=0:200:5")
+        axes[key.strip()] = ranges.read(f"--over {key.strip()}", values)
+    if not axes:
+        raise SceneError("nothing is varied; give a table [sweep] in the scene file or --over KEY=RANGE")
+    for key, value in map(override, given):
+        if key in axes:
+            raise SceneError(f"--set {key} is given and {key} is varied; give one of the two")
+        _put(data, key, value)
+    return data, axes
+
+
+def _flat(table: Mapping[str, Any], where: str = "") -> list[tuple[str, Any]]:
+    """Return dotted keys and values: TOML reads ``roughness.h_rms = …`` as a table in a table."""
+    found: list[tuple[str, Any]] = []
+    for key, value in table.items():
+        found += _flat(value, f"{where}{key}.") if isinstance(value, dict) else [(where + key, value)]
+    return found
+
+
+def _put(data: dict[str, Any], key: str, value: Any) -> None:
+    *tables_, name = key.split(".")
+    for part in tables_:
+        data = data.setdefault(part, {})
+        if not isinstance(data, dict):
+            raise SceneError(f"{key} cannot be given, since {part} is {show(data)}")
+    data[name] = value

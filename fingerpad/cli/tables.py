@@ -1,0 +1,47 @@
+"""Tables of numbers on the screen and in files."""
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from fingerpad.files import replace
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table."""
+
+    key: str
+    """Name in files, where numbers are in SI units."""
+    head: str
+    """Name on the screen."""
+    unit: str = ""
+    factor: float = 1.0
+    """From SI units to the unit on the screen."""
+    digits: str = ".4g"
+
+    def cell(self, value: Any) -> str:
+        """Return a value as it is printed, a dash where there is none."""
+        if value is None:
+            return "–"
+        return str(value) if isinstance(value, str) else f"{value * self.factor:{self.digits}}"
+
+
+def text(columns: Sequence[Column], rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return an aligned table with units below the names."""
+    cells = [[c.head for c in columns], [f"({c.unit})" if c.unit else "" for c in columns]]
+    cells += [[c.cell(row.get(c.key)) for c in columns] for row in rows]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    return "\n".join("  ".join(map(str.rjust, row, widths)).rstrip() for row in cells)
+
+
+def write(file: Path, columns: Sequence[Column], rows: Sequence[Mapping[str, Any]]) -> None:
+    """Write a table as CSV in SI units, unrounded."""
+    out = io.StringIO()
+    writer = csv.DictWriter(out, [c.key for c in columns], extrasaction="ignore", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    replace(file, out.getvalue())

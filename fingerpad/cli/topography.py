@@ -1,0 +1,125 @@
+"""``fingerpad topography``: the roughness of a scene from a measured height map, without finite elements."""
+
+import argparse
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from fingerpad.cli.arguments import Parser, path, positive, say, writable
+from fingerpad.sentences import SceneError, clip
+from variational.roughness.heightfile import UNITS, Found, is_plain, scan
+from variational.roughness.spectrum import Fit, power_spectrum, roughness_table
+from variational.roughness.topography import distribution
+
+_EXAMPLES = """
+    fingerpad topography skin.csv --unit um --size 100 100
+    fingerpad topography points.xyz --unit mm --missing -9999 --plot skin.png
+"""
+
+
+def main(argv: Sequence[str]) -> int:
+    """Print the table of roughness that a height map gives; return the exit code."""
+    parser = Parser(
+        "fingerpad topography", "Roughness of a scene from a height map: text, NumPy or an instrument's.", _EXAMPLES
+    )
+    parser.add_argument("file", type=path, metavar="FILE", help="matrix of heights, or points x y z")
+    units = ", ".join(unit for unit in UNITS if unit.isascii())
+    parser.add_argument("--unit", choices=[*UNITS], metavar="UNIT", help=f"of the heights: {units}")
+    sizes = parser.add_mutually_exclusive_group()
+    sizes.add_argument("--size", nargs=2, type=positive(float), metavar=("X", "Y"), help="lengths of the map")
+    sizes.add_argument("--pixel", nargs=2, type=positive(float), metavar=("X", "Y"), help="lengths of a pixel instead")
+    parser.add_argument(
+        "--size-unit", choices=[*UNITS], metavar="UNIT", help="of these lengths (default: that of the heights)"
+    )
+    parser.add_argument("--missing", metavar="MARK", help="mark of missing pixels, beside nan and empty places")
+    parser.add_argument("--plot", type=path, metavar="PNG", help="picture of map, heights and spectrum")
+    args = parser.read(argv)
+    writable(args.plot)
+    found = _scan(args)
+    flat = found.map.detrended("curvature")
+    try:
+        table = roughness_table(found.map)
+        fit = power_spectrum(flat, window="hann").fit()
+    except ValueError as error:
+        raise SceneError(f"{clip(str(args.file), 80)}: {error}") from None
+    say("\n".join(_said(args.file, found, table, fit)))
+    if args.plot:
+        draw(args.plot, args.file.name, found, fit)
+        say(f"# Written: {args.plot}")
+    return 0
+
+
+def _scan(args: argparse.Namespace) -> Found:
+    """Return the height map that is asked for.
+
+    Raises:
+        SceneError: it cannot be read.
+    """
+    if args.unit is None and is_plain(args.file):
+        raise SceneError(f"{clip(str(args.file), 80)} holds numbers without a unit; give --unit, um for example")
+    try:
+        size, pixel = (None if given is None else (given[0], given[1]) for given in (args.size, args.pixel))
+        return scan(args.file, size, args.unit, args.size_unit, args.missing, pixel)
+    except OSError as error:
+        raise SceneError(f"{clip(str(args.file), 80)} cannot be read: {error.strerror or error}") from None
+    except (ValueError, ImportError) as error:
+        raise SceneError(
+            str(error).replace("give the lengths along x and y too", "give --size or --pixel too")
+        ) from None
+
+
+def _said(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iterator[str]:
+    """Yield the table of a scene, and as comments what was found."""
+    m, um = found.map, 1e6
+    heights = distribution(m.detrended("curvature"))
+    (lx, ly), missing = m.size, found.missing
+    yield f"# {clip(str(file), 80)}: {found.layout}"
+    yield (
+        f"# {lx * um:.4g} µm x {ly * um:.4g} µm; rms height {m.h_rms * um:.3g} µm, "
+        f"without curvature {heights.h_rms * um:.3g} µm"
+    )
+    if missing:
+        share = 100 * missing / m.heights.size
+        yield f"# {missing} pixels missing ({share:.2g} %), filled smoothly, which makes h_rms a little smaller"
+    yield f"# skewness {heights.skewness:.2f}, kurtosis {heights.kurtosis:.2f} (0 and 3 of the Gaussian of the model)"
+    long, short = (2e6 * math.pi / q for q in fit.q_range)
+    yield f"# Hurst exponent {fit.hurst:.2f}, fitted between wavelengths of {long:.3g} µm and {short:.3g} µm"
+    if fit.resolved:
+        yield f"# roll-off at {fit.wavelength * um:.3g} µm: the largest wavelength"
+    else:
+        yield "# no roll-off is seen: the largest wavelength is not known, and the map's shorter side stands for it"
+    yield ""
+    yield "[roughness]"
+    for key, value in table.items():
+        yield f"{key} = {value:.4g}"
+
+
+def draw(file: Path, name: str, found: Found, fit: Fit) -> None:
+    """Draw the map without curvature, the distribution of its heights, and its spectrum with the fit."""
+    import numpy as np
+
+    from fingerpad.cli import plot
+
+    flat, um = found.map.detrended("curvature"), 1e6
+    heights, spectrum = distribution(flat), power_spectrum(flat, window="hann")
+    figure, (area, shares, psd) = plot.figure(f"{name}: curvature removed", 3)
+    limit = float(np.abs(flat.heights).max()) * um
+    ends = (0, flat.size[0] * um, 0, flat.size[1] * um)
+    image = area.imshow(flat.heights.T * um, origin="lower", extent=ends, cmap="cividis", vmin=-limit, vmax=limit)
+    figure.colorbar(image, ax=area, label="height (µm)", shrink=0.8)
+    area.set(xlabel="x (µm)", ylabel="y (µm)")
+    z = np.linspace(-4, 4, 200) * heights.h_rms
+    middle = (heights.edges[1:] + heights.edges[:-1]) / 2
+    plot.curve(shares, 0, middle * um, heights.density / um, "map")
+    plot.curve(shares, 1, z * um, heights.gaussian(z) / um, f"Gaussian, {heights.h_rms * um:.3g} µm rms")
+    shares.set(xlabel="height (µm)", ylabel="probability density (1/µm)")
+    shares.set_ylim(0, 1.35 * float(heights.density.max()) / um)
+    ring = spectrum.radial()
+    kept = ring.psd > 0
+    psd.loglog(ring.q[kept], ring.psd[kept], "o", ms=4, color="0.5", label="map, Hann's window")
+    q = np.geomspace(*fit.q_range, 100)
+    plot.curve(psd, 1, q, fit.psd(q), f"fit: Hurst exponent {fit.hurst:.2f}")
+    psd.set(xlabel="wavevector q (1/m)", ylabel="power spectrum C (m⁴)")
+    for ax in (shares, psd):
+        ax.legend()
+    plot.save(figure, file)

@@ -1,0 +1,245 @@
+"""The door: what import fingerpad gives, a run with and without a folder, results that are read again, sweeps."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+import fingerpad as fp
+from fingerpad import full, grid
+from fingerpad.advice import finer_mesh_may_help
+from fingerpad.processes import End
+from fingerpad.result import Cost
+from fingerpad.scene import from_data
+from fingerpad.states import PREFIXES, STATES
+from variational.continuation import StepFailed
+from variational.failure import NotConverged
+from variational.state import CONDITIONS, RESULTS, ContactState, Errors
+
+SMALL = {
+    "f_ext": 1.0,
+    "voltage": 60.0,
+    "geometry": {"ridge_count": 9},
+    "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
+    "output": {"receptors": False},
+}
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory):
+    """A small run into a folder."""
+    folder = tmp_path_factory.mktemp("run") / "out"
+    return fp.run(from_data(SMALL), out=folder), folder
+
+
+# -- the door ----------------------------------------------------------------------------------------------
+def test_every_name_is_there():
+    assert [name for name in fp.__all__ if getattr(fp, name, None) is None] == []
+
+
+def test_import_is_light():
+    """Neither finite elements nor MPI nor Matplotlib are imported before they are used."""
+    code = "import fingerpad, sys; fingerpad.Scene(); print([m for m in sys.argv[1:] if m in sys.modules])"
+    heavy = ("ufl", "dolfinx", "petsc4py", "mpi4py", "gmsh", "matplotlib")
+    done = subprocess.run([sys.executable, "-c", code, *heavy], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_unknown_name_is_refused():
+    with pytest.raises(AttributeError, match="has no attribute 'Fingers'"):
+        _ = fp.Fingers
+
+
+def test_model_that_is_none_is_refused():
+    with pytest.raises(fp.SceneError, match="model is 'rigid'; it must be 'cylinders' or 'smooth' or 'full'"):
+        fp.run(model="rigid")
+
+
+# -- a run -------------------------------------------------------------------------------------------------
+@pytest.mark.mpi
+def test_run_without_a_folder_writes_nothing(ran, tmp_path, monkeypatch):
+    """And its result is that of the run with a folder, bit for bit on one rank."""
+    monkeypatch.chdir(tmp_path)
+    found = fp.run(from_data(SMALL))
+    assert list(tmp_path.iterdir()) == []
+    assert found.full_slip.mu_app == pytest.approx(ran[0].full_slip.mu_app, rel=1e-12)
+
+
+def test_summary_is_the_result(ran):
+    """summary.json is to_dict(), in JSON's numbers; each state is there flat, by its prefix, and by its name."""
+    result, folder = ran
+    kept = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    assert kept == json.loads(json.dumps(result.to_dict()))
+    for name in STATES:
+        state = getattr(result, name)
+        for key in (*CONDITIONS, *RESULTS):
+            assert kept[f"{PREFIXES[name]}_{key}"] == kept["states"][name][key] == getattr(state, key), key
+
+
+def test_result_is_read_again(ran):
+    """Numbers of the named states, their errors and the steps are those of the run."""
+    result, folder = ran
+    read = fp.Result.load(folder)
+    assert read.to_dict() == result.to_dict() | {"loads": []}
+    assert [state.row() for state in read.steps] == [state.row() for state in result.steps]
+    assert read.full_slip.error.known() == result.full_slip.error.known() and read.cost == result.cost
+
+
+def test_arrays_have_documented_shapes(ran):
+    """By ridge, and by facet and point; the pressure along the skin carries what the ridges do, on coarse facets."""
+    result, _ = ran
+    slip = result.full_slip
+    ridges, skin = slip.ridges, slip.skin
+    assert ridges.number.shape == ridges.p_c.shape == ridges.d_eq.shape == slip.p_c.shape == (5,)
+    assert skin.p_n.shape == skin.x.shape == skin.t_t.shape == skin.p_el.shape and skin.ridge.shape == skin.x.shape[:1]
+    assert ridges.f_contact.sum() == pytest.approx(slip.f_contact, rel=1e-9)
+    touching = skin.p_n > 0
+    # Coulomb's law at each point, at the cone's roundoff.
+    np.testing.assert_allclose(np.abs(skin.t_t[touching]), 0.25 * skin.p_n[touching], rtol=1e-7)
+
+
+@pytest.mark.parametrize("kind", ["surface", "finger", "history"])
+def test_pictures(ran, tmp_path, kind):
+    figure = ran[0].plot(kind, tmp_path / "picture.png")
+    assert figure.axes and (tmp_path / "picture.png").stat().st_size > 10_000
+
+
+def test_picture_of_another_kind_is_refused(ran):
+    with pytest.raises(ValueError, match="kind is 'movie'; it must be one of surface, finger, history"):
+        ran[0].plot("movie")
+
+
+def test_pictures_of_a_result_that_was_read(ran):
+    """The history is in the tables; the skin is not, and the refusal says where its picture is."""
+    read = fp.Result.load(ran[1])
+    assert read.plot("history").axes
+    with pytest.raises(ValueError, match="surface.png beside them shows it"):
+        read.plot("surface")
+
+
+def test_failure_is_a_warning():
+    """A finger without enough ridges; the states before are there."""
+    scene = from_data(SMALL | {"f_ext": 30.0, "output": {"receptors": False, "errors": False}})
+    with pytest.warns(UserWarning, match="the finger has no more ridges"):
+        found = fp.run(scene)
+    assert found.full_slip is None and found.steps and "no more ridges" in str(found)
+
+
+# -- text --------------------------------------------------------------------------------------------------
+def state(**values) -> ContactState:
+    rest = {"f_ext": 75.0, "voltage": 200.0, "f_contact": 150.0, "f_electrostatic": 75.0, "ridges_in_contact": 16}
+    return ContactState(**(rest | {"f_t": 39.0, "mu_app": 0.52, "contact_length": 1.5e-3} | values))
+
+
+def test_block_has_units_and_errors():
+    """No key of the program, one system of units, and what N/m is."""
+    slip = state(error=Errors(mu_app=0.004, contact_length=2e-5))
+    text = str(fp.Result(fp.Scene(), "full", None, None, slip))
+    assert "0.5200 ± 0.0040" in text and "1.500 ± 0.020" in text and "contact length L_R (mm)" in text
+    assert "per metre of finger" in text and "slip_" not in text and "_length" not in text
+
+
+def test_press_alone_ends_without_a_word_on_slip():
+    """No load moves the bone, so that full slip was not asked for."""
+    pressed = from_data({"history": [{"name": "press", "f_ext": 5.0}]})
+    assert "slip" not in str(fp.Result(pressed, "full", state(), state(), None))
+    assert "No full slip" in str(fp.Result(fp.Scene(), "full", state(), state(), None))
+
+
+# -- smaller elements by itself ----------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("reason", "helps"), [("DIVERGED_LOCAL_MIN", True), ("COUPLING_CAP at ridge 1", False), ("NOT_A_NUMBER", False)]
+)
+def test_smaller_elements_are_tried_where_that_is_the_advice(reason, helps):
+    lost = StepFailed("lost")
+    lost.__cause__ = NotConverged(reason, False)
+    assert finer_mesh_may_help(lost, coarse_start=False) is helps
+    assert finer_mesh_may_help(lost, coarse_start=True)
+
+
+@pytest.mark.slow
+def test_a_run_starts_again_with_smaller_elements(monkeypatch):
+    """Every solve of 40 um elements fails; with 20 um the loads are reached, and the result says what was tried."""
+    solve = full.Simulation.run
+
+    def lost(self):
+        if self.scene.mesh.contact > 30e-6:
+            raise StepFailed("no equilibrium") from NotConverged("DIVERGED_LOCAL_MIN", False)
+        solve(self)
+
+    monkeypatch.setattr(full.Simulation, "run", lost)
+    lean = {"history": [{"name": "press", "f_ext": 0.5}], "output": {"receptors": False, "errors": False}}
+    found = fp.run(from_data({key: SMALL[key] for key in ("geometry", "mesh")} | lean))
+    assert not found.failure and found.charged.mesh_contact == 20e-6
+    assert [start["contact"] for start in found.to_dict()["failed_starts"]] == [40e-6]
+
+
+# -- sweeps ------------------------------------------------------------------------------------------------
+def test_sweep_of_the_closed_form(tmp_path):
+    """Fifteen points at once: friction rises with the voltage and falls with the force; the table is kept."""
+    found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0, 50, 100, 150, 200], f_ext=[25, 50, 75])
+    mu = found.array("mu_app")
+    assert mu.shape == (5, 3) and len(found) == 15
+    np.testing.assert_allclose(mu[0], 0.25, rtol=1e-9)
+    assert (np.diff(mu, axis=0) > 0).all() and (np.diff(mu[1:], axis=1) < 0).all()
+    assert found.points()[4] == {"voltage": 50.0, "f_ext": 50.0}
+    lines = (tmp_path / "table.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[0].startswith("voltage,f_ext,") and len(lines) == 16
+
+
+def test_sweep_is_taken_up_again(tmp_path, monkeypatch):
+    """One of two points is there; the other one is run, and its crash is in the table."""
+    asked = []
+
+    def run(module, arguments, limit):
+        scene = json.loads(open(arguments[0], encoding="utf-8").read())
+        asked.append((scene["voltage"], arguments[3]))
+        if scene["voltage"] > 0:
+            return End(1, "CRASH_1", "out of luck", "")
+        done = fp.Result(from_data(scene), "smooth", None, None, state(voltage=0.0), cost=Cost(1.0))
+        with open(f"{arguments[1]}/summary.json", "w", encoding="utf-8") as file:
+            json.dump(done.to_dict(), file)
+        return End(0, "", "", "")
+
+    monkeypatch.setattr("fingerpad.study.run", run)
+    for _ in range(2):
+        found = fp.sweep(fp.Scene(), tmp_path, model="smooth", voltage=[0.0, 100.0])
+    assert asked == [(0.0, "smooth"), (100.0, "smooth"), (100.0, "smooth")]
+    assert found[0].full_slip.mu_app == 0.52 and found[1].failure == "CRASH_1: out of luck"
+    assert "out of luck" in str(found)
+
+
+@pytest.mark.parametrize(
+    ("axes", "words"),
+    [
+        ({}, "the sweep has no axis"),
+        ({"voltage": []}, "voltage of the sweep is"),
+        ({"voltage": [1e6]}, "voltage is 1000000"),
+        ({"volt": [1.0]}, "did you mean voltage"),
+    ],
+)
+def test_sweep_that_makes_no_sense_is_refused(tmp_path, axes, words):
+    with pytest.raises(fp.SceneError, match=words):
+        fp.sweep(fp.Scene(), tmp_path, model="cylinders", **axes)
+
+
+def test_too_many_points_are_refused(tmp_path):
+    values = list(np.linspace(1, 100, 200))
+    with pytest.raises(fp.SceneError, match="the sweep has 40000 points; at most 10000"):
+        grid.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=values, f_ext=values)
+
+
+def test_world_is_the_default(monkeypatch):
+    """Without a communicator a run is of all ranks."""
+    seen = []
+
+    def run(scene, out, comm, lines):
+        seen.append(comm)
+        return fp.Result(scene, "full", None, None, None)
+
+    monkeypatch.setattr(full, "run", run)
+    fp.run(from_data(SMALL))
+    assert seen == [MPI.COMM_WORLD]

@@ -1,0 +1,63 @@
+r"""Missing pixels of a height map, filled so that what is around them goes on smoothly.
+
+A missing height is the mean of its neighbours: the discrete Laplace equation, with the measured heights around as
+values on its boundary and no slope across the map's own edge. The filling is smoother than the surface: it takes away
+roughness that is finer than a hole, about in proportion to the part of the map that is missing.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.linalg import spsolve
+
+Array = NDArray[np.float64]
+MOST = 0.25  # of a map that may be missing
+
+
+def filled(heights: Array) -> Array:
+    """Return heights (m) without missing ones.
+
+    Args:
+        heights: shape (nx, ny), NaN or infinite where missing.
+
+    Raises:
+        ValueError: more than a quarter of the map is missing.
+    """
+    lost = ~np.isfinite(heights)
+    count = int(lost.sum())
+    if count == 0:
+        return heights
+    if count > MOST * heights.size:
+        raise ValueError(f"{count} of {heights.size} heights are missing or infinite; at most a quarter may be")
+    number = np.full(heights.shape, -1)
+    number[lost] = np.arange(count)
+    rows, columns, values = [], [], []
+    right, degree = np.zeros(count), np.zeros(count)
+    for axis in (0, 1):
+        for side in (1, -1):
+            here, there = (_shifted(heights.shape, axis, side, end) for end in (0, 1))
+            mine, other, z = number[here], number[there], heights[there]
+            inside = mine >= 0
+            np.add.at(degree, mine[inside], 1.0)
+            known = inside & (other < 0)
+            np.add.at(right, mine[known], z[known])
+            both = inside & (other >= 0)
+            rows.append(mine[both])
+            columns.append(other[both])
+            values.append(np.full(int(both.sum()), -1.0))
+    diagonal = np.arange(count)
+    matrix = coo_array(
+        (np.concatenate([*values, degree]), (np.concatenate([*rows, diagonal]), np.concatenate([*columns, diagonal]))),
+        shape=(count, count),
+    ).tocsc()
+    whole = heights.copy()
+    whole[lost] = spsolve(matrix, right)
+    return whole
+
+
+def _shifted(shape: tuple[int, ...], axis: int, side: int, end: int) -> tuple[slice, slice]:
+    """Return the pixels that have a neighbour on a side of an axis (end 0), or these neighbours (end 1)."""
+    n = shape[axis]
+    low = slice(0, n - 1) if (side == 1) == (end == 0) else slice(1, n)
+    other = slice(0, shape[1 - axis])
+    return (low, other) if axis == 0 else (other, low)
