@@ -9,28 +9,25 @@
 # The tests run them on a small finger.
 
 # %%
+# fmt: off
 import fingerpad as fp
 
-scene = fp.Scene(f_ext=75.0, voltage=200.0, friction=0.25)  # SI; everything else has a default
-result = fp.run(scene)  # out="..." also writes tables, plots, fields
-slip = result.full_slip  # likewise .uncharged, .charged, .steps
+scene = fp.Scene(f_ext=75.0, voltage=200.0, friction=0.25)       # SI; everything else has a default
+result = fp.run(scene)                                            # out="..." also writes tables, plots, fields
+slip = result.full_slip                                           # likewise .uncharged, .charged, .steps
 print(f"{slip.mu_app:.3f} ± {slip.error.mu_app:.3f}, {slip.ridges_in_contact} ridges")
-result.plot("surface")  # or "finger", "history"
+result.plot("surface")                                            # or "finger", "history"
 
-fast = fp.run(scene, model="smooth")  # seconds; "cylinders" at once
+fast  = fp.run(scene, model="smooth")                             # seconds; "cylinders" at once
 exact = fp.run(scene.replace(accuracy={"mu_app": 0.01}))
-curve = fp.sweep(scene, voltage=[0, 50, 100, 150, 200], f_ext=[25, 75], jobs=2)  # a table; kept on disk, taken up again
+curve = fp.sweep(scene, voltage=[0, 50, 100, 150, 200], f_ext=[25, 75], jobs=2)   # a table; kept on disk, taken up again
 
-ridge = fp.Body(
-    fp.geometry.ridge(size=10e-6),
-    fp.Ogden(86.76e3, -14.53, 0.48),
-    contact=fp.Penalty(1.5e12, 5e10),
-    friction=0.25,
-    roughness=fp.BearingArea(h_0=0.51e-6),
-)
+ridge = fp.Body(fp.geometry.ridge(size=10e-6), fp.Ogden(86.76e3, -14.53, 0.48),
+                contact=fp.Penalty(1.5e12, 5e10), friction=0.25, roughness=fp.BearingArea(h_0=0.51e-6))
 ridge.press(4.4).charge(200.0).slide(until_full_slip=True)
-print(ridge.state.mu_app, ridge.state.d_eq, ridge.displacement)  # arrays with documented shapes
+print(ridge.state.mu_app, ridge.state.d_eq, ridge.displacement)   # arrays with documented shapes
 
+# fmt: on
 # %% [markdown]
 # What a run found is printed as a block, with units and estimated errors. A sweep prints a table.
 

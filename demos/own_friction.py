@@ -67,8 +67,8 @@ def main(out: str = "results/demos/own_friction", size: str = "small") -> None:
         draw(Path(out), forces, found)
     # Equal laws, equal numbers, but for the solver's tolerance.
     assert np.isclose(found[0], built_in.state.f_t, rtol=1e-8)
-    # The regularisation takes a per cent of tau_0, near the ends of the foot, where the pressure falls to nothing. Under
-    # load the foot is up to 3 % longer than unloaded, and tractions are those of the unloaded foot.
+    # The regularisation takes a per cent of tau_0, near the ends of the foot, where the pressure falls to nothing.
+    # Under load the foot is up to 3 % longer than unloaded, and tractions are those of the unloaded foot.
     assert (found < exact).all() and (exact - found < 0.05 * TAU_0 * lengths).all()
     # On a finger: more than Coulomb's law, and less than with all of tau_0 over the length in contact.
     coulomb, all_of_it = MU * slip.f_contact, TAU_0 * slip.contact_length

@@ -104,7 +104,8 @@ def draw(out: Path, body: fp.Body) -> None:
     x, y = (body.coordinates + body.displacement).T * 1e3
     axes.triplot(x, y, body.triangles, lw=0.4, color="#0072B2")
     axes.axhline(0, color="k", lw=2)
-    axes.annotate("screen", (x.max(), 0), (-40, -14), textcoords="offset points")
+    axes.annotate("screen", (0, 0), (0, -14), textcoords="offset points", ha="center")
+    axes.set_ylim(-0.1, 1.02)
     axes.set(xlabel="x (mm)", ylabel="y (mm)", aspect="equal", title=f"Pressed by {F_EXT:g} N/m, sliding to the right")
     figure.savefig(out / "deformed.png", dpi=150)
 

@@ -36,7 +36,7 @@ def history(f_ext: float, samples: int) -> list[dict]:
 
 
 # %%
-def main(out: str = "results/demos/sine_voltage_while_sliding", samples: str = "8", size: str = "small") -> None:
+def main(out: str = "results/demos/sine_voltage_while_sliding", samples: str = "12", size: str = "small") -> None:
     """Run one period in a multiple of 4 steps; with the size "full" on the default finger, for some ten minutes."""
     n = int(samples)
     scene = load(SMALL) if size == "small" else fp.Scene()
@@ -77,7 +77,7 @@ def draw(out: Path, U: np.ndarray, f_t: np.ndarray) -> None:
     above.plot(t, np.sign(np.round(np.sin(2 * np.pi * t), 9)) * U, "o", color="#D55E00")
     above.set(ylabel="voltage U (V)", title="Friction has twice the frequency of the voltage")
     below.plot(t, f_t, "o-", color="#0072B2")
-    below.set(xlabel="time over the period", ylabel="friction force f_T (N/m)", ylim=(0, None))
+    below.set(xlabel="time over the period", ylabel="friction force f_T (N/m)", ylim=(0, 1.1 * f_t.max()))
     out.mkdir(parents=True, exist_ok=True)
     figure.savefig(out / "sine.png", dpi=150)
 

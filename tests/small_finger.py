@@ -15,14 +15,14 @@ SMALL = Path(__file__).parents[1] / "demos" / "scenes" / "small_finger.toml"
 LIGHTER = 1.0 / 75.0  # of the loads: 1 N/m on the small finger for 75 N/m on the default one
 
 
-def small(f_ext: float = 75.0, **values: Any) -> Scene:
-    """Return the scene on the small finger, under a lighter load."""
-    return load(SMALL).replace(f_ext=f_ext * LIGHTER, **values)
+def small(f_ext: float = 75.0, voltage: float = 200.0, **values: Any) -> Scene:
+    """Return the scene on the small finger, under a lighter load and half of the voltage."""
+    return load(SMALL).replace(f_ext=f_ext * LIGHTER, voltage=voltage / 2, **values)
 
 
 def ends(scene: Scene, *args: Any, f_ext: list[float], voltage: list[float], **more: Any) -> fingerpad.Sweep:
     """Return the first and the last point of a sweep."""
-    axes = {"f_ext": [f_ext[-1] * LIGHTER], "voltage": [voltage[0], voltage[-1]]}
+    axes = {"f_ext": [f_ext[-1] * LIGHTER], "voltage": [voltage[0] / 2, voltage[-1] / 2]}
     return SWEEP(scene.replace(output={"errors": False}), *args, **more, **axes)
 
 
