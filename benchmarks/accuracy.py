@@ -19,9 +19,10 @@ from benchmarks.effectivity import HIGH, LOW, cell, hertz_table, knob_tables, ta
 from benchmarks.errors import DEFAULT, LEVELS, folder_of_limits
 from fingerpad.files import replace
 from fingerpad.scene import Scene
+from fingerpad.states import WORDS
 from fingerpad.study import result, sweep
 
-_STATES = {"press": "uncharged", "normal": "normal contact", "slip": "full slip"}
+_STATES = {"press": WORDS["uncharged"], "normal": WORDS["charged"], "slip": WORDS["full_slip"]}
 _SHORT = {"mu_app": "µ_app", "contact_length": "contact length", "sed": "SED"}
 _CHOSEN = ("contact", "growth", "receptor")
 _TEN = {"mu_app": 0.01, "contact_length": 0.03}

@@ -20,6 +20,7 @@ from benchmarks import arguments
 from fingerpad.estimate import MORE, ONCE
 from fingerpad.files import replace, replace_json
 from fingerpad.screen import ORDER
+from fingerpad.states import WORDS
 
 WANTED = 0.9  # of the cases of each kind
 KINDS = {"friction": ("µ_app", "f_T"), "contact length": ("contact length",), "energy density": ("SED",)}
@@ -46,7 +47,7 @@ order {order:g}, and what 5000 changes ([errors.json](errors.json)):
 | contact length | from 1500 to 5000 MPa/mm, predicted (mm) | found (mm) |
 |---|---|---|
 {stiffer}"""
-_STATES = {"press": "uncharged", "normal": "normal contact", "slip": "full slip"}
+_STATES = {"press": WORDS["uncharged"], "normal": WORDS["charged"], "slip": WORDS["full_slip"]}
 _SCENE, _KNOB, _HERTZ = 7, 5, 5  # columns of the tables
 _FIRST = {"Contact size": "10 µm", "Growth": "0.25", "Size at": "20 µm"}  # of a knob, with one coarser run before it
 _ALONE = "default scene as it is"

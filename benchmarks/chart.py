@@ -115,7 +115,7 @@ def _panel(ax: Axes, points: Sequence[Point], quantity: str, reference: Limit, m
     ax.minorticks_off()
     shown = [p.errors[quantity] for _, p in known(points, quantity, measure)]
     ax.set_ylim(max(0.5 * min(shown), 1e-5), 2 * max(shown))
-    ax.set(title=_words(quantity))
+    ax.set(title=_words(quantity).replace(", ", "\n", 1))
 
 
 def paint(figure: Figure, points: Sequence[Point], reference: Mapping[str, Limit], measure: str) -> None:

@@ -23,6 +23,7 @@ from fingerpad.estimate import plus_minus
 from fingerpad.files import replace, replace_json
 from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, from_data
+from fingerpad.states import WORDS
 from fingerpad.study import sweep
 
 _LIMIT = 10800.0  # s of processor time for one run; the finest mesh takes far longer than a trace
@@ -36,15 +37,18 @@ LEVELS = 4  # meshes of the reference
 DEFAULT = by_rule(Scene())
 SITES = (-5, 0, 5)  # ridges whose Merkel sites are looked at: trailing, central and leading ones in contact
 QUANTITIES: Mapping[str, tuple[str, float]] = {  # name: what it is, and what its unit is worth
-    "press_contact_length": ("contact length, uncharged (mm)", 1e-3),
-    "normal_contact_length": ("contact length, normal (mm)", 1e-3),
-    "normal_ridges_in_contact": ("ridges, normal", 1),
+    "press_contact_length": (f"contact length, {WORDS['uncharged']} (mm)", 1e-3),
+    "normal_contact_length": (f"contact length, {WORDS['charged']} (mm)", 1e-3),
+    "normal_ridges_in_contact": (f"ridges, {WORDS['charged']}", 1),
     "slip_f_t": ("f_T, full slip (N/m)", 1),
     "slip_mu_app": ("µ_app, full slip", 1),
     "slip_contact_length": ("contact length, full slip (mm)", 1e-3),
     "slip_ridges_in_contact": ("ridges, full slip", 1),
-} | {f"{state}_sed_{j}": (f"SED at ridge {j}, {words} (J/m³)", 1.0) for state, words in
-     (("press", "uncharged"), ("normal", "normal"), ("slip", "full slip")) for j in SITES}  # fmt: skip
+} | {
+    f"{state}_sed_{j}": (f"SED at ridge {j}, {WORDS[name]} (J/m³)", 1.0)
+    for state, name in (("press", "uncharged"), ("normal", "charged"), ("slip", "full_slip"))
+    for j in SITES
+}
 _HEADER = """# Discretisation error of the default scene
 
 Made by `environment/run python3 benchmarks/errors.py`; do not edit. The default scene (75 N/m, 200 V, slid to full

@@ -26,14 +26,15 @@ from fingerpad import closed_form, ridge_cell
 from fingerpad.files import replace, replace_json
 from fingerpad.processes import End, Pool
 from fingerpad.result import Result
+from fingerpad.states import WORDS
 from fingerpad.study import progress, result
 
 SIZE = 10e-6  # m
 NAMES = {
     "slip_mu_app": "µ_app at full slip",
     "slip_contact_length": "contact length at full slip",
-    "normal_contact_length": "contact length, normal contact",
-    "normal_f_electrostatic": "attraction, normal contact",
+    "normal_contact_length": f"contact length, {WORDS['charged']}",
+    "normal_f_electrostatic": f"attraction, {WORDS['charged']}",
 }
 START = "start"  # rung 3 from rung 2, in ladder.json
 _KINDS = {"2": "rung 2", START: "rung 3 from rung 2"}

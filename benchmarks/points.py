@@ -21,11 +21,12 @@ from benchmarks.ladder import name as ladder_name
 from benchmarks.runs import Run
 from fingerpad.reach import by_rule
 from fingerpad.scene import Scene, from_data
+from fingerpad.states import WORDS
 from fingerpad.study import result
 
 DEFAULT = "default"
 ASKED, AGAIN, LADDER = "accuracy asked for", "solved again", "ladder"
-STATES = {"press": "normal contact", "normal": "charged contact", "slip": "full slip"}
+STATES = {"press": WORDS["uncharged"], "normal": WORDS["charged"], "slip": WORDS["full_slip"]}
 KINDS = {"f_t": "f_T and µ_app", "contact_length": "contact length", "sed_0": "SED at the central Merkel site"}
 MEASURES = {"work": "factorisations × unknowns", "seconds": "processor time"}
 QUANTITIES = [f"{state}_{kind}" for kind in KINDS for state in STATES if kind != "f_t" or state == "slip"]

@@ -11,6 +11,8 @@ Importing this package imports nothing heavy; what needs finite elements is impo
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from fingerpad.installed import needed_by
+
 if TYPE_CHECKING:
     import geometry as geometry
     from fingerpad.api import run as run
@@ -63,7 +65,6 @@ _FINITE_ELEMENTS = [
     for name, home in _HOMES.items()
     if home.startswith("variational") and not home.startswith(("variational.roughness", "variational.state"))
 ] + ["Body"]
-_LIBRARIES = ("dolfinx", "ufl", "basix", "ffcx", "petsc4py", "mpi4py", "gmsh")
 __all__ = [*_HOMES, "geometry"]
 
 
@@ -73,17 +74,10 @@ def __getattr__(name: str) -> Any:
         return import_module("geometry")
     if name not in _HOMES:
         raise AttributeError(f"module 'fingerpad' has no attribute {name!r}; it has {', '.join(__all__)}")
-    try:
+    with needed_by(f"fingerpad.{name}"):
         if name in _FINITE_ELEMENTS:  # with the configuration of the user alone, before any other import
             import_module("fingerpad.started")
         return getattr(import_module(_HOMES[name]), name)
-    except ModuleNotFoundError as error:
-        if error.name is None or error.name.partition(".")[0] not in _LIBRARIES:
-            raise
-        raise ImportError(
-            f"fingerpad.{name} needs {error.name}; install finite elements by conda env create -f environment.yml, "
-            "by pip install 'fingerpad[fem]', or use environment/run"
-        ) from error
 
 
 def __dir__() -> list[str]:

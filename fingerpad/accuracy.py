@@ -246,8 +246,9 @@ class Search:
         self.solves.append(solve)
         m = solve.mesh
         self.say(
-            f"again: contact {m.contact * 1e6:.4g} µm, growth {m.growth:.3g}, junctions {m.interface * 1e6:.4g} µm, "
-            f"receptors {m.receptor * 1e6:.4g} µm: {solve.unknowns} unknowns, {solve.factorisations} factorisations"
+            f"states on another mesh: facets {m.contact * 1e6:.4g} µm, growth {m.growth:.3g}, "
+            f"junctions {m.interface * 1e6:.4g} µm, receptors {m.receptor * 1e6:.4g} µm: "
+            f"{solve.unknowns} unknowns, {solve.factorisations} factorisations"
         )
 
     def _tell(self) -> None:
@@ -258,7 +259,8 @@ class Search:
                 continue
             (value, unit), (spread, _) = scaled(name, values[name]), scaled(name, error)
             limit = f", {scaled(name, allowed[name])[0]:.2g} allowed" if name in allowed else ""
-            self.say(f"{in_words(name)}: {plus_minus(value, spread)} {unit} (estimated discretisation error){limit}")
+            number = f"{plus_minus(value, spread)} {unit}".rstrip()
+            self.say(f"{in_words(name)}: {number} (estimated discretisation error){limit}")
 
     def summary(self) -> dict[str, Any]:
         """Return how errors were found, ready for JSON; collective."""

@@ -1,6 +1,7 @@
 """Run a scene, or many: what ``import fingerpad`` gives for that."""
 
 import os
+import signal
 import tempfile
 import warnings
 from collections.abc import Mapping
@@ -8,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fingerpad.files import replace_json
+from fingerpad.installed import needed_by
 from fingerpad.result import Result
 from fingerpad.scene import Scene, SceneError, check
 from fingerpad.sentences import show
@@ -51,12 +53,16 @@ def run(
 
     Raises:
         SceneError: the scene cannot be run, in one sentence.
+        KeyboardInterrupt: Ctrl-C, after the present step; every step accepted before is in ``out``.
     """
     scene = scene or Scene()
     if closure is not None or materials or friction is not None or mesh is not None:
         scene = scene.with_laws(closure=closure, materials=materials, friction=friction, mesh=mesh)
     result = solved(scene, model, None if out is None else Path(out), comm)
-    if result.failure and not result.interrupted:
+    if result.interrupted:
+        number = signal.Signals[result.interrupted]
+        raise KeyboardInterrupt if number == signal.SIGINT else SystemExit(128 + number)
+    if result.failure:
         warnings.warn(result.failure, stacklevel=2)
     return result
 
@@ -79,10 +85,15 @@ def solved(
         from fingerpad import closed_form
 
         return kept(closed_form.solve(scene), out)
-    check(scene)
+    with needed_by(f"the model {model!r}"):
+        return _with_finite_elements(scene, model, out, comm, lines)
+
+
+def _with_finite_elements(scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool) -> Result:
     import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
     from fingerpad.entry import MPI
 
+    check(scene)
     comm = comm or MPI.COMM_WORLD
     if model == "full":
         from fingerpad import full

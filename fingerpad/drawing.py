@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from variational.output import Snapshot
 
 _PATH, _FINAL = "path on the starting mesh", "final mesh"
-_TITLES = {"charged": "Normal contact", "full_slip": "Full slip"}
+_TITLES = {name: words.capitalize() for name, words in WORDS.items()}
 KINDS = ("surface", "finger", "history")
 
 
@@ -54,7 +54,7 @@ class Drawing:
             self._finger(folder / f"finger_{load.replace(' ', '_')}.png", f"After {load}", *end, self._path_note())
         for name, view in self.finer.items():
             if view.snapshot is not None:
-                words = _TITLES[name].lower().replace(" ", "_")
+                words = WORDS[name].replace(" ", "_")
                 _keep(folder / f"finger_{words}.npz", view.snapshot, view.merkel)
                 self._final(folder / f"finger_{words}.png", name)
         if self._slides():
@@ -105,8 +105,9 @@ class Drawing:
     def _final(self, path: Path | None, name: str) -> Figure:
         view = self.finer[name]
         assert view.snapshot is not None
-        title = WORDS[name].capitalize()
-        return self._finger(path, title, view.state, view.snapshot, view.merkel, _note(_FINAL, view.mesh.contact))
+        return self._finger(
+            path, _TITLES[name], view.state, view.snapshot, view.merkel, _note(_FINAL, view.mesh.contact)
+        )
 
     def _finger(
         self,

@@ -11,6 +11,7 @@ import numpy as np
 from mpi4py import MPI
 
 from fingerpad import states
+from fingerpad.balance import broken
 from fingerpad.console import Console
 from fingerpad.drawing import Drawing, End
 from fingerpad.laws import coefficient, used
@@ -240,6 +241,9 @@ class Report:
             folder=self._folder,
             drawing=drawing,
         )
+        defect = broken(found.full_slip, found.record["force_error"], coefficient(self.scene))
+        if defect and not found.failure:
+            found = replace(found, failure=defect)
         self._writer.summary(found.to_dict())
         return found
 

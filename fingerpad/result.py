@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.estimate import plus_minus
+from fingerpad.laws import coefficient
 from fingerpad.scene import Scene, SceneError, from_data
 from fingerpad.states import PREFIXES, STATES, WORDS, LoadResult
 from fingerpad.words import PER_LENGTH, QUANTITIES
@@ -173,7 +174,7 @@ class Result:
                 return found
             with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
                 steps = tuple(ContactState.from_row(row) for row in csv.DictReader(file))
-            return replace(found, steps=steps, drawing=Drawing(found.scene.friction, steps, {}, {}, {}, None))
+            return replace(found, steps=steps, drawing=Drawing(coefficient(found.scene), steps, {}, {}, {}, None))
         except (OSError, ValueError, KeyError) as error:
             if isinstance(error, SceneError):
                 raise

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -101,6 +102,13 @@ def test_arrays_have_documented_shapes(ran):
     np.testing.assert_allclose(np.abs(skin.t_t[touching]), 0.25 * skin.p_n[touching], rtol=1e-7)
 
 
+def test_model_without_its_libraries_is_refused_in_a_sentence(monkeypatch):
+    monkeypatch.setitem(sys.modules, "fingerpad.smooth", None)
+    monkeypatch.setattr("fingerpad.installed.OPTIONAL", ("fingerpad",))
+    with pytest.raises(ImportError, match="the model 'smooth' needs fingerpad, which is not installed;"):
+        fp.run(from_data(SMALL), model="smooth")
+
+
 @pytest.mark.parametrize("kind", ["surface", "finger", "history"])
 def test_pictures(ran, tmp_path, kind):
     figure = ran[0].plot(kind, tmp_path / "picture.png")
@@ -126,6 +134,15 @@ def test_failure_is_a_warning():
     with pytest.warns(UserWarning, match="the finger has no more ridges"):
         found = fp.run(scene)
     assert found.full_slip is None and found.steps and "no more ridges" in str(found)
+
+
+@pytest.mark.parametrize(("name", "error"), [("SIGINT", KeyboardInterrupt), ("SIGTERM", SystemExit)])
+def test_signal_ends_the_program_after_the_step(monkeypatch, name, error):
+    """A loop over runs ends with the first Ctrl-C, as any Python program does."""
+    ended = fp.Result(fp.Scene(), "full", None, None, None, failure="stopped", interrupted=name)
+    monkeypatch.setattr(full, "run", lambda *_: ended)
+    with pytest.raises(error):
+        fp.run(from_data(SMALL))
 
 
 # -- text --------------------------------------------------------------------------------------------------
@@ -195,13 +212,12 @@ def test_sweep_is_taken_up_again(tmp_path, monkeypatch):
     asked = []
 
     def run(module, arguments, limit):
-        scene = json.loads(open(arguments[0], encoding="utf-8").read())
+        scene = json.loads(Path(arguments[0]).read_text(encoding="utf-8"))
         asked.append((scene["voltage"], arguments[3]))
         if scene["voltage"] > 0:
             return End(1, "CRASH_1", "out of luck", "")
         done = fp.Result(from_data(scene), "smooth", None, None, state(voltage=0.0), cost=Cost(1.0))
-        with open(f"{arguments[1]}/summary.json", "w", encoding="utf-8") as file:
-            json.dump(done.to_dict(), file)
+        (Path(arguments[1]) / "summary.json").write_text(json.dumps(done.to_dict()), encoding="utf-8")
         return End(0, "", "", "")
 
     monkeypatch.setattr("fingerpad.study.run", run)

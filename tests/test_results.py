@@ -76,7 +76,7 @@ def test_charged_while_it_slides(tmp_path, titles):
     assert slide["stable"] is press["stable"] is True
     assert end["extremes"]["mu_app"]["max_step"] == summary["slip_step"]
     assert "$U$ = 100 V, bone at $x$ = 0.6 mm" in titles["finger_charge_while_sliding"]
-    assert "$U$ = 0 V" in titles["Normal contact"] and "$U$ = 100 V" in titles["Full slip"]
+    assert "$U$ = 0 V" in titles["Charged normal contact"] and "$U$ = 100 V" in titles["Full slip"]
     assert "$f_{ext}$ = 1 N/m, $U$ = 0 to 100 V" in titles["history"] and "$U$ = 0 to 100 V" in titles["surface"]
 
 
@@ -235,7 +235,7 @@ def test_headline_states_are_shown_on_the_final_mesh(tmp_path, titles):
     path, end = "path on the starting mesh, contact size 40 µm", f"final mesh, contact size {final * 1e6:.3g} µm"
     for name in ("finger_press", "finger_charge", "finger_slide", "history", "Partial slip"):
         assert path in titles.get(name, path), name
-    for name in ("finger_normal_contact", "finger_full_slip", "Normal contact", "Full slip"):
+    for name in ("finger_charged_normal_contact", "finger_full_slip", "Charged normal contact", "Full slip"):
         assert end in titles[name], name
     ridges = [row for row in rows_of(tmp_path, "ridges_final") if row["of"] == "full_slip"]
     assert sum(float(row["f_friction"]) for row in ridges) == pytest.approx(
@@ -285,4 +285,4 @@ def test_way_through_the_air_is_no_sliding(tmp_path, titles):
     assert summary["uncharged_load"] == "press"
     assert summary["normal_bone_x"] == pytest.approx(place, rel=1e-12)
     assert summary["slip_mu_app"] > 0.5 and summary["slip_bone_x"] > place
-    assert "0.5 mm" in titles["Normal contact"]
+    assert "0.5 mm" in titles["Charged normal contact"]

@@ -14,6 +14,7 @@ from importlib import metadata
 from pathlib import Path
 
 from fingerpad import terminal
+from fingerpad.installed import OPTIONAL, needed_by
 from fingerpad.sentences import SceneError, clip
 
 COMMANDS = {
@@ -28,7 +29,6 @@ COMMANDS = {
     "params": "every key of a scene: unit, default, range and meaning",
 }
 _COLLECTIVE = ("run", "compare")  # use all ranks; the others are answered by rank 0
-_OPTIONAL = ("dolfinx", "ufl", "basix", "ffcx", "petsc4py", "mpi4py", "gmsh", "matplotlib")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -39,14 +39,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     words = sys.argv[1:] if argv is None else list(argv)
     try:
-        return _call(words)
+        with needed_by(words[0] if words else "help"):
+            return _call(words)
     except SceneError as error:
         return refuse(str(error))
-    except ModuleNotFoundError as error:
-        missing = (error.name or "").partition(".")[0]
-        if missing not in _OPTIONAL:
+    except ImportError as error:
+        if error.name not in OPTIONAL:
             raise
-        return refuse(f"{words[0]} needs {missing}, which is not installed; the README says how to install it")
+        return refuse(str(error))
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:  # of `fingerpad params | head`
