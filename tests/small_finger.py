@@ -22,7 +22,7 @@ def small(f_ext: float = 75.0, voltage: float = 200.0, **values: Any) -> Scene:
 
 def ends(scene: Scene, *args: Any, f_ext: list[float], voltage: list[float], **more: Any) -> fingerpad.Sweep:
     """Return the first and the last point of a sweep."""
-    axes = {"f_ext": [f_ext[-1] * LIGHTER], "voltage": [voltage[0] / 2, voltage[-1] / 2]}
+    axes = {"voltage": [voltage[0] / 2, voltage[-1] / 2], "f_ext": [f_ext[-1] * LIGHTER]}  # in the order of the demo
     return SWEEP(scene.replace(output={"errors": False}), *args, **more, **axes)
 
 
