@@ -55,7 +55,7 @@ def main(out: str = "results/demos/friction_over_voltage", size: str = "small") 
             print(f"{voltage:5.0f} V: full model {full:.4f}, cylinders {cylinders:.4f}")
         draw(Path(out), voltages, mu, points, found, f"{size} finger, {scene.f_ext:g} N/m")
     assert np.allclose(mu[:, 0], MU_0) and np.allclose(found[0], MU_0, rtol=1e-6)  # no voltage, no attraction
-    assert (np.diff(mu, axis=1) > 0).all() and (mu[0, 1:] > mu[1, 1:]).all()  # a light finger feels more of it
+    assert (np.diff(mu, axis=1) > 0).all() and (mu[0, 1:] > mu[1, 1:]).all()  # it weighs more on a light load
     # At least the square of the voltage: the gap closes.
     assert ((mu[:, -1] - MU_0) > 4 * (mu[:, 20] - MU_0)).all()
     # The closed form of one mean ridge is some per cent off the finger's ridges, no more than a tenth.

@@ -60,10 +60,8 @@ def main(out: str = "results/demos/own_material", size: str = "small") -> None:
         "Yeoh, c₂ = G": pressed(Yeoh(SOFT.shear_modulus, SOFT.bulk, SOFT.shear_modulus)),
     }
     scene = load(SMALL) if size == "small" else fp.Scene()
-    scene = fp.Scene(
-        geometry=scene.geometry, mesh=scene.mesh, history=[{"name": "press", "f_ext": scene.f_ext}], friction=0.0,
-        output={"errors": False, "receptors": False},
-    )  # fmt: skip
+    pressed_only = [{"name": "press", "f_ext": scene.f_ext}]
+    scene = scene.replace(history=pressed_only, friction=0.0, output={"errors": False})
     yeoh = Yeoh(SOFT.shear_modulus, SOFT.bulk, 10 * SOFT.shear_modulus)
     fingers = [fp.run(scene, materials={"dermis": material}) for material in (SOFT, yeoh)]
     height = [finger.uncharged.bone_height for finger in fingers]

@@ -41,12 +41,7 @@ def main(out: str = "results/demos/sine_voltage_while_sliding", samples: str = "
     n = int(samples)
     scene = load(SMALL) if size == "small" else fp.Scene()
     f_ext = scene.f_ext
-    scene = fp.Scene(
-        geometry=scene.geometry,
-        mesh=scene.mesh,
-        history=history(f_ext, n),
-        output={"errors": False, "receptors": False},
-    )
+    scene = scene.replace(history=history(f_ext, n), output={"errors": False})
     result = fp.run(scene)
     assert not result.failure, result.failure
     ends = {state.load: state for state in result.steps}  # the last state of each load

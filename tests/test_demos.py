@@ -9,7 +9,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 DEMOS = sorted((ROOT / "demos").glob("*.py"))
-ALONE = {"first_run", "roughness_without_dolfinx"}  # starts processes of its own; has no finite elements
+BODIES = {"ridge_against_hertz", "pull_off_and_energy", "own_closure", "own_material", "own_friction", "own_mesh"}
 LIMIT = 600  # s
 STRICT = ["-W", "error", "-W", "ignore::ImportWarning"]  # dolfinx's of what it can do without
 
@@ -36,9 +36,9 @@ def test_demo(demo, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("demo", [demo for demo in DEMOS if demo.stem not in ALONE], ids=lambda demo: demo.stem)
+@pytest.mark.parametrize("demo", [demo for demo in DEMOS if demo.stem in BODIES], ids=lambda demo: demo.stem)
 def test_demo_on_two_ranks(demo, tmp_path):
-    """The assertions hold, and rank 0 alone prints: no line comes twice."""
+    """Of the demos of small bodies: the assertions hold, and rank 0 alone prints: no line comes twice."""
     lines = [line for line in run(demo, tmp_path, ranks=2).splitlines() if line.strip()]
     assert len(lines) == len(set(lines)) > 0
 
@@ -48,10 +48,3 @@ def test_every_demo_is_listed():
     page = (ROOT / "demos" / "README.md").read_text(encoding="utf-8")
     listed = [line.split("`")[1] for line in page.splitlines() if line.startswith("| `")]
     assert sorted(listed) == [demo.name for demo in DEMOS]
-
-
-def test_first_run_is_the_one_of_the_readme():
-    """The first block of Python in the README is in the demo, line by line."""
-    _, _, rest = (ROOT / "README.md").read_text(encoding="utf-8").partition("```python\n")
-    block, _, _ = rest.partition("```")
-    assert block and block in (ROOT / "demos" / "first_run.py").read_text(encoding="utf-8")
