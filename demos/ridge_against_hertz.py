@@ -53,7 +53,7 @@ def profile(body: fp.Body) -> tuple[np.ndarray, np.ndarray]:
 
 # %%
 def main(out: str = "results/demos/ridge_against_hertz", finest: str = "16") -> None:
-    """Press three pads; the finest has ``finest`` facets over the half-width, a multiple of 4. Figures go to the folder ``out``."""
+    """Press three pads, the finest with ``finest`` facets over the half-width (a multiple of 4); draw into ``out``."""
     facets = [int(finest) // 4, int(finest) // 2, int(finest)]
     bodies = [pressed(n) for n in facets]
     widths = np.array([body.state.contact_length / 2 for body in bodies])
