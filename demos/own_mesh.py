@@ -21,7 +21,7 @@ HARD, SOFT, MU_0, F_EXT = fp.NeoHooke(90e3, 0.45), fp.NeoHooke(20e3, 0.45), 0.25
 
 
 # %% [markdown]
-# The skin is a chain of three half circles of radius 150 µm, between them flat grooves. The middle one is 10 µm lower.
+# The skin is a chain of three half ellipses, 300 µm wide, and flat grooves. The middle ridge is 10 µm lower.
 
 
 # %%
@@ -102,7 +102,11 @@ def draw(out: Path, body: fp.Body) -> None:
     """Write the deformed mesh."""
     axes = (figure := Figure(figsize=(7, 4.5), layout="constrained")).subplots()
     x, y = (body.coordinates + body.displacement).T * 1e3
-    axes.triplot(x, y, body.triangles, lw=0.4, color="#0072B2")
+    hard = body.coordinates[body.triangles, 1].mean(axis=1) < 400e-6
+    for cells, colour, name, height in ((hard, "#D55E00", "hard layer", 0.25), (~hard, "#0072B2", "soft layer", 0.7)):
+        axes.triplot(x, y, body.triangles[cells], lw=0.4, color=colour)
+        axes.text(x.max() + 0.02, height, name, color=colour)
+    axes.set_xlim(x.min() - 0.1, x.max() + 0.3)
     axes.axhline(0, color="k", lw=2)
     axes.annotate("screen", (0, 0), (0, -14), textcoords="offset points", ha="center")
     axes.set_ylim(-0.1, 1.02)
