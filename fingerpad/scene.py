@@ -246,6 +246,15 @@ class Scene(Part):
         found |= {"nail_bed": SaintVenant(m.nail_bed.young, m.nail_bed.poisson)}
         return {LAYERS[layer]: self.laws.materials.get(layer, solid) for layer, solid in found.items()}
 
+    @classmethod
+    def load(cls, path: str | Path) -> "Scene":
+        """Return the scene of a TOML file.
+
+        Raises:
+            SceneError: the file cannot be read, or the first key at fault.
+        """
+        return load(Path(path))
+
     def loads(self) -> tuple[Load, ...]:
         """Return the loads to reach one after the other."""
         if self.history is not None:
