@@ -14,7 +14,6 @@ from matplotlib.figure import Figure
 import fingerpad as fp
 from fingerpad.closed_form import given, solve
 from fingerpad.entry import MPI
-from fingerpad.scene import load
 
 MU_0, ASKED = 0.25, 0.02
 SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"
@@ -41,7 +40,7 @@ def ladder(scene: fp.Scene, out: Path) -> dict[str, fp.Result]:
 # %%
 def main(out: str = "results/demos/accuracy_and_reduced_models", size: str = "small") -> None:
     """Climb the ladder on a small finger; with the size "full" on the default finger, for some ten minutes."""
-    scene = load(SMALL) if size == "small" else fp.Scene()
+    scene = fp.Scene.load(SMALL) if size == "small" else fp.Scene()
     found = ladder(scene, Path(out))
     if MPI.COMM_WORLD.rank == 0:
         for name, result in found.items():

@@ -19,7 +19,6 @@ from matplotlib.figure import Figure
 import fingerpad as fp
 from fingerpad.closed_form import given, solve
 from fingerpad.entry import MPI
-from fingerpad.scene import load
 
 MU_0 = 0.25
 SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"
@@ -46,7 +45,7 @@ def main(out: str = "results/demos/friction_over_voltage", size: str = "small") 
     voltages = np.linspace(0.0, 200.0, 41)
     curve = fp.sweep(fp.Scene(), Path(out) / "cylinders", model="cylinders", f_ext=[25, 75], voltage=voltages)
     mu = curve.array("mu_app")  # shape (2, 41)
-    scene = load(SMALL) if size == "small" else fp.Scene()
+    scene = fp.Scene.load(SMALL) if size == "small" else fp.Scene()
     scene = scene.replace(output={"errors": False})
     points = [0.0, 100.0] if size == "small" else [0.0, 100.0, 200.0]
     found = np.array([beside(voltage, scene) for voltage in points])

@@ -21,7 +21,6 @@ from matplotlib.figure import Figure
 
 import fingerpad as fp
 from fingerpad.entry import MPI
-from fingerpad.scene import load
 
 EPS_0, MU_0, H_0, F_EXT, VOLTAGE = 8.854e-12, 0.25, 0.51e-6, 20.0, 150.0
 SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"
@@ -56,7 +55,7 @@ def main(out: str = "results/demos/own_closure", size: str = "small") -> None:
     """Slide blocks with gaps of their own, then a finger; with the size "full" the default finger, for minutes."""
     gaps = np.array([1e-6, 1.5e-6, 2e-6, 3e-6])
     found, exact = np.array([friction(gap) for gap in gaps]).T
-    scene = load(SMALL) if size == "small" else fp.Scene()
+    scene = fp.Scene.load(SMALL) if size == "small" else fp.Scene()
     finger = fp.run(scene.replace(output={"errors": False}), closure=ConstantGap(2e-6))
     slip = finger.full_slip
     inside = EPS_0 * slip.voltage**2 / 2 / (scene.h_0 + 2e-6) ** 2 * slip.contact_length

@@ -19,7 +19,6 @@ from matplotlib.figure import Figure
 
 import fingerpad as fp
 from fingerpad.entry import MPI
-from fingerpad.scene import load
 
 SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"
 MU, TAU_0, WIDTH = 0.3, 5e3, 1e-3  # 1, Pa, m (of the block)
@@ -56,7 +55,7 @@ def main(out: str = "results/demos/own_friction", size: str = "small") -> None:
     lengths = np.array([block.state.contact_length for block in blocks])
     exact = MU * forces + TAU_0 * lengths
     built_in = slid(fp.Derjaguin(MU, TAU_0), forces[0])
-    scene = load(SMALL) if size == "small" else fp.Scene()
+    scene = fp.Scene.load(SMALL) if size == "small" else fp.Scene()
     finger = fp.run(scene.replace(voltage=0.0, output={"errors": False}), friction=Mine(MU, TAU_0))
     slip = finger.full_slip
     if MPI.COMM_WORLD.rank == 0:

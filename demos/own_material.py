@@ -21,7 +21,6 @@ from matplotlib.figure import Figure
 
 import fingerpad as fp
 from fingerpad.entry import MPI
-from fingerpad.scene import load
 
 SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"
 SOFT = fp.NeoHooke(2.5e3, 0.48)
@@ -59,7 +58,7 @@ def main(out: str = "results/demos/own_material", size: str = "small") -> None:
         "Yeoh, c₂ = 0": pressed(Yeoh(SOFT.shear_modulus, SOFT.bulk, 0.0)),
         "Yeoh, c₂ = G": pressed(Yeoh(SOFT.shear_modulus, SOFT.bulk, SOFT.shear_modulus)),
     }
-    scene = load(SMALL) if size == "small" else fp.Scene()
+    scene = fp.Scene.load(SMALL) if size == "small" else fp.Scene()
     pressed_only = [{"name": "press", "f_ext": scene.f_ext}]
     scene = scene.replace(history=pressed_only, friction=0.0, output={"errors": False})
     yeoh = Yeoh(SOFT.shear_modulus, SOFT.bulk, 10 * SOFT.shear_modulus)

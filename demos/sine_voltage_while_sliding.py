@@ -14,7 +14,6 @@ from matplotlib.figure import Figure
 
 import fingerpad as fp
 from fingerpad.entry import MPI
-from fingerpad.scene import load
 
 MU_0, PEAK, STEP = 0.25, 100.0, 20e-6  # 1, V, m
 SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"
@@ -39,7 +38,7 @@ def history(f_ext: float, samples: int) -> list[dict]:
 def main(out: str = "results/demos/sine_voltage_while_sliding", samples: str = "12", size: str = "small") -> None:
     """Run one period in a multiple of 4 steps; with the size "full" on the default finger, for some ten minutes."""
     n = int(samples)
-    scene = load(SMALL) if size == "small" else fp.Scene()
+    scene = fp.Scene.load(SMALL) if size == "small" else fp.Scene()
     f_ext = scene.f_ext
     scene = scene.replace(history=history(f_ext, n), output={"errors": False})
     result = fp.run(scene)
