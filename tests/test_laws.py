@@ -15,6 +15,7 @@ from fingerpad.laws import Laws, used
 from fingerpad.needs import plan
 from fingerpad.scene import Scene, SceneError, from_data
 from fingerpad.simulation import Simulation
+from fingerpad.written import digest
 from geometry import tags
 from variational.coupling import Coupling
 from variational.cylinder import Cylinder
@@ -161,7 +162,7 @@ def test_parameters_tell_laws_apart(tmp_path):
     again = Scene().with_laws(friction=Saturating(0.4, 20000))
     assert json.dumps(again.parameters(), sort_keys=True) == texts[3]
     file.write_text("other", encoding="utf-8")
-    assert json.dumps(scenes[-1].parameters(), sort_keys=True) != texts[-1]
+    assert json.dumps(Scene().with_laws(mesh=file).parameters(), sort_keys=True) != texts[-1]
 
 
 def test_names_of_the_laws():
@@ -377,7 +378,8 @@ def test_energies_of_own_laws_balance(slid):
 def test_laws_of_a_run_tell_its_folder():
     """Kept results are found by the parameters, which have the laws with module and numbers."""
     given = Laws(**OWN).parameters()
-    assert given["friction"] == {"law": f"{Saturating.__module__}.Saturating", "mu_f": 0.4, "t_most": 2e4}
+    law = {"law": f"{Saturating.__module__}.Saturating", "source code": digest(Saturating)}
+    assert given["friction"] == law | {"mu_f": 0.4, "t_most": 2e4}
     assert given["materials"]["dermis"]["bulk"] == 6e4
     assert Path(__file__).stem in given["closure"]["law"]
 
