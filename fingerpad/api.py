@@ -5,11 +5,14 @@ import signal
 import tempfile
 import warnings
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fingerpad import terminal
 from fingerpad.files import replace_json
 from fingerpad.installed import needed_by
+from fingerpad.place import Place, Serial
 from fingerpad.result import Result
 from fingerpad.scene import Scene, SceneError, check
 from fingerpad.sentences import show
@@ -53,18 +56,28 @@ def run(
 
     Raises:
         SceneError: the scene cannot be run, in one sentence.
-        KeyboardInterrupt: Ctrl-C, after the present step; every step accepted before is in ``out``.
+        KeyboardInterrupt: Ctrl-C, after the present step; its attribute ``result`` has the steps accepted before.
+        SystemExit: SIGTERM or SIGHUP, likewise.
     """
     scene = scene or Scene()
     if closure is not None or materials or friction is not None or mesh is not None:
         scene = scene.with_laws(closure=closure, materials=materials, friction=friction, mesh=mesh)
+    if not isinstance(scene, Scene):
+        raise SceneError(f"scene is {show(scene)}; it must be a Scene, and a file is read by Scene.load(path)")
     result = solved(scene, model, None if out is None else Path(out), comm)
     if result.interrupted:
-        number = signal.Signals[result.interrupted]
-        raise KeyboardInterrupt if number == signal.SIGINT else SystemExit(128 + number)
-    if result.failure:
+        raise _ended(result)
+    if result.failure and terminal.rank() == 0:
         warnings.warn(result.failure, stacklevel=2)
     return result
+
+
+def _ended(result: Result) -> BaseException:
+    """Return what a signal is to a Python program, with the result of the steps before as its attribute ``result``."""
+    number = signal.Signals[result.interrupted]
+    error = KeyboardInterrupt(result.failure) if number == signal.SIGINT else SystemExit(128 + number)
+    error.result = result  # type: ignore[union-attr]
+    return error
 
 
 def solved(
@@ -84,7 +97,8 @@ def solved(
     if model == "cylinders":
         from fingerpad import closed_form
 
-        return kept(closed_form.solve(scene), out)
+        found = closed_form.solve(scene)
+        return kept(found, out, Serial()) if terminal.rank() == 0 else found
     with needed_by(f"the model {model!r}"):
         return _with_finite_elements(scene, model, out, comm, lines)
 
@@ -101,15 +115,22 @@ def _with_finite_elements(scene: Scene, model: str, out: Path | None, comm: "MPI
         return full.run(scene, out, comm, lines)
     from fingerpad import smooth
 
-    found = smooth.solve(scene, tables_in(out), comm)
-    return kept(found, out if comm.rank == 0 else None)
+    return kept(smooth.solve(scene, tables_in(out), comm), out, comm)
 
 
-def kept(result: Result, out: Path | None) -> Result:
-    """Write the summary of a model without a path, if it is wanted."""
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
-        replace_json(out / "summary.json", result.to_dict())
+def kept(result: Result, out: Path | None, comm: "MPI.Comm | Serial") -> Result:
+    """Return the result of a model without a path, its summary written into a folder if there is one; collective.
+
+    Raises:
+        PlaceError: the folder is in use, holds results of another scene or model, or cannot be written to.
+    """
+    if out is None:
+        return result
+    result = replace(result, folder=out)
+    with Place(out, result.scene, comm, result.model) as place:
+        place.take()
+        if comm.rank == 0:
+            replace_json(out / "summary.json", result.to_dict())
     return result
 
 

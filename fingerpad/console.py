@@ -38,7 +38,8 @@ class Console:
         )
         self._progress.disable |= not watched()
         self._task = self._progress.add_task("meshing the finger", total=1.0)
-        self._progress.start()
+        if not self._progress.disable:
+            self._progress.start()
 
     def say(self, text: str) -> None:
         """Print a line above the progress bar."""
@@ -69,7 +70,8 @@ class Console:
 
     def close(self) -> None:
         """Take the progress bar away."""
-        self._progress.stop()
+        if not self._progress.disable:
+            self._progress.stop()
 
 
 def _released(s: ContactState) -> str:

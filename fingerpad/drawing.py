@@ -77,6 +77,8 @@ class Drawing:
             return self._last_finger(path)
         if kind == "surface":
             profiles = self._along()
+            if not profiles:
+                raise ValueError("the run has no state with skin on the screen to draw")
             conditions = titles.conditions_of([state.row() for _, state, _ in self._shown().values()], self.mu_0)
             return pictures.surface(path, list(profiles.values()), conditions)
         if kind != "history":
@@ -136,6 +138,10 @@ class Drawing:
             name: (title, final[name].state if name in final else state, final.get(name))
             for name, (title, state) in shown.items()
         }
+
+    def steps_along(self) -> list[int]:
+        """Return the steps of the states along whose skin is drawn."""
+        return [state.step for _, state, _ in self._shown().values()]
 
     def _along(self) -> dict[str, pictures.SurfaceProfile]:
         profiles = {}

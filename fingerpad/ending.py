@@ -48,4 +48,4 @@ class _Hook:
         sys.stdout.flush()
         sys.stderr.flush()
         if self._comm.size > 1:
-            self._comm.Abort(1)
+            self._comm.Abort(130 if isinstance(error, KeyboardInterrupt) else 1)

@@ -10,6 +10,7 @@ from fingerpad import petsc_options
 from fingerpad.accuracy import Search
 from fingerpad.advice import advice, finer_mesh_may_help
 from fingerpad.again import Keeper
+from fingerpad.budget import refuse_beyond
 from fingerpad.console import Console
 from fingerpad.ending import all_together, no_room
 from fingerpad.entry import MPI
@@ -85,6 +86,11 @@ def _refine_start(scene: Scene, place: Place | None, comm: MPI.Comm, lines: bool
         finer = scene.mesh.contact / 2
         if not (again and finer >= FINEST):
             return result
+        smaller = scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"contact": finer})})
+        try:
+            refuse_beyond(smaller)
+        except GeometryError:  # more than the memory allowed
+            return result
         cost = result.cost
         starts.append(
             {
@@ -95,7 +101,7 @@ def _refine_start(scene: Scene, place: Place | None, comm: MPI.Comm, lines: bool
                 "processor_seconds": cost.processor_seconds,
             }
         )
-        scene = scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"contact": finer})})
+        scene = smaller
 
 
 def _run(
@@ -131,9 +137,10 @@ def _run(
                 simulation = Simulation(present, decision.plan(needed, present), comm, on_step, report.load_reached)
                 report.open(simulation)
                 keeper = Keeper(simulation) if needed.errors else None
-                waking = False
+                waking, reached = False, False
                 try:
                     simulation.run()
+                    reached = True
                     if keeper is not None:
                         pause = partial(interrupt.stop_if_asked, simulation.continuation.steps)
                         look = report.look if present.accuracy is not None else None
@@ -147,7 +154,7 @@ def _run(
                     ended = {"failure": "; ".join(filter(None, (str(error), remedy)))}
                     if isinstance(error, Interrupted):
                         ended["interrupted"] = error.signal.name
-                    own = scene.laws.mesh is None and search is None
+                    own = scene.laws.mesh is None and not reached
                     again = own and finer_mesh_may_help(error, scene.accuracy is not None)
             named = report.named()
             if search is not None:

@@ -2,6 +2,7 @@
 
 import csv
 import itertools
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,13 +11,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fingerpad import terminal
 from fingerpad.api import MODELS, solved
 from fingerpad.files import replace
+from fingerpad.reading import plain, put
 from fingerpad.result import Result
-from fingerpad.scene import Scene, SceneError, from_data
+from fingerpad.scene import Scene, SceneError, check
 from fingerpad.sentences import show
 from fingerpad.states import PREFIXES, STATES
-from fingerpad.words import QUANTITIES
+from fingerpad.words import PER_LENGTH, QUANTITIES, cell
+from variational.state import CONDITIONS, RESULTS
 
 _MOST = 10_000  # points
 _LIMIT = 4 * 3600.0  # s of processor time for one point
@@ -58,7 +62,14 @@ class Sweep:
 
         Returns:
             Shape (values of the first axis, values of the second, …), SI units.
+
+        Raises:
+            ValueError: no such quantity or state.
         """
+        if state not in STATES:
+            raise ValueError(f"state is {state!r}; it must be one of {', '.join(STATES)}")
+        if quantity not in (*CONDITIONS[2:], *RESULTS):
+            raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join((*CONDITIONS[2:], *RESULTS))}")
         found = [result.named.get(state) for result in self.results]
         values = [np.nan if each is None else float(getattr(each, quantity)) for each in found]
         return np.array(values).reshape([len(values) for values in self.axes.values()])
@@ -94,16 +105,11 @@ class Sweep:
             if state is None:
                 rows.append([*first, result.failure or "no full slip"])
                 continue
-            error = state.error.known()
-            cells = []
-            for key in _SHOWN:
-                scale, digits = QUANTITIES[key].scale, QUANTITIES[key].digits
-                spread = f" ± {error[key] * scale:.2g}" if error.get(key) else ""
-                cells.append(f"{getattr(state, key) * scale:.{digits}f}{spread}")
+            cells = [cell(key, getattr(state, key), getattr(state.error, key, np.nan)) for key in _SHOWN]
             rows.append([*first, *cells])
         widths = [max(len(row[k]) for row in rows if len(row) == len(heads)) for k in range(len(heads))]
         lines = ["   ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=False)) for row in rows]
-        return "\n".join(["At full slip", *lines])
+        return "\n".join(["At full slip", *lines, PER_LENGTH])
 
 
 class _Lines(list[str]):
@@ -144,10 +150,14 @@ def sweep(
         **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``.
 
     Raises:
-        SceneError: a key or a value that a scene cannot have, no values, or a scene with laws of its own, which other
-            processes cannot be given.
+        SceneError: a key or a value that a scene cannot have, no values, a scene with laws of its own, which other
+            processes cannot be given, or more than one rank of MPI.
     """
     scene = Scene() if scene is None else scene
+    if terminal.ranks() > 1:
+        raise SceneError("a sweep runs its points in processes of its own; start it without mpirun, and use jobs")
+    if jobs < 1:
+        raise SceneError(f"jobs is {show(jobs)}; it must be at least 1")
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     scenes = _scenes(scene, axes)
@@ -157,7 +167,8 @@ def sweep(
     if model == "cylinders":
         found = [_closed(each) for each in scenes]
     else:
-        found = _in_processes(scenes, folder, jobs, model)
+        points = [dict(zip(values, point, strict=True)) for point in itertools.product(*values.values())]
+        found = _in_processes(scenes, points, folder, jobs, model)
     done = Sweep(values, tuple(found), folder)
     done.to_csv(folder / "table.csv")
     return done
@@ -166,7 +177,8 @@ def sweep(
 def _along(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> dict[str, list[Scene]]:
     """Return the scenes along each axis."""
     for key, values in axes.items():
-        if isinstance(values, str) or not isinstance(values, Sequence | np.ndarray) or len(values) == 0:
+        listed = isinstance(values, Sequence | np.ndarray) and not isinstance(values, str)
+        if not listed or np.ndim(values) != 1 or len(values) == 0:
             raise SceneError(f"{key} of the sweep is {show(values)}; it must be a list of at least one value")
     return {key: [_with(scene, {key: value}) for value in values] for key, values in axes.items()}
 
@@ -187,24 +199,21 @@ def _scenes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> list[Scene]:
 
 
 def _with(scene: Scene, changes: Mapping[str, Any]) -> Scene:
-    """Return the scene with other values by dotted key."""
-    data: dict[str, Any] = scene.parameters()
+    """Return the scene with other values by dotted key, as :meth:`Scene.replace` does."""
+    data: dict[str, Any] = {}
     for key, value in changes.items():
-        *tables, name = key.split(".")
-        table = data
-        for part in tables:
-            table = table.setdefault(part, {})
-            if not isinstance(table, dict):
-                raise SceneError(f"{key} is no key of a scene: {part} is no table")
-        table[name] = value.item() if isinstance(value, np.generic) else value
-    return from_data(data)
+        table = re.split(r"[.\[]", key, maxsplit=1)[0]
+        if "[" in key and table not in data:  # an entry of a list, of which the others stay
+            data[table] = scene.parameters().get(table)
+        put(data, key, plain(value))
+    return scene.replace(**data)
 
 
 def _at(scene: Scene, key: str) -> Any:
     """Return the value of a dotted key in SI."""
     value: Any = scene
-    for part in key.split("."):
-        value = getattr(value, part)
+    for part, place in re.findall(r"(\w+)|\[(\d+)\]", key):
+        value = getattr(value, part) if part else value[int(place)]
     return value
 
 
@@ -215,18 +224,27 @@ def _closed(scene: Scene) -> Result:
         return Result(scene, "cylinders", None, None, None, failure=str(error))
 
 
-def _in_processes(scenes: Sequence[Scene], folder: Path, jobs: int, model: str) -> list[Result]:
+def _in_processes(
+    scenes: Sequence[Scene], points: Sequence[Mapping[str, Any]], folder: Path, jobs: int, model: str
+) -> list[Result]:
+    """Return the results of scenes, those that can be run in processes of their own, kept by their parameters."""
     from fingerpad import study
 
     place = folder / model
-    named = {study.key(scene): scene for scene in scenes}
-    words = {key: f"{scene.f_ext:g} N/m, {scene.voltage:g} V ({key})" for key, scene in named.items()}
-    found = study.sweep({words[key]: scene for key, scene in named.items()}, place, jobs, _LIMIT, model)
-    results = {}
-    for key, scene in named.items():
-        summary = found[words[key]]
-        broken = set(summary) == {"failure"}
-        results[key] = (
-            Result(scene, model, None, None, None, failure=summary["failure"]) if broken else Result.load(place / key)
-        )
+    refused, named = {}, {}
+    for scene, point in zip(scenes, points, strict=True):
+        words = ", ".join(f"{key} {show(value)}" for key, value in point.items())
+        try:
+            check(scene)
+            named[f"{words} ({study.key(scene)})"] = scene
+        except SceneError as error:
+            refused[study.key(scene)] = Result(scene, model, None, None, None, failure=str(error))
+    found = study.sweep(named, place, jobs, _LIMIT, model)
+    results = dict(refused)
+    for name, scene in named.items():
+        summary, key = found[name], study.key(scene)
+        if set(summary) == {"failure"}:
+            results[key] = Result(scene, model, None, None, None, failure=summary["failure"])
+        else:
+            results[key] = Result.load(place / key)
     return [results[study.key(scene)] for scene in scenes]

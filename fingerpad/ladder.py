@@ -13,13 +13,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from fingerpad import entry
-from fingerpad.estimate import plus_minus
 from fingerpad.result import Result
 from fingerpad.rungs import STATES, Stopwatch
 from fingerpad.scene import Scene
 from fingerpad.states import WORDS
-from fingerpad.words import QUANTITIES
-from variational.state import RESULTS, ContactState
+from fingerpad.words import QUANTITIES, cell
+from variational.state import RESULTS
 
 
 def started(scene: Scene, folder: Path) -> Result:
@@ -48,7 +47,8 @@ def table(results: Sequence[Result]) -> str:
         for key in RESULTS:
             quantity = QUANTITIES[key]
             unit = f" ({quantity.unit})" if quantity.unit else ""
-            cells = [_cell(getattr(result, name), key) for result in results]
+            states = [getattr(result, name) for result in results]
+            cells = ["–" if s is None else cell(key, getattr(s, key), getattr(s.error, key, math.nan)) for s in states]
             rows.append([f"{WORDS[name]}: {quantity.words}{unit}", *cells])
     rows.append(["processor time (s)", *(f"{result.cost.processor_seconds:.2f}" for result in results)])
     rows.append(["factorisations", *(str(result.cost.factorisations) for result in results)])
@@ -59,13 +59,3 @@ def table(results: Sequence[Result]) -> str:
     if any(state.error.known() for result in results for state in result.named.values()):
         notes.insert(0, "±: estimated discretisation error")
     return "\n".join(lines + notes)
-
-
-def _cell(state: ContactState | None, key: str) -> str:
-    value = math.nan if state is None else getattr(state, key)
-    if state is None or math.isnan(value):
-        return "–"
-    quantity, error = QUANTITIES[key], getattr(state.error, key, math.nan)
-    if not math.isnan(error) and error > 0:
-        return plus_minus(value * quantity.scale, error * quantity.scale)
-    return f"{value * quantity.scale:.5g}"

@@ -39,6 +39,19 @@ LEFT = (
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP)  # some network file systems
 
 
+class Serial:
+    """The one rank of a model without MPI, as far as a folder needs it."""
+
+    rank = 0
+
+    def bcast(self, value: Any) -> Any:
+        """Return the value."""
+        return value
+
+    def barrier(self) -> None:
+        """Wait for nobody."""
+
+
 class PlaceError(SceneError):
     """A folder that results cannot be written to; one sentence."""
 
@@ -50,10 +63,19 @@ class Place:
         folder: where results go.
     """
 
-    def __init__(self, folder: Path, scene: Scene, comm: "MPI.Comm") -> None:
-        """Choose a folder for a scene; nothing is touched before :meth:`take`, except that the folder is made."""
+    def __init__(self, folder: Path, scene: Scene, comm: "MPI.Comm | Serial", model: str = "full") -> None:
+        """Choose a folder for a scene; nothing is touched before :meth:`take`, except that the folder is made.
+
+        Args:
+            folder: of the results.
+            scene: that they are of.
+            comm: communicator of the run.
+            model: that answers, see :data:`fingerpad.api.MODELS`.
+        """
         self.folder, self._comm = folder, comm
         self._parameters = json.loads(json.dumps(scene.parameters()))  # as they are read back
+        if model != "full":
+            self._parameters["model"] = model
         self._lock: TextIO | None = None
 
     def __enter__(self) -> "Place":
@@ -69,7 +91,7 @@ class Place:
             except PlaceError as error:
                 refusal = str(error)
             except OSError as error:
-                refusal = f"results cannot be written to {_short(self.folder)}: {error.strerror}; choose another --out"
+                refusal = f"results cannot be written to {_short(self.folder)}: {error.strerror}; choose another folder"
         refusal = self._comm.bcast(refusal)
         if refusal:
             self.__exit__()
@@ -87,7 +109,7 @@ class Place:
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise PlaceError(f"another run is writing to {_short(self.folder)}; choose another --out") from None
+            raise PlaceError(f"another run is writing to {_short(self.folder)}; choose another folder") from None
         except OSError as error:
             if error.errno not in _NO_LOCKS:
                 raise
@@ -95,7 +117,7 @@ class Place:
         if kept is not None and kept != self._parameters:
             raise PlaceError(
                 f"{_short(self.folder)} holds the results of another scene ({_difference(kept, self._parameters)}); "
-                "choose another --out, or delete the folder"
+                "choose another folder, or delete the folder"
             )
 
     def _kept(self) -> dict[str, Any] | None:
@@ -105,7 +127,7 @@ class Place:
                 found = json.loads((self.folder / name).read_text(encoding="utf-8"))
                 return dict(found if name == "scene.json" else found.get("parameters", {}))
         if (self.folder / "steps.csv").exists():
-            raise PlaceError(f"{_short(self.folder)} holds results of an unknown scene; choose another --out")
+            raise PlaceError(f"{_short(self.folder)} holds results of an unknown scene; choose another folder")
         return None
 
     def take(self) -> None:

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Generic, TypeVar
 
 _ROOT = Path(__file__).resolve().parents[1]
+_LAUNCHERS = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "MV2_")  # by whose variables MPI takes a process for a rank of theirs
 _STUCK = 20  # times its limit that a job may take by the clock
 Key = TypeVar("Key")
 Result = TypeVar("Result")
@@ -50,7 +51,8 @@ def run(module: str, arguments: Sequence[str], limit: float) -> End:
         limit: what it calls it with; a twentieth of the time it may take by the clock.
     """
     path = os.pathsep.join([str(_ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
-    env = os.environ | {"PYTHONPATH": path, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    alone = {name: value for name, value in os.environ.items() if not name.startswith(_LAUNCHERS)}
+    env = alone | {"PYTHONPATH": path, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     command = [sys.executable, "-P", "-m", module, *arguments]  # -P: no modules of the current folder
     try:
         done = subprocess.run(command, env=env, capture_output=True, text=True, timeout=_STUCK * limit)

@@ -102,21 +102,20 @@ def override(text: str) -> tuple[str, Any]:
     """
     key, equals, value = (part.strip() for part in text.partition("="))
     if not (equals and value and _KEY.fullmatch(key)):
-        raise SceneError(
-            f"{clip(text) or 'an empty text'} is no change of a scene; it must be key=value, as in mesh.contact=10e-6"
-        )
+        shown = clip(text.strip()) or "an empty text"
+        raise SceneError(f"{shown} is no change of a scene; it must be key=value, as in mesh.contact=10e-6")
     try:
         found = tomllib.loads(f"value = {value}") if value.isprintable() else {}
     except (ValueError, RecursionError):
         found = {}
     if found.keys() == {"value"}:
-        return key, plain(found["value"])
+        return key, plain(found["value"], (key,))
     if value[0] in "[{\"'":
         raise SceneError(f"{clip(key)} is {show(value)}; it must be a value as in TOML, with all brackets and quotes")
     try:
         return key, float(value)
     except ValueError:
-        return key, plain(value)
+        return key, plain(value, (key,))
 
 
 def put(data: dict[str, Any], key: str, value: Any) -> None:

@@ -181,7 +181,9 @@ class Report:
     # -- the end ---------------------------------------------------------------------------------------
     def named(self) -> dict[str, ContactState]:
         """Return the named states of the path, with their stability and, on every rank, their skin; collective."""
-        return {name: self._complete(state) for name, state in states.named(self.states).items()}
+        found = {name: self._complete(state) for name, state in states.named(self.states).items()}
+        # It counts because it was held; its own row is of before that.
+        return {n: replace(s, slip_held=True) if n == "full_slip" else s for n, s in found.items()}
 
     def _complete(self, state: ContactState) -> ContactState:
         state, check = self._with_skin(state, self._profiles.get(state.step)), self._check(state)
@@ -226,6 +228,7 @@ class Report:
         if drawing is not None and self._folder is not None:
             drawing.write(self._folder)
         self.seconds += time.perf_counter() - start
+        record = self.comm.bcast(self._record(unknowns))
         found = Result(
             self.scene,
             "full",
@@ -234,10 +237,10 @@ class Report:
             named.get("full_slip"),
             steps=tuple(self.states),
             loads=tuple(self._loads()),
-            cost=self._cost(unknowns),
+            cost=self.comm.bcast(self._cost(unknowns)),
             **words,
             notes=notes,
-            record=self._record(unknowns) | more | {"laws": used(self.scene), "provenance": provenance()},
+            record=record | more | {"laws": used(self.scene), "provenance": provenance()},
             folder=self._folder,
             drawing=drawing,
         )
@@ -253,7 +256,9 @@ class Report:
         if not self.states or self.comm.rank != 0:
             return None
         size = None if self.scene.accuracy is None else self._simulation.scene.mesh.contact
-        return Drawing(coefficient(self.scene), self.states, self._profiles, self._ends, self._finer, size)
+        whole = Drawing(coefficient(self.scene), self.states, self._profiles, self._ends, self._finer, size)
+        shown = whole.steps_along()
+        return replace(whole, profiles={step: p for step, p in self._profiles.items() if step in shown})
 
     def _loads(self) -> list[states.LoadResult]:
         found = []

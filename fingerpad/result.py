@@ -3,16 +3,16 @@
 import csv
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.estimate import plus_minus
+from fingerpad import terminal
 from fingerpad.laws import coefficient
 from fingerpad.scene import Scene, SceneError, from_data
-from fingerpad.states import PREFIXES, STATES, WORDS, LoadResult
-from fingerpad.words import PER_LENGTH, QUANTITIES
+from fingerpad.states import PREFIXES, STATES, WORDS, LoadResult, by_load, load_result
+from fingerpad.words import PER_LENGTH, QUANTITIES, cell
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
 
 if TYPE_CHECKING:
@@ -97,6 +97,8 @@ class Result:
             return self.drawing.figure(kind, None if path is None else Path(path))
         if self.model != "full":
             raise ValueError(f"the model {self.model!r} has no skin to draw; use model='full'")
+        if terminal.rank() == 0:
+            raise ValueError("the result has no states to draw")
         return None
 
     # -- files -----------------------------------------------------------------------------------------
@@ -123,12 +125,13 @@ class Result:
             **self.values(),
             "states": {name: _nested(state) for name, state in self.named.items()},
             "loads": [load.to_dict() for load in self.loads],
+            "parameters": self.scene.parameters(),
             **self.record,
         }
         for name in ("failure", "interrupted"):
             found |= {name: getattr(self, name)} if getattr(self, name) else {}
         found |= {"notes": list(self.notes)} if self.notes else {}
-        return found | {"parameters": self.scene.parameters()}
+        return found
 
     @classmethod
     def from_dict(cls, summary: Mapping[str, Any], folder: Path | None = None) -> "Result":
@@ -137,12 +140,16 @@ class Result:
         Raises:
             SceneError: the parameters in it are no scene.
         """
-        scene = from_data({key: value for key, value in summary["parameters"].items() if key != "laws"})
+        parameters = summary["parameters"]
+        scene = from_data({key: value for key, value in parameters.items() if key not in ("laws", "model")})
         cost = Cost(**{f.name: summary.get(f.name, f.default) for f in fields(Cost)})
         used = {f.name for f in fields(Cost)} | {"parameters", "states", "loads", "failure", "interrupted", "notes"}
         used |= {"model", "f_ext", "voltage", "full_slip"}
-        prefixes = tuple(f"{prefix}_" for prefix in PREFIXES.values())
-        record = {key: value for key, value in summary.items() if key not in used and not key.startswith(prefixes)}
+        names = (*CONDITIONS, *RESULTS, *_STABILITY, *(f"{f.name}_{kind}" for f in fields(Errors) for kind in _CHANGES))
+        used |= {f"{prefix}_{name}" for prefix in PREFIXES.values() for name in names}
+        record = {key: value for key, value in summary.items() if key not in used}
+        if "laws" in parameters:  # objects of Python, of which their names are left
+            record["parameters"] = parameters
         uncharged, charged, full_slip = (_state(summary, PREFIXES[name]) for name in STATES)
         return cls(
             scene,
@@ -169,12 +176,15 @@ class Result:
 
         folder = Path(folder)
         try:
-            found = cls.from_dict(json.loads((folder / "summary.json").read_text(encoding="utf-8")), folder)
+            summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+            found = cls.from_dict(summary, folder)
             if found.model != "full":
                 return found
             with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
                 steps = tuple(ContactState.from_row(row) for row in csv.DictReader(file))
-            return replace(found, steps=steps, drawing=Drawing(coefficient(found.scene), steps, {}, {}, {}, None))
+            mu_0 = None if "laws" in found.record.get("parameters", {}) else coefficient(found.scene)
+            drawing = Drawing(mu_0, steps, {}, {}, {}, None)
+            return replace(found, steps=steps, loads=tuple(_loads(steps, summary)), drawing=drawing)
         except (OSError, ValueError, KeyError) as error:
             if isinstance(error, SceneError):
                 raise
@@ -206,14 +216,8 @@ class Result:
         """Return a quantity of the named states as a row of text; empty where no state has it."""
         quantity, cells = QUANTITIES[key], []
         for name, state in self.named.items():
-            value = getattr(state, key)
-            error = getattr(state.error, key, math.nan)
-            if math.isnan(value) or (key in ("mu_app", "f_t") and name != "full_slip"):
-                cells.append("–")
-            elif math.isnan(error):
-                cells.append(f"{value * quantity.scale:.{quantity.digits}f}")
-            else:
-                cells.append(plus_minus(value * quantity.scale, error * quantity.scale))
+            shown = key not in ("mu_app", "f_t") or name == "full_slip"
+            cells.append(cell(key, getattr(state, key), getattr(state.error, key, math.nan)) if shown else "–")
         unit = f" ({quantity.unit})" if quantity.unit else ""
         return [f"{quantity.words}{unit}", *cells] if set(cells) - {"–"} else []
 
@@ -222,7 +226,7 @@ class Result:
         found = [f"Not finished: {self.failure}"] if self.failure else []
         asked = any(load.until_full_slip or load.bone_x for load in self.scene.loads())
         if asked and self.full_slip is None and not self.failure:
-            found.append("No full slip: points of the skin still stick at the end of the way.")
+            found.append("No full slip was held over a further 0.2 mm.")
         if any(state.error.known() for state in self.named.values()):
             found.append("±: estimated discretisation error, of the mesh alone.")
         share = math.nan if self.full_slip is None else self.full_slip.penalty.contact_length
@@ -230,7 +234,14 @@ class Result:
             found.append(
                 f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm."
             )
-        return [*found, PER_LENGTH] if self.named else found
+        return [*found, *([PER_LENGTH] if self.named else []), *self.notes]
+
+
+def _loads(steps: Sequence[ContactState], summary: Mapping[str, Any]) -> Iterator[LoadResult]:
+    """Yield what each load of a run came to; whether its end is stable is in the summary alone."""
+    stable = [load.get("stable") for load in summary.get("loads", ())]
+    for k, (name, mine) in enumerate(by_load(steps)):
+        yield load_result(name, mine, stable[k] if k < len(stable) else None)
 
 
 def _plain(value: Any) -> Any:
@@ -249,7 +260,9 @@ def _state(summary: Mapping[str, Any], prefix: str) -> ContactState | None:
     values = {key: summary.get(f"{prefix}_{key}") for key in (*CONDITIONS, *RESULTS, *_STABILITY)}
     given = {key: value for key, value in values.items() if value is not None}
     for key in ("f_ext", "voltage"):  # of the scene itself, in answers of models without a path
-        given.setdefault(key, summary[key])
+        given.setdefault(key, summary[key] if summary.get("model", "full") != "full" else math.nan)
+    if prefix == PREFIXES["full_slip"]:
+        given |= {"all_slip": True, "slip_held": True}
     return ContactState(**given, error=_changes(summary, prefix, "error"), penalty=_changes(summary, prefix, "penalty"))
 
 

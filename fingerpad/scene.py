@@ -260,6 +260,15 @@ class Scene(Part):
         found |= {"nail_bed": SaintVenant(m.nail_bed.young, m.nail_bed.poisson)}
         return {LAYERS[layer]: self.laws.materials.get(layer, solid) for layer, solid in found.items()}
 
+    @classmethod
+    def load(cls, path: str | Path) -> "Scene":
+        """Return the scene of a TOML file.
+
+        Raises:
+            SceneError: the file cannot be read, or the first key at fault.
+        """
+        return load(Path(path))
+
     def loads(self) -> tuple[Load, ...]:
         """Return the loads to reach one after the other."""
         if self.history is not None:
@@ -303,6 +312,8 @@ def load(path: Path | None = None, overrides: Mapping[str, Any] | None = None) -
     data: dict[str, Any] = plain(read(Path(path))) if path is not None else {}
     if path is not None:
         _beside(data, Path(path).parent)
+    if "sweep" in data:
+        raise SceneError(f"{path} has a table sweep, which makes it a study; run it by fingerpad sweep, or without it")
     for key, value in (overrides or {}).items():
         put(data, key, value)
     return from_data(data)

@@ -17,6 +17,7 @@ from typing import Any
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from fingerpad.files import replace_json
 from fingerpad.processes import End, Pool, limit_processor_time, run
 from fingerpad.scene import Scene
 from fingerpad.terminal import watched
@@ -73,8 +74,8 @@ def sweep(
             fcntl.flock(lock, fcntl.LOCK_EX)  # another sweep may be at it
             if result(scenes[name], folder) is not None:
                 return End(0, "", "", "")
-            (place / "scene.json").write_text(json.dumps(scenes[name].parameters(), indent=1), encoding="utf-8")
-            return run("fingerpad.study", [str(place / "scene.json"), str(place), str(limit), model], limit)
+            (place / "asked.json").write_text(json.dumps(scenes[name].parameters(), indent=1), encoding="utf-8")
+            return run("fingerpad.study", [str(place / "asked.json"), str(place), str(limit), model], limit)
 
     def done(name: str, end: End, left: int) -> None:
         summary = result(scenes[name], folder)
@@ -92,17 +93,22 @@ def sweep(
 
 
 def _one(scene: Path, folder: Path, model: str) -> None:
-    from fingerpad.entry import start
+    from fingerpad.entry import MPI, start
 
     start()
-    from fingerpad.api import kept, solved
-    from fingerpad.scene import from_data
+    from fingerpad.api import kept, solved, tables_in
+    from fingerpad.scene import SceneError, from_data
 
     asked = from_data(json.loads(scene.read_text(encoding="utf-8")))
-    if model == "full":
-        solved(asked, model, folder, lines=True)
-    else:
-        kept(solved(asked, model, folder.parent), folder)
+    try:
+        if model == "full":
+            solved(asked, model, folder, lines=True)
+        else:
+            from fingerpad import smooth
+
+            kept(smooth.solve(asked, tables_in(folder.parent), MPI.COMM_WORLD), folder, MPI.COMM_WORLD)
+    except SceneError as error:  # it would be the same the next time
+        replace_json(folder / "summary.json", {"failure": str(error)})
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ import sys
 from typing import TextIO
 
 _RANKS = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "MV2_COMM_WORLD_RANK", "SLURM_PROCID")
+_SIZES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE")
 _TERMINAL = r"/dev/(pts/\d+|tty\w*|console)"
 
 
@@ -17,6 +18,12 @@ def rank() -> int:
     """Return the rank of this process under a launcher of MPI, 0 without one."""
     given = _rank()
     return 0 if given is None else given
+
+
+def ranks() -> int:
+    """Return the number of processes that a launcher of MPI has started, 1 without one."""
+    given = (os.environ.get(name, "") for name in _SIZES)
+    return next((int(text) for text in given if text.isdecimal()), 1)
 
 
 def watched(stream: TextIO | None = None) -> bool:

@@ -1,7 +1,9 @@
 """The quantities of a state in words and in the units of tables: N/m, mm, kPa."""
 
+import math
 from typing import NamedTuple
 
+from fingerpad.estimate import plus_minus
 from fingerpad.states import PREFIXES, WORDS
 
 
@@ -30,6 +32,22 @@ QUANTITIES = {
 PER_LENGTH = (
     "N/m: force per metre of finger out of the plane of the cross-section; 75 N/m are 1.5 N on 20 mm of finger."
 )
+
+
+def cell(key: str, value: float, error: float = math.nan) -> str:
+    """Return a quantity given in SI in the unit of tables, with its error where that is known and not below its digits.
+
+    Args:
+        key: a name of :data:`QUANTITIES`.
+        value: in SI; NaN where it is not known.
+        error: in SI; NaN where it is not known.
+    """
+    if math.isnan(value):
+        return "–"
+    quantity = QUANTITIES[key]
+    if not math.isnan(error) and error * quantity.scale >= 0.5 * 10.0**-quantity.digits:
+        return plus_minus(value * quantity.scale, error * quantity.scale)
+    return f"{value * quantity.scale:.{quantity.digits}f}"
 
 
 def in_words(key: str) -> str:

@@ -84,7 +84,7 @@ def test_result_is_read_again(ran):
     """Numbers of the named states, their errors and the steps are those of the run."""
     result, folder = ran
     read = fp.Result.load(folder)
-    assert read.to_dict() == result.to_dict() | {"loads": []}
+    assert read.to_dict() == result.to_dict()
     assert [state.row() for state in read.steps] == [state.row() for state in result.steps]
     assert read.full_slip.error.known() == result.full_slip.error.known() and read.cost == result.cost
 
@@ -104,6 +104,7 @@ def test_arrays_have_documented_shapes(ran):
 
 def test_model_without_its_libraries_is_refused_in_a_sentence(monkeypatch):
     monkeypatch.setitem(sys.modules, "fingerpad.smooth", None)
+    monkeypatch.delattr(fp, "smooth", raising=False)
     monkeypatch.setattr("fingerpad.installed.OPTIONAL", ("fingerpad",))
     with pytest.raises(ImportError, match="the model 'smooth' needs fingerpad, which is not installed;"):
         fp.run(from_data(SMALL), model="smooth")
@@ -141,8 +142,9 @@ def test_signal_ends_the_program_after_the_step(monkeypatch, name, error):
     """A loop over runs ends with the first Ctrl-C, as any Python program does."""
     ended = fp.Result(fp.Scene(), "full", None, None, None, failure="stopped", interrupted=name)
     monkeypatch.setattr(full, "run", lambda *_: ended)
-    with pytest.raises(error):
+    with pytest.raises(error) as caught:
         fp.run(from_data(SMALL))
+    assert caught.value.result is ended
 
 
 # -- text --------------------------------------------------------------------------------------------------
@@ -240,6 +242,66 @@ def test_sweep_is_taken_up_again(tmp_path, monkeypatch):
 def test_sweep_that_makes_no_sense_is_refused(tmp_path, axes, words):
     with pytest.raises(fp.SceneError, match=words):
         fp.sweep(fp.Scene(), tmp_path, model="cylinders", **axes)
+
+
+@pytest.mark.parametrize(
+    ("key", "values"),
+    [("accuracy.mu_app", [0.01, 0.02]), ("contact.formulation", ["augmented", "nitsche"]), ("mesh.contact", ["8 µm"])],
+)
+def test_scenes_of_a_sweep_are_those_of_replace(key, values):
+    """With the coarse start of an accuracy, and the numbers of a formulation's own."""
+    table, name = key.split(".")
+    for value, scene in zip(values, grid._scenes(fp.Scene(), {key: values}), strict=True):
+        assert scene == fp.Scene().replace(**{table: {name: value}})
+
+
+def test_axis_may_be_an_entry_of_a_history():
+    history = [{"name": "press", "f_ext": 5.0}, {"name": "charge", "voltage": 100.0}]
+    scenes = grid._scenes(fp.Scene(history=history), {"history[1].voltage": [50.0, 80.0]})
+    assert [(s.history[0].f_ext, s.history[1].voltage) for s in scenes] == [(5.0, 50.0), (5.0, 80.0)]
+
+
+def test_point_that_cannot_be_run_is_a_failure_of_its_own(tmp_path, monkeypatch):
+    """A finger whose bone touches the skin, beside one that can be meshed: one sentence, and no process."""
+    asked = []
+    monkeypatch.setattr("fingerpad.study.run", lambda *given: asked.append(given) or End(1, "CRASH_1", "gone", ""))
+    found = fp.sweep(fp.Scene(), tmp_path, **{"geometry.bone_centre": [2e-3, 8e-3]})
+    assert len(asked) == 1 and found[1].failure == "CRASH_1: gone"
+    assert found[0].failure.startswith("the bone touches the skin's layers") and "\n" not in found[0].failure
+
+
+def test_sweep_under_a_launcher_of_mpi_is_refused(monkeypatch, tmp_path):
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
+    with pytest.raises(fp.SceneError, match="start it without mpirun"):
+        fp.sweep(fp.Scene(), tmp_path, voltage=[0.0])
+
+
+def test_unknown_quantity_of_a_sweep_is_refused(tmp_path):
+    found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0.0])
+    with pytest.raises(ValueError, match="quantity is 'stable'; it must be one of f_ext"):
+        found.array("stable")
+    with pytest.raises(ValueError, match="state is 'slip'; it must be one of uncharged, charged, full_slip"):
+        found.array("mu_app", "slip")
+
+
+@pytest.mark.parametrize("change", [{"model": "full"}, {"voltage": 50.0}])
+def test_models_do_not_overwrite_each_other(tmp_path, change):
+    """A folder belongs to one scene and one model."""
+    scene = fp.Scene()
+    first = fp.run(scene, out=tmp_path, model="cylinders")
+    assert first.folder == tmp_path and fp.run(scene, out=tmp_path, model="cylinders").folder == tmp_path
+    before = (tmp_path / "summary.json").read_bytes()
+    model = change.pop("model", "cylinders")
+    with pytest.raises(fp.SceneError, match="holds the results of another scene"):
+        fp.run(scene.replace(**change), out=tmp_path, model=model)
+    assert (tmp_path / "summary.json").read_bytes() == before
+
+
+def test_scene_of_a_file(tmp_path):
+    (tmp_path / "scene.toml").write_text('f_ext = "50 N/m"', encoding="utf-8")
+    assert fp.Scene.load(tmp_path / "scene.toml").f_ext == 50.0
+    with pytest.raises(fp.SceneError, match="a file is read by Scene.load"):
+        fp.run("scene.toml")
 
 
 def test_too_many_points_are_refused(tmp_path):

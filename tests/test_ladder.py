@@ -142,7 +142,9 @@ def test_errors_of_a_run_stand_beside_its_values(tmp_path):
     assert answer.full_slip.error.known() == {"contact_length": 2e-5}
     lines = ladder.table([answer]).splitlines()
     assert next(line for line in lines if line.startswith("full slip: contact length")).endswith("1.600 ± 0.020")
-    assert next(line for line in lines if line.startswith("charged normal contact: contact length")).endswith("  1.7")
+    assert next(line for line in lines if line.startswith("charged normal contact: contact length")).endswith(
+        "  1.7000"
+    )
     assert "±: estimated discretisation error" in lines
 
 

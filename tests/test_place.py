@@ -63,7 +63,7 @@ def test_the_same_scene_may_run_again(scene, folder, finished):
 def test_another_scene_is_refused(folder, finished, change, words):
     with pytest.raises(PlaceError, match="holds the results of another scene") as refusal:
         run(from_data(PRESS | change), folder, MPI.COMM_WORLD)
-    assert words in str(refusal.value) and "choose another --out" in str(refusal.value)
+    assert words in str(refusal.value) and "choose another folder" in str(refusal.value)
     assert kept(folder) == finished
 
 
@@ -96,7 +96,7 @@ def test_refused_on_all_ranks(scene, folder):
     if MPI.COMM_WORLD.rank == 0:
         folder.touch()
     MPI.COMM_WORLD.barrier()
-    with pytest.raises(PlaceError, match="results cannot be written to .*results: File exists; choose another --out"):
+    with pytest.raises(PlaceError, match="results cannot be written to .*results: File exists; choose another folder"):
         run(scene, folder, MPI.COMM_WORLD)
 
 

@@ -9,10 +9,9 @@ from fingerpad.cli import ranges
 from fingerpad.cli.arguments import Parser, positive, say
 from fingerpad.folder import check_folder
 from fingerpad.grid import sweep
-from fingerpad.reading import plain, read
+from fingerpad.reading import plain, put, read
 from fingerpad.scene import from_data, override
 from fingerpad.sentences import SceneError, clip, show
-from fingerpad.words import PER_LENGTH
 
 _EXAMPLES = """
     fingerpad sweep --over voltage=0:200:5 --over f_ext=25,75 --jobs 2 --out results/sweep
@@ -38,7 +37,6 @@ def main(argv: Sequence[str]) -> int:
     scene = from_data(base)
     found = sweep(scene, args.out, jobs=args.jobs, model=args.model, **axes)
     say(str(found))
-    say(PER_LENGTH)
     say(f"Written: {args.out / 'table.csv'}")
     return 1 if any(result.failure for result in found) else 0
 
@@ -73,7 +71,7 @@ def study(file: Path | None, given: Sequence[str], over: Sequence[str]) -> tuple
     for key, value in map(override, given):
         if key in axes:
             raise SceneError(f"--set {key} is given and {key} is varied; give one of the two")
-        _put(data, key, value)
+        put(data, key, value)
     return data, axes
 
 
@@ -83,12 +81,3 @@ def _flat(table: Mapping[str, Any], where: str = "") -> list[tuple[str, Any]]:
     for key, value in table.items():
         found += _flat(value, f"{where}{key}.") if isinstance(value, dict) else [(where + key, value)]
     return found
-
-
-def _put(data: dict[str, Any], key: str, value: Any) -> None:
-    *tables_, name = key.split(".")
-    for part in tables_:
-        data = data.setdefault(part, {})
-        if not isinstance(data, dict):
-            raise SceneError(f"{key} cannot be given, since {part} is {show(data)}")
-    data[name] = value

@@ -1,0 +1,78 @@
+# %% [markdown]
+# # Friction over voltage
+#
+# The attraction per area of a gap d under an insulator of effective thickness h_0 is $p_{el} = \varepsilon_0 U^2 / 2
+# (h_0 + d)^2$. Coulomb's friction counts it as a load: $f_T = \mu_0 (f_{ext} + f_{el})$, so that $\mu_{app} = \mu_0 (1
+# + f_{el} / f_{ext})$ grows with the square of the voltage at first. Then it grows faster, since the attraction also
+# closes the gap.
+#
+# The model "cylinders" takes every ridge in contact for the same charged cylinder. It is a closed form, and answers for
+# hundreds of scenes in a second.
+
+# %%
+import sys
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+import fingerpad as fp
+from fingerpad.closed_form import given, solve
+from fingerpad.entry import MPI
+from fingerpad.scene import load
+
+MU_0 = 0.25
+SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"
+
+
+# %% [markdown]
+# Beside it, finite elements of every ridge: the full model, here of a small finger. The cylinders know the contact
+# length of the default finger alone. Of another finger they are given its length.
+
+
+# %%
+def beside(voltage: float, scene: fp.Scene) -> tuple[float, float]:
+    """Return µ_app of the full model and of the cylinders at a voltage (V)."""
+    scene = scene.replace(voltage=voltage)
+    slip = fp.run(scene).full_slip
+    assert abs(slip.f_t - MU_0 * slip.f_contact) < 1e-6 * slip.f_ext
+    cylinders = solve(scene, given(slip.contact_length, slip.ridges_in_contact))
+    return slip.mu_app, cylinders.full_slip.mu_app
+
+
+# %%
+def main(out: str = "results/demos/friction_over_voltage", size: str = "small") -> None:
+    """Sweep the voltage; with the size "full" the full model is that of the default finger, some minutes a point."""
+    voltages = np.linspace(0.0, 200.0, 41)
+    curve = fp.sweep(fp.Scene(), Path(out) / "cylinders", model="cylinders", f_ext=[25, 75], voltage=voltages)
+    mu = curve.array("mu_app")  # shape (2, 41)
+    scene = load(SMALL) if size == "small" else fp.Scene()
+    scene = scene.replace(output={"errors": False})
+    points = [0.0, 100.0] if size == "small" else [0.0, 100.0, 200.0]
+    found = np.array([beside(voltage, scene) for voltage in points])
+    if MPI.COMM_WORLD.rank == 0:
+        for voltage, (full, cylinders) in zip(points, found, strict=True):
+            print(f"{voltage:5.0f} V: full model {full:.4f}, cylinders {cylinders:.4f}")
+        draw(Path(out), voltages, mu, points, found, f"{size} finger, {scene.f_ext:g} N/m")
+    assert np.allclose(mu[:, 0], MU_0) and np.allclose(found[0], MU_0, rtol=1e-6)  # no voltage, no attraction
+    assert (np.diff(mu, axis=1) > 0).all() and (mu[0, 1:] > mu[1, 1:]).all()  # it weighs more on a light load
+    # At least the square of the voltage: the gap closes.
+    assert ((mu[:, -1] - MU_0) > 4 * (mu[:, 20] - MU_0)).all()
+    # The closed form of one mean ridge is some per cent off the finger's ridges, no more than a tenth.
+    assert np.allclose(found[:, 0], found[:, 1], rtol=0.1)
+
+
+def draw(out: Path, voltages: np.ndarray, mu: np.ndarray, points: list, found: np.ndarray, what: str) -> None:
+    """Write the friction over the voltage."""
+    axes = (figure := Figure(figsize=(6.4, 4.2), layout="constrained")).subplots()
+    for values, f_ext, style, colour in zip(mu, (25, 75), ("-", "--"), ("#D55E00", "#0072B2"), strict=True):
+        axes.plot(voltages, values, style, color=colour, label=f"cylinders, default finger, {f_ext} N/m")
+    axes.plot(points, found[:, 0], "ko", label=f"full model, {what}")
+    axes.plot(points, found[:, 1], "k+", ms=14, label=f"cylinders, {what}")
+    axes.set(xlabel="voltage U (V)", ylabel="apparent friction µ_app", title="Friction at full slip", ylim=(0, None))
+    axes.legend(frameon=False)
+    figure.savefig(out / "friction.png", dpi=150)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

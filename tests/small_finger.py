@@ -1,0 +1,33 @@
+"""Run a script with a small finger in the place of the default one: python3 tests/small_finger.py SCRIPT [ARG ...]
+
+What a reader of the script sees is the whole finger; the lines are the same.
+"""
+
+import runpy
+import sys
+from pathlib import Path
+from typing import Any
+
+import fingerpad
+from fingerpad.scene import Scene, load
+
+SMALL = Path(__file__).parents[1] / "demos" / "scenes" / "small_finger.toml"
+LIGHTER = 1.0 / 75.0  # of the loads: 1 N/m on the small finger for 75 N/m on the default one
+
+
+def small(f_ext: float = 75.0, voltage: float = 200.0, **values: Any) -> Scene:
+    """Return the scene on the small finger, under a lighter load and half of the voltage."""
+    return load(SMALL).replace(f_ext=f_ext * LIGHTER, voltage=voltage / 2, **values)
+
+
+def ends(scene: Scene, *args: Any, f_ext: list[float], voltage: list[float], **more: Any) -> fingerpad.Sweep:
+    """Return the first and the last point of a sweep."""
+    axes = {"voltage": [voltage[0] / 2, voltage[-1] / 2], "f_ext": [f_ext[-1] * LIGHTER]}  # in the order of the demo
+    return SWEEP(scene.replace(output={"errors": False}), *args, **more, **axes)
+
+
+SWEEP = fingerpad.sweep
+if __name__ == "__main__":
+    fingerpad.Scene, fingerpad.sweep = small, ends  # type: ignore[misc,assignment]
+    sys.argv = sys.argv[1:]
+    runpy.run_path(sys.argv[0], run_name="__main__")
