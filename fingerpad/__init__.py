@@ -60,10 +60,9 @@ _HOMES = {
     "AirGap": "variational.roughness.closure",
     "BearingArea": "variational.roughness.bam",
 }
+_LIGHT = "variational.roughness", "variational.state", "variational.friction"
 _FINITE_ELEMENTS = [
-    name
-    for name, home in _HOMES.items()
-    if home.startswith("variational") and not home.startswith(("variational.roughness", "variational.state"))
+    name for name, home in _HOMES.items() if home.startswith("variational") and not home.startswith(_LIGHT)
 ] + ["Body"]
 __all__ = [*_HOMES, "geometry"]
 

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 import fingerpad.started  # noqa: F401
 from fingerpad.entry import MPI
 from fingerpad.gathered import Nodes, Points
+from fingerpad.laws import refuse_thickness
 from fingerpad.states import full_slip
 from fingerpad.steps import force_error
 from geometry.mesh import TaggedMesh, load
@@ -93,7 +94,8 @@ class Body:
 
         Args:
             shape: a shape of :mod:`geometry`, a gmsh file (:mod:`geometry.meshfile`), or a mesh.
-            material: of the whole body, or of each layer by its name in :data:`geometry.tags.LAYERS`.
+            material: of the whole body, or of each layer by its name in :data:`geometry.tags.LAYERS`, with spaces or
+                with underscores.
             contact: how contact enters the weak form.
             friction: law of friction; a number is the coefficient of Coulomb's.
             roughness: the microscale, from pressure to air gap; without it there is no voltage.
@@ -107,7 +109,7 @@ class Body:
         Raises:
             geometry.profiles.GeometryError: the shape or the file cannot be meshed.
             ValueError: layers and materials do not agree, a law is none, or ``roughness`` has no ``h_0`` and none is
-                given.
+                given, or another one.
         """
         if roughness is not None:
             check(roughness)
@@ -117,6 +119,8 @@ class Body:
             h_0 = getattr(roughness, "h_0", None if roughness else 1.0)  # without a voltage it does not act
             if h_0 is None:
                 raise ValueError("roughness has no h_0; give Body the effective insulator thickness, h_0=... in m")
+        if roughness is not None:
+            refuse_thickness(roughness, h_0)
         law = Interface(contact, friction, h_0, ELECTROSTATIC if roughness else None)
         self._closure, self._force_scale = roughness, force_scale
         made = setup.Body(
@@ -292,6 +296,12 @@ def _solids(mesh: TaggedMesh, material: Material | Mapping[str, Material]) -> di
     if not isinstance(material, Mapping):
         raise ValueError(f"material is {material!r}; it must be a Material, or a dictionary of one for each layer")
     listed = ", ".join(map(repr, layers))
+    given, material = material, {}
+    for key, solid in given.items():
+        name = key.replace("_", " ") if isinstance(key, str) else key
+        if name in material:
+            raise ValueError(f"there are two materials for the layer {name!r}, with a space and with _; give it once")
+        material[name] = solid
     for name in material:
         if name not in layers:
             near = get_close_matches(str(name), layers, n=1)

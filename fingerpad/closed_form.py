@@ -68,7 +68,7 @@ def fitted(scene: Scene) -> Footprint:
     if scene.laws.materials:
         raise SceneError(
             f"materials are given for {', '.join(scene.laws.materials)}, and a contact length is known of the default "
-            "finger alone; give a contact length and a number of ridges, a folder of a run, or use rung 2"
+            "finger alone; give a contact length and a number of ridges, a folder of a run, or use the model 'smooth'"
         )
     for name in _SHAPING:
         if getattr(scene, name) != getattr(default, name):

@@ -1,6 +1,6 @@
 r"""A cheap coarse finger: which ridge is the last one that the screen reaches.
 
-The smooth layered finger of rung 2 (:mod:`fingerpad.smooth`) with plane junctions and linear elements of half a ridge
+The finger of the model "smooth" (:mod:`fingerpad.smooth`) with plane junctions and linear elements of half a ridge
 is pressed on springs. For a ridge's law they have one number, the mean pressure that flattens a wave of a half-space
 over its amplitude (Westergaard 1939, doi 10.1115/1.4008919; :math:`E^* = 2 G_0 / (1 - \nu)` of the stratum corneum):
 

@@ -20,8 +20,12 @@ def replace(file: Path, text: str) -> None:
 
 
 def replace_json(file: Path, data: Any) -> None:
-    """Write data as JSON, as :func:`replace` does."""
-    replace(file, json.dumps(data, indent=1, ensure_ascii=False) + "\n")
+    """Write data as JSON, as :func:`replace` does.
+
+    Raises:
+        ValueError: a number that is not finite, which JSON does not have.
+    """
+    replace(file, json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
 
 
 class Table:

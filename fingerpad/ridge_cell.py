@@ -71,19 +71,20 @@ class Tables:
     unknowns: int
 
 
-def tables(scene: Scene, folder: Path) -> Tables:
-    """Return the tables of a scene's ridge, made now or read from a folder; on one rank or all alike.
+def tables(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Tables:
+    """Return the tables of a scene's ridge, made now or read from a folder; collective.
 
     Args:
         scene: a scene.
         folder: of tables, each a JSON file named by a hash of what it depends on, which it holds.
+        comm: communicator of the ranks that want them.
 
     Raises:
         StepFailed: the cell could not be pressed or slid.
     """
-    made_of = _made_of(scene)
+    made_of = comm.bcast(_made_of(scene))  # a law without a source counts by the process that it is in
     name = hashlib.sha256(json.dumps(made_of, sort_keys=True).encode()).hexdigest()[:16]
-    file, comm = folder / f"{name}.json", MPI.COMM_WORLD
+    file = folder / f"{name}.json"
     data = json.loads(file.read_text(encoding="utf-8")) if comm.rank == 0 and file.exists() else None
     data = comm.bcast(data)
     if data is None:
@@ -239,7 +240,7 @@ def confined(solid: Material, pressure: float) -> float:
     With one stretch J and none sideways -p is dW/dJ. Of Ogden's solid
     :math:`W(J) = 2 G_0 / \alpha^2 (2 J^{-a/3} + J^{2a/3} - 3) + K (J-1)^2 / 2`; another's density is differentiated.
     """
-    if not isinstance(solid, Ogden):
+    if type(solid) is not Ogden:  # of a derived class too
         stress = _confined_stress(solid)
         return float(brentq(lambda J: stress(J) + pressure, 0.05, 5.0, xtol=1e-14))
     a, shear, bulk = solid.a, solid.shear_modulus, solid.bulk

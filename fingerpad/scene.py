@@ -7,12 +7,13 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import replace
+from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
-from fingerpad.laws import LAYERS, Laws
+from fingerpad.laws import LAYERS, Laws, refuse_thickness, refuse_unread
 from fingerpad.materials import Electric, Materials, Roughness
 from fingerpad.names import first_clash
 from fingerpad.parameters import FORMULATION_KEYS, Accuracy, Contact, Load, Numerics, Output, Voltage
@@ -162,7 +163,7 @@ class Scene(Part):
                 a table given as an object such as ``MeshSize``, stands in place of the present one.
 
         Raises:
-            SceneError: the first key at fault.
+            SceneError: the first key at fault, or one in whose place the scene has a law.
         """
         present = plain(self)
         if "accuracy" in changes and self.accuracy is not None:
@@ -182,7 +183,8 @@ class Scene(Part):
             setattr(found, name, value)
         if "friction" in changes:
             found._laws = replace(found._laws, friction=None)
-        return found
+        refuse_unread(self, found)
+        return found._checked()
 
     @property
     def h_0(self) -> float:
@@ -208,20 +210,32 @@ class Scene(Part):
 
         Args:
             closure: the microscale.
-            materials: solids by the layer's key.
-            friction: law of friction; a number is the friction coefficient of Coulomb's law.
+            materials: solids by the layer's key or name.
+            friction: law of friction; a number is the key ``friction`` of the scene.
             mesh: file of a mesh.
 
         Raises:
-            SceneError: what is no law; in one sentence.
+            SceneError: what is no law, or a closure of another insulator than the scene's; in one sentence.
         """
-        given = {"closure": closure, "friction": friction, "mesh": mesh}
+        given = {"closure": closure, "mesh": mesh}
         changes: dict[str, Any] = {name: law for name, law in given.items() if law is not None}
         if materials is not None:
             changes["materials"] = {**self.laws.materials, **Laws(materials=materials).materials}
         found = self.model_copy()
-        found._laws = replace(self.laws, **changes)
-        return found
+        if isinstance(friction, Real) and not isinstance(friction, bool):
+            found = self.replace(friction=friction)
+        elif friction is not None:
+            changes["friction"] = friction
+        found._laws = replace(found.laws, **changes)
+        return found._checked()
+
+    def _checked(self) -> "Scene":
+        """Return the scene itself; refuse a closure of another insulator."""
+        try:
+            refuse_thickness(self.laws.closure, self.h_0)
+        except ValueError as error:
+            raise SceneError(str(error)) from None
+        return self
 
     def closure(self) -> Closure:
         """Return the microscale."""

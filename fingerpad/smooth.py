@@ -203,7 +203,7 @@ def _named(state: str, name: str) -> str:
 
 @dataclass(frozen=True)
 class Slipping:
-    """Rung 2's full slip, as a guess of the ridged finger's."""
+    """The smooth finger's full slip, as a guess of the ridged finger's."""
 
     carried: Carried
     """In the ridged finger's place, by its ridges and at its voltage."""
@@ -214,7 +214,7 @@ class Slipping:
 
 
 def full_slip(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Slipping:
-    """Return rung 2's full slip for the full model to start from; collective.
+    """Return the smooth finger's full slip for the full model to start from; collective.
 
     Args:
         scene: press, charge and slide.
@@ -222,7 +222,7 @@ def full_slip(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Sl
         comm: communicator of the mesh.
 
     Raises:
-        StepFailed: there is none, or rung 2 does not come to it.
+        StepFailed: there is none, or the smooth finger does not come to it.
     """
     if scene.history is not None or scene.numerics.element == "P2-P1" or scene.friction_law() is None:
         raise StepFailed(
@@ -251,8 +251,8 @@ class _SmoothFinger:
 
     def __init__(self, scene: Scene, folder: Path, comm: MPI.Comm) -> None:
         self.scene = scene
-        self.charged = charged = ridge_cell.tables(scene, folder)
-        self.uncharged = uncharged = ridge_cell.tables(scene.model_copy(update={"voltage": 0.0}), folder)
+        self.charged = charged = ridge_cell.tables(scene, folder, comm)
+        self.uncharged = uncharged = ridge_cell.tables(scene.model_copy(update={"voltage": 0.0}), folder, comm)
         finger = smoothed(scene.geometry)
         body = load(comm, partial(fingertip.build, finger, sizes(scene)), tags.LAYERS.values())
         self.law = RidgeLaw(uncharged.normal, charged.period, charged.tangential / charged.period)

@@ -1,7 +1,7 @@
-"""The full model's full slip from rung 2's, without its path.
+"""The full model's full slip from that of the model "smooth", without its path.
 
 Full slip does not know the path that led there: every point in contact slips one way, and the screen looks the same
-everywhere. So it can be solved for from any guess near enough. Rung 2 has one for the whole finger, less its ridges:
+everywhere. So it can be solved for from any guess near enough. The smooth finger has one, less its ridges:
 its displacement, bone and air gaps are put onto the ridged finger, whose ridges then reach some 20 um into the screen;
 they are squeezed out of it (:mod:`variational.squeeze`), evenly over half a ridge or more, and the state is solved for
 at once, in the end by pseudo-transient continuation. What is found is an equilibrium of the unchanged equations, and is
@@ -13,7 +13,7 @@ hang on. The notes say so.
 
 Its discretisation error is estimated as a run's is (:mod:`fingerpad.accuracy`).
 
-Normal contact is left out, since friction makes it depend on the path, of which rung 2 knows nothing.
+Normal contact is left out, since friction makes it depend on the path, of which the model "smooth" has nothing.
 """
 
 from dataclasses import dataclass
@@ -50,7 +50,7 @@ class Started:
 
 
 def full_slip(scene: Scene, folder: Path, comm: MPI.Comm) -> Started:
-    """Return the full model's full slip from rung 2's; collective.
+    """Return the full model's full slip from the smooth finger's; collective.
 
     Args:
         scene: press, charge and slide.
@@ -58,9 +58,9 @@ def full_slip(scene: Scene, folder: Path, comm: MPI.Comm) -> Started:
         comm: communicator of the mesh.
 
     Raises:
-        StepFailed: rung 2 does not come to full slip, or the full model's was not found from there.
+        StepFailed: the smooth finger does not come to full slip, or the full model's was not found from there.
     """
-    scene = by_rule(scene)  # rung 2 has these ridges
+    scene = by_rule(scene)  # the smooth finger has these ridges
     guess = smooth.full_slip(scene, folder, comm)
     simulation = Simulation(scene, plan(scene), comm, lambda step, done: None, lambda: None)
     keeper = Keeper(simulation)
@@ -73,13 +73,14 @@ def full_slip(scene: Scene, folder: Path, comm: MPI.Comm) -> Started:
         except StepFailed as error:
             failures.append(str(error))
     else:
-        raise StepFailed(f"full slip was not found from rung 2's: {failures[-1]}")
+        raise StepFailed(f"full slip was not found from that of the model 'smooth': {failures[-1]}")
     keeper.keep("full_slip")
     found = keeper.states["full_slip"].state.ridges_in_contact
     notes = [
-        "full slip was solved for from rung 2's; normal contact depends on the path, which was not followed",
-        f"{found} ridges are in contact, in rung 2 {guess.ridges}: where a voltage makes ridges jump, the path may end "
-        "in another equilibrium, with a ridge more or less",
+        "full slip was solved for from that of the model 'smooth'; normal contact depends on the path, which was not "
+        "followed",
+        f"{found} ridges are in contact, in the model 'smooth' {guess.ridges}: where a voltage makes ridges jump, the "
+        "path may end in another equilibrium, with a ridge more or less",
     ]
     return Started(keeper.solve(), guess, tuple(notes))
 

@@ -176,8 +176,11 @@ def test_load_is_a_text_with_a_unit():
 
 # -- materials, meshes -------------------------------------------------------------------------------------
 def test_material_of_a_layer_by_its_name():
-    by_name = Body(RIDGE, {"stratum corneum": SKIN}, contact=SPRINGS).press(height=-10e-6)
-    assert by_name.state.f_ext == pytest.approx(Body(RIDGE, SKIN, contact=SPRINGS).press(height=-10e-6).state.f_ext)
+    """With a space or an underscore, as in a scene."""
+    alone = Body(RIDGE, SKIN, contact=SPRINGS).press(height=-10e-6).state.f_ext
+    for name in ("stratum corneum", "stratum_corneum"):
+        by_name = Body(RIDGE, {name: SKIN}, contact=SPRINGS).press(height=-10e-6)
+        assert by_name.state.f_ext == pytest.approx(alone)
 
 
 # -- refusals ----------------------------------------------------------------------------------------------
@@ -215,6 +218,11 @@ def test_load_is_refused(call, message):
 def test_materials_are_refused(material, message):
     with pytest.raises(ValueError, match=message):
         Body(RIDGE, material, contact=SPRINGS)
+
+
+def test_body_has_the_insulator_of_its_roughness():
+    with pytest.raises(ValueError, match="has h_0 = 5.1e-07 m, and the attraction has an effective .* of 1e-06 m"):
+        Body(RIDGE, SKIN, contact=SPRINGS, roughness=BearingArea(H_0), h_0=1e-6)
 
 
 @pytest.mark.mpi

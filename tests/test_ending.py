@@ -183,6 +183,14 @@ def test_no_room_for_a_row(tmp_path):
     assert found == [{name: str(value) for name, value in row.items()} for row in rows[: len(found)]]
 
 
+def test_number_that_json_lacks_is_not_written(tmp_path):
+    """Other programs could not read it; what was there stays."""
+    replace_json(tmp_path / "summary.json", {"old": 1})
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        replace_json(tmp_path / "summary.json", {"new": float("nan")})
+    assert json.loads((tmp_path / "summary.json").read_text()) == {"old": 1}
+
+
 def test_no_room_for_a_summary(tmp_path):
     """The one that was there stays."""
     before = resource.getrlimit(resource.RLIMIT_FSIZE)

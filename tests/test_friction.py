@@ -15,7 +15,7 @@ from tests import test_contact, test_problem
 from variational import return_mapping
 from variational.augmented import AugmentedLagrangian
 from variational.body import Body
-from variational.contact import Formulation
+from variational.contact import Formulation, _limit
 from variational.continuation import Target
 from variational.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction, law_of
 from variational.nitsche import Nitsche
@@ -127,10 +127,30 @@ def test_what_is_no_law_is_refused(law, sentence):
     assert "\n" not in str(error.value)
 
 
+def test_no_law_is_derived_from_coulombs():
+    """Its coefficient would stand for the law where there are no pressures."""
+    with pytest.raises(
+        TypeError, match=r"Mine is derived from Coulomb; derive a law of friction from fingerpad\.Friction"
+    ):
+
+        class Mine(Coulomb):
+            def limit(self, p):
+                return 2 * self.mu_f * p
+
+
 @pytest.mark.parametrize("given", [-0.1, float("nan"), float("inf"), True, "smooth"])
 def test_what_is_no_coefficient_is_refused(given):
     with pytest.raises(ValueError, match="it must be a Friction, a friction coefficient of at least 0, or None"):
         law_of(given)
+
+
+def test_limit_that_ufl_cannot_hold_is_refused():
+    """NumPy's functions take arrays, so that the law itself is one; the weak form cannot have it."""
+    law = Formula(lambda p: 1e3 * np.tanh(p / 1e3))
+    law.check()
+    with pytest.raises(ValueError, match="the law Formula, to be written with arithmetic, .* cannot be put") as error:
+        _limit(law, ufl.variable(ufl.as_ufl(1.0)))
+    assert "\n" not in str(error.value)
 
 
 def test_interface_takes_a_law_a_coefficient_or_none():

@@ -15,6 +15,7 @@ from fingerpad.laws import Laws, used
 from fingerpad.needs import plan
 from fingerpad.scene import Scene, SceneError, from_data
 from fingerpad.simulation import Simulation
+from fingerpad.written import digest
 from geometry import tags
 from variational.coupling import Coupling
 from variational.cylinder import Cylinder
@@ -24,6 +25,7 @@ from variational.neo_hooke import NeoHooke
 from variational.ogden import Ogden
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap, Closure, check
+from variational.saint_venant import SaintVenant
 
 DERJAGUIN = Derjaguin(0.3, tau_0=5e3)
 
@@ -161,7 +163,7 @@ def test_parameters_tell_laws_apart(tmp_path):
     again = Scene().with_laws(friction=Saturating(0.4, 20000))
     assert json.dumps(again.parameters(), sort_keys=True) == texts[3]
     file.write_text("other", encoding="utf-8")
-    assert json.dumps(scenes[-1].parameters(), sort_keys=True) != texts[-1]
+    assert json.dumps(Scene().with_laws(mesh=file).parameters(), sort_keys=True) != texts[-1]
 
 
 def test_names_of_the_laws():
@@ -186,6 +188,85 @@ def test_names_are_those_of_the_objects():
     for layer, tag in laws.LAYERS.items():
         assert used(scene)[layer] == laws._words(scene.solids()[tag])
     assert used(scene)["contact"] == laws._words(scene.contact.law())
+
+
+# -- laws beside keys ------------------------------------------------------------------------------------------
+def test_number_is_the_key_friction():
+    """A number is no law: what is read of the scene is what acts."""
+    scene = Scene().with_laws(friction=DERJAGUIN).with_laws(friction=0.4)
+    assert scene == Scene().replace(friction=0.4)
+    assert (scene.friction, scene.parameters()["friction"], scene.laws.friction) == (0.4, 0.4, None)
+
+
+def test_layer_is_named_by_key_or_by_name():
+    one, other = (Scene().with_laws(materials={name: NeoHooke(2e3)}) for name in ("nail_bed", "nail bed"))
+    assert one == other
+    assert other.solids()[tags.NAIL_BED] == NeoHooke(2e3)
+    with pytest.raises(SceneError, match="materials has the layer 'nail_bed' twice, by its key and by its name"):
+        one.with_laws(materials={"nail bed": NeoHooke(1e3), "nail_bed": NeoHooke(2e3)})
+
+
+@pytest.mark.parametrize(
+    ("law", "change", "sentence"),
+    [
+        (
+            {"closure": Held()},
+            {"roughness": {"h_rms": 2e-6}},
+            "roughness is changed, and the scene has the closure Held",
+        ),
+        (
+            {"materials": {"dermis": NeoHooke(2e3)}},
+            {"materials": {"dermis": {"poisson": 0.4}}},
+            "materials.dermis is changed, and the scene has the material NeoHooke",
+        ),
+    ],
+)
+def test_key_that_a_law_replaces_is_not_changed(law, change, sentence):
+    with pytest.raises(SceneError, match=sentence):
+        Scene().with_laws(**law).replace(**change)
+    assert Scene().with_laws(**law).replace(materials={"subcutis": {"poisson": 0.4}}, f_ext=10.0).f_ext == 10.0
+
+
+def test_closure_has_the_insulator_of_the_attraction():
+    """Equal but for roundoff; otherwise air gaps and attraction are of two insulators."""
+    h_0 = Scene().h_0
+    scene = Scene().with_laws(closure=BearingArea(h_0 * (1 + 1e-9)))
+    with pytest.raises(
+        SceneError, match="the closure BearingArea has h_0 = 2e-06 m, and the attraction has .* 5.13986"
+    ):
+        scene.with_laws(closure=BearingArea(2e-6))
+    with pytest.raises(SceneError, match="the two must be the same"):
+        scene.replace(geometry={"sc_thickness": 250e-6})
+
+
+def test_mesh_is_read_when_it_is_given(tmp_path):
+    """A run of hours ends with the hash of what it began with, be the file gone."""
+    file = tmp_path / "mine.msh"
+    file.write_text("one", encoding="utf-8")
+    scene = Scene().with_laws(mesh=file)
+    before = scene.parameters()
+    file.unlink()
+    assert scene.parameters() == before
+    assert len(before["laws"]["mesh"]["sha256"]) == 64
+
+
+@pytest.mark.parametrize("solid", [NeoHooke(2e3, 0.5), Ogden(2e3, -14.0, 0.5), SaintVenant(1e6, 0.5)], ids=repr)
+def test_incompressible_solid_is_refused(solid):
+    with pytest.raises(SceneError, match="moduli that are divided by zero; poisson must be above -1 and below 0.5"):
+        Scene().with_laws(materials={"dermis": solid})
+
+
+@dataclass(frozen=True)
+class OfArrays(Mine):
+    """A material written with NumPy's functions."""
+
+    def energy(self, F):
+        return self.shear_modulus * np.tanh(F[0, 0])
+
+
+def test_energy_that_ufl_cannot_hold_is_refused():
+    with pytest.raises(SceneError, match="energy of OfArrays.*, to be written with arithmetic and ufl's functions"):
+        Scene().with_laws(materials={"dermis": OfArrays(2.5e3, 6e4)})
 
 
 # -- closures --------------------------------------------------------------------------------------------------
@@ -377,7 +458,8 @@ def test_energies_of_own_laws_balance(slid):
 def test_laws_of_a_run_tell_its_folder():
     """Kept results are found by the parameters, which have the laws with module and numbers."""
     given = Laws(**OWN).parameters()
-    assert given["friction"] == {"law": f"{Saturating.__module__}.Saturating", "mu_f": 0.4, "t_most": 2e4}
+    law = {"law": f"{Saturating.__module__}.Saturating", "source code": digest(Saturating)}
+    assert given["friction"] == law | {"mu_f": 0.4, "t_most": 2e4}
     assert given["materials"]["dermis"]["bulk"] == 6e4
     assert Path(__file__).stem in given["closure"]["law"]
 

@@ -74,6 +74,13 @@ def test_closed_form_by_the_door(tmp_path):
     assert done.returncode == 0, done.stderr
 
 
+def test_friction_laws_by_the_door():
+    """They are formulas: a closed form takes them where there are no finite elements."""
+    code = "import fingerpad as fp\nfp.run(model='cylinders', friction=fp.Derjaguin(0.3, tau_0=5e3))\nfp.Coulomb(0.3)"
+    done = without(code, *HEAVY)
+    assert done.returncode == 0, done.stderr
+
+
 def test_what_is_blocked_is_blocked():
     """Without this the tests above would hold of any module."""
     assert "ModuleNotFoundError" in without("import variational.ogden", *HEAVY).stderr

@@ -125,6 +125,14 @@ def test_table_is_kept(cell, monkeypatch):
     assert again.seconds == cell[0].seconds
 
 
+def test_table_is_read_by_the_ranks_that_want_it(cell, monkeypatch):
+    """On another communicator than that of all ranks, which would wait for those that want none."""
+    monkeypatch.setattr(ridge_cell, "_Cell", None)
+    monkeypatch.setattr(ridge_cell, "MPI", None)
+    again = ridge_cell.tables(from_data(COARSE), cell[1], MPI.COMM_SELF)
+    assert again.name == cell[0].name
+
+
 def test_table_of_another_voltage_is_another(cell, monkeypatch):
     monkeypatch.setattr(ridge_cell, "_Cell", None)
     with pytest.raises(TypeError):

@@ -123,8 +123,8 @@ def test_table_that_ends_too_soon_is_said(answer, monkeypatch):
     """A table to a fiftieth of the force: the finger stops where it ends, with one sentence."""
     folder, tables = answer[1], ridge_cell.tables
 
-    def short(scene, folder):
-        found = tables(scene, folder)
+    def short(scene, folder, comm):
+        found = tables(scene, folder, comm)
         for table in (found.normal, found.slip):
             keep = np.arange(len(table.y)) >= np.argmax(table.contact < 0.04)
             for name, values in vars(table).items():

@@ -1,4 +1,4 @@
-"""Full slip from rung 2's state, on a finger of few ridges: that of the path, checked, or else the path itself."""
+"""Full slip from the smooth finger's, on a finger of few ridges: that of the path, checked, or else the path itself."""
 
 import numpy as np
 import pytest
@@ -90,7 +90,7 @@ def test_no_squeeze_that_helps_is_a_failure(folder, monkeypatch):
         raise StepFailed("no equilibrium")
 
     monkeypatch.setattr(Simulation, "adopt", fail)
-    with pytest.raises(StepFailed, match="full slip was not found from rung 2's: no equilibrium"):
+    with pytest.raises(StepFailed, match="full slip was not found from that of the model 'smooth': no equilibrium"):
         start.full_slip(from_data(SCENE), folder, MPI.COMM_WORLD)
 
 

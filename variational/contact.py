@@ -25,6 +25,7 @@ import ufl
 from numpy.typing import NDArray
 
 from variational import return_mapping
+from variational.coefficients import said
 from variational.friction import Friction
 
 if TYPE_CHECKING:
@@ -100,10 +101,25 @@ class Contact:
         if friction is None:
             self.t_t, self.new_anchor = ufl.zero(), skin.u[0]
         else:
-            limit = friction.limit(self.p_n)
+            limit = _limit(friction, self.p_n)
             self.t_t = return_mapping.traction(skin.u[0], skin.anchor, limit, ease * s.gamma_t, guess, s.lambda_t)
             self.new_anchor = return_mapping.new_anchor(skin.u[0], self.t_t, s.gamma_t, s.lambda_t)
         self.traction = ufl.as_vector([self.t_t, self.p_n])
+
+
+def _limit(friction: Friction, p_n):
+    """Return the limit of friction (Pa) as the weak form has it.
+
+    Raises:
+        ValueError: the law cannot be written in UFL; in one sentence.
+    """
+    try:
+        return ufl.as_ufl(friction.limit(p_n))
+    except Exception as error:  # whatever the user's limit raises
+        raise ValueError(
+            f"the limit of the law {type(friction).__name__}, to be written with arithmetic, or with ufl's functions "
+            f"where p is a UFL expression, cannot be put into the weak form: {said(error)}"
+        ) from error
 
 
 @dataclass(frozen=True)

@@ -44,7 +44,9 @@ class Friction(Law, ABC):
     def limit(self, p):
         """Return the largest tangential traction t_max (Pa) under a contact pressure p_n >= 0 (Pa).
 
-        Written with arithmetic alone (+, -, *, /, **), it takes numbers, NumPy arrays and UFL expressions alike.
+        Written with arithmetic alone (+, -, *, /, **), it takes numbers, NumPy arrays and UFL expressions alike. In the
+        full model both are per reference area, that of the unloaded skin; on one small ridge the contact length
+        changed by 0.7 % from there, and so does a limit that is not proportional to the pressure.
         """
 
     def dissipated(self, before: Array, after: Array, slip: Array) -> tuple[Array, Array]:
@@ -65,7 +67,10 @@ class Friction(Law, ABC):
         return float(self.limit(p) / p)
 
     def resultant(self, force: float, length: float) -> float:
-        """Return the largest friction (N/m) of a contact force (N/m) spread evenly over a length (m)."""
+        """Return the largest friction (N/m) of a contact force (N/m) spread evenly over a length (m).
+
+        The model "cylinders" gives the current length, while the full model's :meth:`limit` is per reference area.
+        """
         return float(self.limit(force / length) * length) if length > 0 else 0.0
 
     def with_constants(self, constant: Callable[[float], Any]) -> Self:
@@ -103,10 +108,21 @@ class Friction(Law, ABC):
 
 @dataclass(frozen=True)
 class Coulomb(Friction):
-    r"""Coulomb's law, :math:`t_{max} = \mu_f p_n`."""
+    r"""Coulomb's law, :math:`t_{max} = \mu_f p_n`.
+
+    Models without pressures take its friction coefficient for the whole law, so that no law is derived from it.
+    """
 
     mu_f: float
     """Friction coefficient."""
+
+    def __init_subclass__(cls) -> None:
+        """Refuse a derived law.
+
+        Raises:
+            TypeError: always.
+        """
+        raise TypeError(f"{cls.__name__} is derived from Coulomb; derive a law of friction from fingerpad.Friction")
 
     def limit(self, p):
         """Return mu_f p (Pa)."""

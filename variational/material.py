@@ -118,9 +118,13 @@ class Material(Law):
             )
         if not ("shear_modulus" in self.__dataclass_fields__ or hasattr(kind, "shear_modulus")):  # type: ignore[attr-defined]
             raise ValueError(f"{kind.__name__} has no shear_modulus; it must have the initial one, in Pa")
-        moduli = {"shear_modulus": self.shear_modulus, "bulk": self.volumetric}
-        if moduli["bulk"] is None:
-            moduli["constrained_modulus"] = self.constrained_modulus
+        try:
+            moduli = {"shear_modulus": self.shear_modulus, "bulk": self.volumetric}
+            if moduli["bulk"] is None:
+                moduli["constrained_modulus"] = self.constrained_modulus
+        except ZeroDivisionError:
+            bound = "poisson must be above -1 and below 0.5" if hasattr(self, "poisson") else "they must be finite"
+            raise ValueError(f"{self} has moduli that are divided by zero; {bound}") from None
         for name, value in moduli.items():
             if not (name == "bulk" and value is None) and not (np.isfinite(value) and value > 0):
                 raise ValueError(f"{self}: {name} is {value:g} Pa; it must be finite and greater than 0")
@@ -130,7 +134,10 @@ class Material(Law):
         try:
             left = [abs(s) for s in self._unloaded()]
         except Exception as error:  # whatever the user's energy raises
-            raise ValueError(f"the energy of {self} cannot be evaluated unloaded: {said(error)}") from error
+            raise ValueError(
+                f"the energy of {self}, to be written with arithmetic and ufl's functions, cannot be evaluated "
+                f"unloaded: {said(error)}"
+            ) from error
         if not max(left) <= _NATURAL * float(self.shear_modulus):
             raise ValueError(
                 f"{self} has a stress of {max(left):.3g} Pa unloaded; it must have none, which an energy of "
