@@ -49,9 +49,9 @@ def run(scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True) -
         lines: whether to print the steps.
 
     Returns:
-        The result, the same on every rank. It has a ``failure`` if a load or an accuracy could not be reached, in
-        which case every step before is in it and in the folder all the same, and ``interrupted``, the signal's name,
-        if it was asked to stop.
+        The result, the same on every rank. It has a ``failure`` if a load or an accuracy could not be reached; every
+        step before is in it and in the folder all the same. It has ``interrupted``, the name of the signal, if the run
+        was asked to stop.
 
     Raises:
         PlaceError: the folder is in use, holds another scene's results, or cannot be written to.
@@ -114,8 +114,13 @@ def _run(
     """
     console = Console(comm, lines)
     report = Report(scene, place, comm, console)
-    for start in failed_starts:
-        report.say(f"no equilibrium with a contact size of {start['contact'] * 1e6:g} µm: once more with half of it")
+    tried = [
+        f"No equilibrium was found with a contact size of {start['contact'] * 1e6:g} µm; the run started again with half "
+        "of it."
+        for start in failed_starts
+    ]
+    for note in tried:
+        report.say(note)
     ended: dict[str, Any] = {}
     again = False
     jit.sweep(comm)
@@ -160,10 +165,10 @@ def _run(
             if search is not None:
                 notes, found = _found(search)
                 named, ended = search.states(named), found | ended
-                ended["notes"] = notes
+                tried += notes
                 report.finer(search.base.views)
                 named = report.on_final_mesh(named)
-            ended["coarse_solve"] = decision.cost or None
+            ended |= {"notes": tried, "coarse_solve": decision.cost or None}
             if failed_starts:
                 ended["failed_starts"] = failed_starts
             report.load_reached()

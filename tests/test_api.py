@@ -194,6 +194,7 @@ def test_a_run_starts_again_with_smaller_elements(monkeypatch):
     found = fp.run(from_data({key: SMALL[key] for key in ("geometry", "mesh")} | lean))
     assert not found.failure and found.charged.mesh_contact == 20e-6
     assert [start["contact"] for start in found.to_dict()["failed_starts"]] == [40e-6]
+    assert "contact size of 40 µm; the run started again" in str(found)
 
 
 # -- sweeps ------------------------------------------------------------------------------------------------
