@@ -115,8 +115,8 @@ def _run(
     console = Console(comm, lines)
     report = Report(scene, place, comm, console)
     tried = [
-        f"No equilibrium was found with a contact size of {start['contact'] * 1e6:g} µm; the run started again with half "
-        "of it."
+        f"No equilibrium was found with a contact size of {start['contact'] * 1e6:g} µm; "
+        "the run started again with half of it."
         for start in failed_starts
     ]
     for note in tried:
