@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -20,12 +21,16 @@ def replace(file: Path, text: str) -> None:
 
 
 def replace_json(file: Path, data: Any) -> None:
-    """Write data as JSON, as :func:`replace` does.
+    """Write data as JSON, as :func:`replace` does; numbers that are not finite, which JSON does not have, are null."""
+    replace(file, json.dumps(_finite(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
 
-    Raises:
-        ValueError: a number that is not finite, which JSON does not have.
-    """
-    replace(file, json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n")
+
+def _finite(data: Any) -> Any:
+    if isinstance(data, Mapping):
+        return {key: _finite(value) for key, value in data.items()}
+    if isinstance(data, list | tuple):
+        return [_finite(value) for value in data]
+    return None if isinstance(data, float) and not math.isfinite(data) else data
 
 
 class Table:

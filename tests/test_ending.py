@@ -183,12 +183,12 @@ def test_no_room_for_a_row(tmp_path):
     assert found == [{name: str(value) for name, value in row.items()} for row in rows[: len(found)]]
 
 
-def test_number_that_json_lacks_is_not_written(tmp_path):
-    """Other programs could not read it; what was there stays."""
-    replace_json(tmp_path / "summary.json", {"old": 1})
-    with pytest.raises(ValueError, match="not JSON compliant"):
-        replace_json(tmp_path / "summary.json", {"new": float("nan")})
-    assert json.loads((tmp_path / "summary.json").read_text()) == {"old": 1}
+def test_numbers_that_json_lacks_are_null(tmp_path):
+    """Other programs could not read them, and hours of a run are not lost by one: no rate of growth is inf."""
+    data = {"lambda_min": float("inf"), "shares": [float("nan"), 1.0], "number": (2, None)}
+    replace_json(tmp_path / "summary.json", data)
+    text = (tmp_path / "summary.json").read_text()
+    assert json.loads(text) == {"lambda_min": None, "shares": [None, 1.0], "number": [2, None]}
 
 
 def test_no_room_for_a_summary(tmp_path):
