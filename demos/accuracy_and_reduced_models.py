@@ -39,7 +39,7 @@ def ladder(scene: fp.Scene, out: Path) -> dict[str, fp.Result]:
 
 # %%
 def main(out: str = "results/demos/accuracy_and_reduced_models", size: str = "small") -> None:
-    """Climb the ladder on a small finger; with the size "full" on the default finger, for some ten minutes."""
+    """Climb the ladder on a small finger; with the size "full" on the default finger, which takes far longer."""
     scene = fp.Scene.load(SMALL) if size == "small" else fp.Scene()
     found = ladder(scene, Path(out))
     if MPI.COMM_WORLD.rank == 0:

@@ -5,7 +5,7 @@
 # finger slides. The attraction adds to the contact pressure, and friction follows the contact pressure: so the apparent
 # friction µ_app = f_T / f_ext is above the friction coefficient of 0.25.
 #
-# The lines below are those of the README. On the whole finger they take about an hour, of which the sweep takes most.
+# The lines below are those of the README. On the whole finger the sweep, of ten full runs, takes most of the time.
 # The tests run them on a small finger.
 
 # %%

@@ -41,7 +41,7 @@ def beside(voltage: float, scene: fp.Scene) -> tuple[float, float]:
 
 # %%
 def main(out: str = "results/demos/friction_over_voltage", size: str = "small") -> None:
-    """Sweep the voltage; with the size "full" the full model is that of the default finger, some minutes a point."""
+    """Sweep the voltage; with the size "full" the full model is the default finger's, which takes longer."""
     voltages = np.linspace(0.0, 200.0, 41)
     curve = fp.sweep(fp.Scene(), Path(out) / "cylinders", model="cylinders", f_ext=[25, 75], voltage=voltages)
     mu = curve.array("mu_app")  # shape (2, 41)

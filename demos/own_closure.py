@@ -52,7 +52,7 @@ def friction(gap: float) -> tuple[float, float]:
 
 # %%
 def main(out: str = "results/demos/own_closure", size: str = "small") -> None:
-    """Slide blocks with gaps of their own, then a finger; with the size "full" the default finger, for minutes."""
+    """Slide blocks with gaps of their own, then a finger; with the size "full" the default finger, far slower."""
     gaps = np.array([1e-6, 1.5e-6, 2e-6, 3e-6])
     found, exact = np.array([friction(gap) for gap in gaps]).T
     scene = fp.Scene.load(SMALL) if size == "small" else fp.Scene()

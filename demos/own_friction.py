@@ -48,7 +48,7 @@ def slid(law: fp.Friction, f_ext: float) -> fp.Body:
 
 # %%
 def main(out: str = "results/demos/own_friction", size: str = "small") -> None:
-    """Slide blocks, then a finger; with the size "full" the default finger, for minutes."""
+    """Slide blocks, then a finger; with the size "full" the default finger, far slower."""
     forces = np.array([15.0, 30.0, 45.0])
     blocks = [slid(Mine(MU, TAU_0), force) for force in forces]
     found = np.array([block.state.f_t for block in blocks])

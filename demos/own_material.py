@@ -52,7 +52,7 @@ def pressed(material: fp.Material) -> np.ndarray:
 
 # %%
 def main(out: str = "results/demos/own_material", size: str = "small") -> None:
-    """Press blocks, then fingers of another dermis; with the size "full" the default finger, for minutes."""
+    """Press blocks, then fingers of another dermis; with the size "full" the default finger, which takes far longer."""
     blocks = {
         "neo-Hooke, built in": pressed(SOFT),
         "Yeoh, c₂ = 0": pressed(Yeoh(SOFT.shear_modulus, SOFT.bulk, 0.0)),

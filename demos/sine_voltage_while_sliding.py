@@ -36,7 +36,7 @@ def history(f_ext: float, samples: int) -> list[dict]:
 
 # %%
 def main(out: str = "results/demos/sine_voltage_while_sliding", samples: str = "12", size: str = "small") -> None:
-    """Run one period in a multiple of 4 steps; with the size "full" on the default finger, for some ten minutes."""
+    """Run one period in a multiple of 4 steps; with the size "full" on the default finger, which takes far longer."""
     n = int(samples)
     scene = fp.Scene.load(SMALL) if size == "small" else fp.Scene()
     f_ext = scene.f_ext
