@@ -17,10 +17,10 @@ from benchmarks import arguments, calibration, limits, untuned
 from benchmarks.convergence import Limit
 from benchmarks.effectivity import HIGH, LOW, cell, hertz_table, knob_tables, tally
 from benchmarks.errors import DEFAULT, LEVELS, folder_of_limits
-from fingerpad.files import replace
+from fingerpad.io.files import replace
+from fingerpad.io.states import WORDS
+from fingerpad.runs.batch import result, sweep
 from fingerpad.scene import Scene
-from fingerpad.states import WORDS
-from fingerpad.study import result, sweep
 
 _STATES = {"press": WORDS["uncharged"], "normal": WORDS["charged"], "slip": WORDS["full_slip"]}
 _SHORT = {"mu_app": "µ_app", "contact_length": "contact length", "sed": "SED"}
@@ -40,15 +40,16 @@ _LOOPS = """## Accuracy asked for
 
 The default scene as it is comes with its estimate from coarser meshes, as every run does. Each other scene is run with
 an `[accuracy]` and nothing else about its mesh but which ridges can touch, by the rule of thumb of
-`fingerpad/reach.py`, as in all benchmarks. The limit is that of its states solved again on meshes of one family down to
-a contact size of 1.25 µm, with its error bar. Cost: all factorisations × unknowns (path, estimate, and coarser paths
-that were lost), over those of the default scene's whole run on its own mesh. Ten scenes were drawn at random from a
-quarter about the default finger's lengths, materials and roughness (one seed, `benchmarks/untuned.py`), and each is
-asked twice: for friction and contact length, and for energy densities. *Likely*: the error is within what was allowed,
-but not by its bar; counted as met. Runs are kept, so that a cost is that of the version which ran it: most states were
-carried from mesh to mesh before their skin was put down to the screen (`variational/transfer.py`), and all before
-bodies were settled under their skin (`variational/continuation.py`). What was asked for had to be met by the estimate
-alone then; it is now by the estimate with its factors of safety, so that the same scene may be refined further."""
+`fingerpad/model/touching.py`, as in all benchmarks. The limit is that of its states solved again on meshes of one
+family down to a contact size of 1.25 µm, with its error bar. Cost: all factorisations × unknowns (path, estimate, and
+coarser paths that were lost), over those of the default scene's whole run on its own mesh. Ten scenes were drawn at
+random from a quarter about the default finger's lengths, materials and roughness (one seed, `benchmarks/untuned.py`),
+and each is asked twice: for friction and contact length, and for energy densities. *Likely*: the error is within what
+was allowed, but not by its bar; counted as met. Runs are kept, so that a cost is that of the version which ran it: most
+states were carried from mesh to mesh before their skin was put down to the screen (`variational/solvers/transfer.py`),
+and all before bodies were settled under their skin (`variational/solvers/continuation.py`). What was asked for had to
+be met by the estimate alone then; it is now by the estimate with its factors of safety, so that the same scene may be
+refined further."""
 
 
 @dataclass(frozen=True)

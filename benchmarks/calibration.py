@@ -4,7 +4,7 @@ environment/run python3 benchmarks/calibration.py
 
 The known cases are the rows of docs/accuracy.md: whole runs against the limits of their scenes, one size at a time,
 and Hertz's contact. This program reads them, keeps them in docs/calibration.json and writes the last section of the
-page, with what docs/errors.json says of the penalty; it runs no scene. fingerpad/estimate.py takes its factors of
+page, with what docs/errors.json says of the penalty; it runs no scene. fingerpad/richardson.py takes its factors of
 safety from here; tests/test_calibration.py holds them to the coverage wanted. All but the last table is of the
 discretisation alone: limits and runs have the same penalty.
 """
@@ -17,10 +17,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from benchmarks import arguments
-from fingerpad.estimate import MORE, ONCE
-from fingerpad.files import replace, replace_json
-from fingerpad.screen import ORDER
-from fingerpad.states import WORDS
+from fingerpad.accuracy.rigid_screen import ORDER
+from fingerpad.io.files import replace, replace_json
+from fingerpad.io.states import WORDS
+from fingerpad.richardson import MORE, ONCE
 
 WANTED = 0.9  # of the cases of each kind
 KINDS = {"friction": ("µ_app", "f_T"), "contact length": ("contact length",), "energy density": ("SED",)}
@@ -30,7 +30,7 @@ _SECTION = """{heading}
 Made by `environment/run python3 benchmarks/calibration.py` from the tables above; each case is in
 [calibration.json](calibration.json). A run prints the estimate times a factor of safety as its *estimated
 discretisation error*: {once:g} for the share of a size that was halved or doubled once, {more:g} for one that was
-halved more often (`fingerpad/estimate.py`). *Covered*: the factor times the estimate is at least the error. Where a
+halved more often (`fingerpad/richardson.py`). *Covered*: the factor times the estimate is at least the error. Where a
 run has sizes of both sorts, the smaller factor is taken here for all of them, so that the run prints more. Cases whose
 error is below its own bar are left out. A scene gives several cases, so that they are not independent. The lengths not
 covered with sizes changed once are Hertz's, of one contact with two edges that are off alike. The penalty has no part
@@ -40,9 +40,9 @@ in any of this: limits and runs have the same.
 |---|---|---|---|---|
 {rows}
 
-Beside it a run tells what a rigid screen would change (`fingerpad/screen.py`), from its states over a screen of twice
-the stiffness. In the default scene at a contact size of 10 µm, what 500 and 1500 MPa/mm predict of 5000 by that law of
-order {order:g}, and what 5000 changes ([errors.json](errors.json)):
+Beside it a run tells what a rigid screen would change (`fingerpad/accuracy/rigid_screen.py`), from its states over a
+screen of twice the stiffness. In the default scene at a contact size of 10 µm, what 500 and 1500 MPa/mm predict of 5000
+by that law of order {order:g}, and what 5000 changes ([errors.json](errors.json)):
 
 | contact length | from 1500 to 5000 MPa/mm, predicted (mm) | found (mm) |
 |---|---|---|

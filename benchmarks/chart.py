@@ -35,8 +35,8 @@ from benchmarks.points import (
     missing,
     scenes,
 )
-from fingerpad.files import replace, replace_json
-from fingerpad.study import sweep
+from fingerpad.io.files import replace, replace_json
+from fingerpad.runs.batch import sweep
 
 _LIMIT = 10800.0  # s of processor time for one run
 _TICKS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0)

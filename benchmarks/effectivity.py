@@ -1,7 +1,7 @@
 """Does the error estimate find the error? One knob at a time, and Hertz's contact, of which the error is known.
 
 The knobs are those of the runs of benchmarks/errors.py, which makes them: each run's error is estimated as
-fingerpad/estimate.py does it, from the coarser runs before it. Written beneath the whole loops
+fingerpad/richardson.py does it, from the coarser runs before it. Written beneath the whole loops
 of benchmarks/accuracy.py.
 """
 
@@ -16,9 +16,9 @@ from benchmarks import hertz
 from benchmarks.convergence import limit
 from benchmarks.errors import QUANTITIES, STUDIES, study, values
 from benchmarks.runs import Run
-from fingerpad.estimate import Knob
+from fingerpad.richardson import MeshParameter
+from fingerpad.runs.batch import progress
 from fingerpad.scene import Scene
-from fingerpad.study import progress
 
 Array = NDArray[np.float64]
 LOW, HIGH = 0.5, 3.0  # effectivities that are good enough
@@ -30,9 +30,9 @@ _LENGTH = "contact_length"
 _ONE = """## One knob at a time
 
 The default scene (75 N/m, 200 V, slid to full slip) with one size changed. The estimate is the knob's share
-(`fingerpad/estimate.py`), from the coarser runs before. The limit is, for the contact size, Richardson's with its error
-bar (`benchmarks/convergence.py`), for the others the finest run alone, which makes errors look smaller than they are.
-No estimate is judged of the finest run. The error of µ_app is that of f_T."""
+(`fingerpad/richardson.py`), from the coarser runs before. The limit is, for the contact size, Richardson's with its
+error bar (`benchmarks/convergence.py`), for the others the finest run alone, which makes errors look smaller than they
+are. No estimate is judged of the finest run. The error of µ_app is that of f_T."""
 
 
 _HERTZ = """## Hertz's contact
@@ -55,7 +55,7 @@ def shares(found: Sequence[ArrayLike], name: str) -> list[float]:
         found: the quantity, or its parts, in each run.
         name: of the quantity.
     """
-    knob, estimates = Knob(), []
+    knob, estimates = MeshParameter(), []
     for coarse, fine in itertools.pairwise(found):
         knob.see({name: coarse}, {name: fine})
         estimates.append(knob.share(name))

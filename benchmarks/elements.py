@@ -24,11 +24,11 @@ from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import load
 from variational.body import Body
-from variational.continuation import StepFailed, Target
+from variational.contact.penalty import Penalty
 from variational.element import ELEMENTS
-from variational.penalty import Penalty
 from variational.problem import Interface, Ogden
 from variational.roughness.bam import BearingArea
+from variational.solvers.continuation import StepFailed, Target
 
 matplotlib.use("Agg")
 

@@ -19,12 +19,12 @@ from benchmarks import arguments, limits
 from benchmarks.convergence import Limit, limit
 from benchmarks.runs import Run
 from benchmarks.traces import SITES as AT_SITES
-from fingerpad.estimate import plus_minus
-from fingerpad.files import replace, replace_json
-from fingerpad.reach import by_rule
+from fingerpad.io.files import replace, replace_json
+from fingerpad.io.states import WORDS
+from fingerpad.model.touching import by_rule
+from fingerpad.richardson import plus_minus
+from fingerpad.runs.batch import sweep
 from fingerpad.scene import Scene, from_data
-from fingerpad.states import WORDS
-from fingerpad.study import sweep
 
 _LIMIT = 10800.0  # s of processor time for one run; the finest mesh takes far longer than a trace
 CONTACT = (20e-6, 10e-6, 5e-6, 2.5e-6)

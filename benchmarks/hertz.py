@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, NU, RADIUS, SPAN, YOUNG
 from benchmarks.verification.over_screen import formulations, over_screen
 from geometry.bodies import pad
-from variational.continuation import Target
 from variational.problem import Interface, SaintVenant
+from variational.solvers.continuation import Target
 
 Array = NDArray[np.float64]
 HALF_WIDTHS = tuple(part * HALF_WIDTH for part in (0.817, 0.893, 0.961, 1.049, 1.137))

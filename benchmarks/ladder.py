@@ -22,12 +22,12 @@ from benchmarks.paper.scenes import grid
 from benchmarks.paper.style import VOLTAGE, draw
 from benchmarks.rung import ask, kept
 from benchmarks.traces import FORCES, VOLTAGES
-from fingerpad import closed_form, ridge_cell
-from fingerpad.files import replace, replace_json
-from fingerpad.processes import End, Pool
-from fingerpad.result import Result
-from fingerpad.states import WORDS
-from fingerpad.study import progress, result
+from fingerpad.io.files import replace, replace_json
+from fingerpad.io.result import Result
+from fingerpad.io.states import WORDS
+from fingerpad.reduced import cylinders, ridge_cell
+from fingerpad.runs.batch import progress, result
+from fingerpad.runs.processes import End, Pool
 
 SIZE = 10e-6  # m
 NAMES = {
@@ -46,9 +46,9 @@ Made by `environment/run python3 benchmarks/ladder.py`; do not edit. Numbers unr
 
 | rung | model | knows | takes |
 |---|---|---|---|
-| 1 | every ridge the same charged cylinder (`fingerpad/closed_form.py`, `variational/cylinder.py`) | forces, friction and contact length, for a finger whose uncharged contact length is known | {one} |
-| 2 | smooth layered finger, one ridge's law as its contact (`fingerpad/smooth.py`, `variational/ridge_law.py`) | the same and the bone's height, for any finger | {two} |
-| 3 | every ridge (`fingerpad/full.py`) | all, receptors too | {three} |
+| 1 | every ridge the same charged cylinder (`fingerpad/reduced/cylinders.py`, `variational/attraction/cylinder.py`) | forces, friction and contact length, for a finger whose uncharged contact length is known | {one} |
+| 2 | smooth layered finger, one ridge's law as its contact (`fingerpad/reduced/smooth.py`, `variational/contact/ridge_law.py`) | the same and the bone's height, for any finger | {two} |
+| 3 | every ridge (`fingerpad/runs/full.py`) | all, receptors too | {three} |
 
 Errors are against the full model at a contact size of 10 µm, whose own are in [errors.md](errors.md). What rung 3 takes is wall time of runs that shared the machine; the
 tables of rung 2's ridge take some seconds more, once a voltage and friction coefficient.
@@ -64,7 +64,7 @@ error is more than half of the answer, the mesh is refused. Rung 3 solves its st
 
     environment/run python3 -m fingerpad compare scene.toml --model cylinders smooth full
 
-With `--from-smooth` rung 3's full slip is solved for from rung 2's (`fingerpad/start.py`), without its path, and
+With `--from-smooth` rung 3's full slip is solved for from rung 2's (`fingerpad/runs/start.py`), without its path, and
 checked; where that does not succeed, the path is followed and a note says so.
 """  # noqa: E501
 
@@ -89,7 +89,7 @@ def collect(known: dict[str, Any], out: Path, rungs: Sequence[str], jobs: int, f
         if summary is not None and summary.get("full_slip"):
             mine["3"] = kept(Result.from_dict(summary))
         if "1" in rungs:
-            mine["1"] = kept(closed_form.solve(scene))
+            mine["1"] = kept(cylinders.solve(scene))
     tables = out.parent / "ridge_tables"
     tables.mkdir(parents=True, exist_ok=True)
 

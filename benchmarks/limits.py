@@ -21,17 +21,17 @@ from typing import Any
 from mpi4py import MPI
 
 from benchmarks.convergence import Limit, limit
-from fingerpad.again import Keeper, Solve, solve_again
-from fingerpad.files import replace
-from fingerpad.needs import plan
-from fingerpad.processes import Pool, limit_processor_time, run
+from fingerpad.accuracy.recompute import Solve, StateRecorder, solve_again
+from fingerpad.io.files import replace
+from fingerpad.io.states import PREFIXES
+from fingerpad.model.options import plan
+from fingerpad.model.simulation import Simulation
+from fingerpad.model.steps import Step
+from fingerpad.runs.batch import key, progress
+from fingerpad.runs.processes import Pool, limit_processor_time, run
 from fingerpad.scene import Scene, from_data, start
-from fingerpad.simulation import Simulation
-from fingerpad.states import PREFIXES
-from fingerpad.steps import Step
-from fingerpad.study import key, progress
 from geometry.parameters import MeshSize
-from variational.continuation import StepFailed
+from variational.solvers.continuation import StepFailed
 
 _FIRST = {"contact": 10e-6, "growth": 0.5, "receptor": 10e-6, "interface": 120e-6}
 _HALVED = ("contact", "growth", "receptor", "interface", "coarsest")
@@ -109,7 +109,7 @@ def _path(scene: Scene, uncharged: bool, comm: MPI.Comm) -> Solve:
         sizes = start({}) | {"receptor": 2 * _FIRST["receptor"], "contact": contact}
         coarse = scene.model_copy(update={"mesh": scene.mesh.model_copy(update=sizes)})
         simulation = Simulation(coarse, plan(scene), comm, on_step, on_load)
-        keeper = Keeper(simulation)
+        keeper = StateRecorder(simulation)
         try:
             simulation.run()
             return keeper.solve()

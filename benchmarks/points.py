@@ -19,10 +19,10 @@ from benchmarks import accuracy, errors, limits
 from benchmarks.convergence import Limit
 from benchmarks.ladder import name as ladder_name
 from benchmarks.runs import Run
-from fingerpad.reach import by_rule
+from fingerpad.io.states import WORDS
+from fingerpad.model.touching import by_rule
+from fingerpad.runs.batch import result
 from fingerpad.scene import Scene, from_data
-from fingerpad.states import WORDS
-from fingerpad.study import result
 
 DEFAULT = "default"
 ASKED, AGAIN, LADDER = "accuracy asked for", "solved again", "ladder"

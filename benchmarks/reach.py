@@ -17,20 +17,19 @@ from mpi4py import MPI
 
 from benchmarks import arguments, sensitivity, traces
 from benchmarks.runs import Run
-from fingerpad import coarse
-from fingerpad.files import replace, replace_json
-from fingerpad.reach import MARGIN
+from fingerpad.io.files import replace, replace_json
+from fingerpad.model.touching import MARGIN
+from fingerpad.reduced import coarse
+from fingerpad.runs.batch import progress
 from fingerpad.scene import Scene
-from fingerpad.study import progress
 
 _SIZE = 10e-6  # m
 _HEADER = f"""# Which ridges touch
 
 Made by `environment/run python3 benchmarks/reach.py`; do not edit. *Meshed*: the last ridge that can touch on a mesh
-that a run chooses, {MARGIN} beyond the last one that the coarse finger reaches (`fingerpad/reach.py`,
-`fingerpad/coarse.py`). *Touched*: the last one, on either side, that is in contact in any step of the full run. If it
-is the last one meshed, the run begins again with more ridges. With its cost: [reach.json](reach.json).
-"""
+that a run chooses, {MARGIN} beyond the last one that the coarse finger reaches (`fingerpad/model/touching.py`,
+`fingerpad/reduced/coarse.py`). *Touched*: the last one, on either side, that is in contact in any step of the full run.
+If it is the last one meshed, the run begins again with more ridges. With its cost: [reach.json](reach.json). """
 
 
 def scenes() -> dict[str, Scene]:

@@ -19,8 +19,9 @@ from benchmarks.paper.statement import Statement
 from benchmarks.paper.style import draw
 from benchmarks.runs import Run
 from fingerpad.cli.arguments import positive
-from fingerpad.scene import Scene, check
-from fingerpad.study import sweep
+from fingerpad.model.check import check
+from fingerpad.runs.batch import sweep
+from fingerpad.scene import Scene
 
 _LIMIT = 3600.0  # s of processor time for one run; the sine takes longest
 

@@ -9,12 +9,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from fingerpad.processes import End, limit_processor_time, run
-from fingerpad.result import Result
-from fingerpad.rungs import STATES
+from fingerpad.io.result import Result
+from fingerpad.io.states import PREFIXES
+from fingerpad.reduced.answer import STATES
+from fingerpad.runs.batch import key
+from fingerpad.runs.processes import End, limit_processor_time, run
 from fingerpad.scene import Scene, from_data
-from fingerpad.states import PREFIXES
-from fingerpad.study import key
 from variational.state import RESULTS
 
 LIMIT = 900.0  # s of processor time; mostly it takes half a minute, a start another one
@@ -39,14 +39,15 @@ def ask(kind: str, scene: Scene, folder: Path) -> End:
 
 def _main(arguments: Sequence[str]) -> None:
     limit_processor_time(float(arguments[3]))
-    from fingerpad import entry
+    from fingerpad import startup
 
-    entry.start()
-    from fingerpad import smooth, start
+    startup.start()
+    from fingerpad.reduced import smooth
+    from fingerpad.runs import start
 
     scene, folder = from_data(json.loads(Path(arguments[1]).read_text(encoding="utf-8"))), Path(arguments[2])
     answer = smooth.solve if arguments[0] == "2" else start.answer
-    print(json.dumps(kept(answer(scene, folder, entry.MPI.COMM_WORLD))))
+    print(json.dumps(kept(answer(scene, folder, startup.MPI.COMM_WORLD))))
 
 
 if __name__ == "__main__":

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad import states
+from fingerpad.io import states
+from fingerpad.runs.batch import key, result
 from fingerpad.scene import Scene
-from fingerpad.study import key, result
 
 Array = NDArray[np.float64]
 
@@ -76,14 +76,14 @@ class Run:
 
     @property
     def normal(self) -> int:
-        """Row of normal contact, see :mod:`fingerpad.states`."""
+        """Row of normal contact, see :mod:`fingerpad.io.states`."""
         columns = [self.steps[name] for name in ("bone_x", "ridges_in_contact")]
         rows: list[Any] = [SimpleNamespace(bone_x=x, ridges_in_contact=n) for x, n in zip(*columns, strict=True)]
         return self._row("normal", lambda: len(states.before_sliding(rows)) - 1)
 
     @property
     def slip(self) -> int:
-        """Row of full slip, see :mod:`fingerpad.states`."""
+        """Row of full slip, see :mod:`fingerpad.io.states`."""
         return self._row("slip", lambda: int(np.flatnonzero(self.steps["all_slip"])[0]))
 
     def _row(self, state: str, otherwise: Callable[[], int]) -> int:

@@ -18,10 +18,11 @@ from benchmarks import arguments, traces
 from benchmarks.paper.style import BLUE, VERMILION, draw
 from benchmarks.runs import Run
 from fingerpad.cli.arguments import positive
-from fingerpad.files import replace
-from fingerpad.reach import by_rule
-from fingerpad.scene import Scene, SceneError, check, from_data
-from fingerpad.study import result, sweep
+from fingerpad.io.files import replace
+from fingerpad.model.check import check
+from fingerpad.model.touching import by_rule
+from fingerpad.runs.batch import result, sweep
+from fingerpad.scene import Scene, SceneError, from_data
 
 _LAYERS = ("subcutis", "dermis", "viable_epidermis", "stratum_corneum")
 _DEFAULTS = Scene()

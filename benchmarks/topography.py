@@ -20,8 +20,8 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.cli.arguments import positive
-from fingerpad.files import replace
-from fingerpad.pictures import BLUE, GREEN, ORANGE, VERMILION
+from fingerpad.io.files import replace
+from fingerpad.io.pictures import BLUE, GREEN, ORANGE, VERMILION
 from variational.roughness.selfaffine import SelfAffine
 from variational.roughness.spectrum import PowerSpectrum, power_spectrum, roughness_table
 from variational.roughness.topography import Distribution, HeightMap, Trend, distribution, polynomials

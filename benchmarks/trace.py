@@ -7,8 +7,8 @@ import sys
 
 from fingerpad.cli import refuse
 from fingerpad.cli.arguments import Parser, scene_of
-from fingerpad.entry import MPI, start
-from fingerpad.sentences import SceneError
+from fingerpad.scene.messages import SceneError
+from fingerpad.startup import MPI, start
 
 _PHASES = {
     "setup": "meshing, compiling, setting up",
@@ -32,7 +32,7 @@ def main(comm: MPI.Comm) -> int:
     except SceneError as error:
         return refuse(str(error))
     start(petsc)
-    from fingerpad.full import exit_code, run
+    from fingerpad.runs.full import exit_code, run
 
     result = run(scene, args.out, comm)
     s = result.to_dict()

@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks import arguments
-from fingerpad.files import replace
-from fingerpad.reach import by_rule
+from fingerpad.io.files import replace
+from fingerpad.model.touching import by_rule
+from fingerpad.runs.batch import Summary, result, sweep
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene import load as load_scene
-from fingerpad.study import Summary, result, sweep
 
 _ROOT = Path(__file__).resolve().parents[1]
 VOLTAGES = (0.0, 50.0, 100.0, 150.0, 200.0)

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from fingerpad.parameters import Accuracy
-from fingerpad.reach import by_rule
-from fingerpad.scene import Scene, SceneError, check, from_data, start
+from fingerpad.model.check import check
+from fingerpad.model.touching import by_rule
+from fingerpad.scene import Scene, SceneError, from_data, start
+from fingerpad.scene.parameters import Accuracy
 
 SEED, COUNT = 2023, 10
 _RANGES = {"f_ext": (10.0, 120.0), "voltage": (0.0, 200.0), "friction": (0.15, 0.5)}  # N/m, V

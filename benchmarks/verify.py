@@ -15,7 +15,7 @@ from rich.progress import Progress
 from benchmarks.verification import page
 from benchmarks.verification.areas import AREAS
 from benchmarks.verification.case import Case, Outcome
-from fingerpad.study import progress
+from fingerpad.runs.batch import progress
 from variational import jit
 
 _ROOT = Path(__file__).resolve().parents[1]

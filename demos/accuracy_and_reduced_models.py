@@ -12,8 +12,8 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 import fingerpad as fp
-from fingerpad.closed_form import given, solve
-from fingerpad.entry import MPI
+from fingerpad.reduced.cylinders import given, solve
+from fingerpad.startup import MPI
 
 MU_0, ASKED = 0.25, 0.02
 SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"

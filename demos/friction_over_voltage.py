@@ -17,8 +17,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import fingerpad as fp
-from fingerpad.closed_form import given, solve
-from fingerpad.entry import MPI
+from fingerpad.reduced.cylinders import given, solve
+from fingerpad.startup import MPI
 
 MU_0 = 0.25
 SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"

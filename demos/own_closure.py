@@ -20,7 +20,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import fingerpad as fp
-from fingerpad.entry import MPI
+from fingerpad.startup import MPI
 
 EPS_0, MU_0, H_0, F_EXT, VOLTAGE = 8.854e-12, 0.25, 0.51e-6, 20.0, 150.0
 SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"

@@ -18,7 +18,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import fingerpad as fp
-from fingerpad.entry import MPI
+from fingerpad.startup import MPI
 
 SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"
 MU, TAU_0, WIDTH = 0.3, 5e3, 1e-3  # 1, Pa, m (of the block)

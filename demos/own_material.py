@@ -20,7 +20,7 @@ import ufl
 from matplotlib.figure import Figure
 
 import fingerpad as fp
-from fingerpad.entry import MPI
+from fingerpad.startup import MPI
 
 SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"
 SOFT = fp.NeoHooke(2.5e3, 0.48)

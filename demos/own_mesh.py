@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import fingerpad as fp
-from fingerpad.entry import MPI
+from fingerpad.startup import MPI
 
 HARD, SOFT, MU_0, F_EXT = fp.NeoHooke(90e3, 0.45), fp.NeoHooke(20e3, 0.45), 0.25, 3.0
 

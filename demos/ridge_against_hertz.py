@@ -17,7 +17,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import fingerpad as fp
-from fingerpad.entry import MPI
+from fingerpad.startup import MPI
 
 YOUNG, POISSON, RADIUS, HALF_WIDTH = 1e6, 0.3, 10e-3, 50e-6  # Pa, 1, m, m
 E_STAR = YOUNG / (1 - POISSON**2)

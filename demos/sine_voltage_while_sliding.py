@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import fingerpad as fp
-from fingerpad.entry import MPI
+from fingerpad.startup import MPI
 
 MU_0, PEAK, STEP = 0.25, 100.0, 20e-6  # 1, V, m
 SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"

@@ -15,52 +15,52 @@ from fingerpad.installed import needed_by
 
 if TYPE_CHECKING:
     import geometry as geometry
-    from fingerpad.api import run as run
-    from fingerpad.body import Body as Body
-    from fingerpad.grid import Sweep as Sweep
-    from fingerpad.grid import sweep as sweep
-    from fingerpad.result import Result as Result
+    from fingerpad.io.result import Result as Result
+    from fingerpad.model.body import Body as Body
+    from fingerpad.runs.solve import run as run
+    from fingerpad.runs.sweep import Sweep as Sweep
+    from fingerpad.runs.sweep import sweep as sweep
     from fingerpad.scene import Scene as Scene
     from fingerpad.scene import SceneError as SceneError
-    from variational.augmented import AugmentedLagrangian as AugmentedLagrangian
-    from variational.friction import Coulomb as Coulomb
-    from variational.friction import Derjaguin as Derjaguin
-    from variational.friction import Friction as Friction
-    from variational.material import Material as Material
-    from variational.neo_hooke import NeoHooke as NeoHooke
-    from variational.nitsche import Nitsche as Nitsche
-    from variational.ogden import Ogden as Ogden
-    from variational.penalty import Penalty as Penalty
+    from variational.contact.augmented import AugmentedLagrangian as AugmentedLagrangian
+    from variational.contact.friction import Coulomb as Coulomb
+    from variational.contact.friction import Derjaguin as Derjaguin
+    from variational.contact.friction import Friction as Friction
+    from variational.contact.nitsche import Nitsche as Nitsche
+    from variational.contact.penalty import Penalty as Penalty
+    from variational.materials.material import Material as Material
+    from variational.materials.neo_hooke import NeoHooke as NeoHooke
+    from variational.materials.ogden import Ogden as Ogden
+    from variational.materials.saint_venant import SaintVenant as SaintVenant
     from variational.roughness.bam import BearingArea as BearingArea
     from variational.roughness.closure import AirGap as AirGap
     from variational.roughness.closure import Closure as Closure
-    from variational.saint_venant import SaintVenant as SaintVenant
     from variational.state import ContactState as ContactState
 
 _HOMES = {
     "Scene": "fingerpad.scene",
     "SceneError": "fingerpad.scene",
-    "run": "fingerpad.api",
-    "sweep": "fingerpad.grid",
-    "Sweep": "fingerpad.grid",
-    "Result": "fingerpad.result",
+    "run": "fingerpad.runs.solve",
+    "sweep": "fingerpad.runs.sweep",
+    "Sweep": "fingerpad.runs.sweep",
+    "Result": "fingerpad.io.result",
     "ContactState": "variational.state",
-    "Body": "fingerpad.body",
-    "Material": "variational.material",
-    "Ogden": "variational.ogden",
-    "NeoHooke": "variational.neo_hooke",
-    "SaintVenant": "variational.saint_venant",
-    "Penalty": "variational.penalty",
-    "Nitsche": "variational.nitsche",
-    "AugmentedLagrangian": "variational.augmented",
-    "Friction": "variational.friction",
-    "Coulomb": "variational.friction",
-    "Derjaguin": "variational.friction",
+    "Body": "fingerpad.model.body",
+    "Material": "variational.materials.material",
+    "Ogden": "variational.materials.ogden",
+    "NeoHooke": "variational.materials.neo_hooke",
+    "SaintVenant": "variational.materials.saint_venant",
+    "Penalty": "variational.contact.penalty",
+    "Nitsche": "variational.contact.nitsche",
+    "AugmentedLagrangian": "variational.contact.augmented",
+    "Friction": "variational.contact.friction",
+    "Coulomb": "variational.contact.friction",
+    "Derjaguin": "variational.contact.friction",
     "Closure": "variational.roughness.closure",
     "AirGap": "variational.roughness.closure",
     "BearingArea": "variational.roughness.bam",
 }
-_LIGHT = "variational.roughness", "variational.state", "variational.friction"
+_LIGHT = "variational.roughness", "variational.state", "variational.contact.friction"
 _FINITE_ELEMENTS = [
     name for name, home in _HOMES.items() if home.startswith("variational") and not home.startswith(_LIGHT)
 ] + ["Body"]

@@ -1,5 +1,5 @@
 """Start the libraries where no program has: imported first by what scripts of one's own import."""
 
-from fingerpad.entry import start
+from fingerpad.startup import start
 
 start()

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from fingerpad.entry import MPI, start
+from fingerpad.startup import MPI, start
 
 start()
 

@@ -26,14 +26,14 @@ from typing import Any, get_args
 import numpy as np
 from pydantic import BaseModel
 
-from fingerpad import needs
-from fingerpad.budget import estimate
 from fingerpad.cli import refuse
 from fingerpad.cli.arguments import Parser, scene_of
-from fingerpad.closed_form import tip_radius
-from fingerpad.folder import check_folder
+from fingerpad.io.folder import check_folder
+from fingerpad.model import options
+from fingerpad.model.memory import estimate
+from fingerpad.reduced.cylinders import tip_radius
 from fingerpad.scene import Scene, SceneError
-from variational.cylinder import Cylinder, NoEquilibriumError
+from variational.attraction.cylinder import Cylinder, NoEquilibriumError
 
 SCENES = sorted((Path(__file__).parent.parent / "demos/scenes").glob("*.toml"))
 LONGEST = 300  # characters of a refusal
@@ -270,7 +270,7 @@ def _bad_refusal(code: Any, text: str) -> str:
 
 def _unready(scene: Scene) -> str:
     """Return why an accepted scene is not ready for a run, empty if it is."""
-    needed = needs.plan(scene)
+    needed = options.plan(scene)
     found = estimate(scene, needed)
     if not 0 < found.memory <= scene.numerics.memory:
         return f"memory {found.memory:g}"

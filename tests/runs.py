@@ -5,7 +5,7 @@ from typing import Any
 
 from mpi4py import MPI
 
-from fingerpad import full
+from fingerpad.runs import full
 from fingerpad.scene import Scene
 
 

@@ -13,9 +13,9 @@ from geometry import tags
 from geometry.bodies import block
 from geometry.mesh import load
 from variational.body import Body
-from variational.penalty import Penalty
+from variational.contact.penalty import Penalty
 from variational.problem import Interface, SaintVenant
-from variational.solver import Control, Solver
+from variational.solvers.newton import Control, Solver
 
 WIDTH, HEIGHT, GAP = 0.125e-3, 0.5e-3, 6e-6
 YOUNG, VOLTAGE, H_0, D_EQ = 4e6, 200.0, 0.514e-6, 2e-6

@@ -11,25 +11,25 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad import accuracy
-from fingerpad import full as running
-from fingerpad.accuracy import Search
-from fingerpad.again import Solve, State
-from fingerpad.estimate import MORE, ONCE, plus_minus
-from fingerpad.interrupt import Interrupted
-from fingerpad.needs import plan
-from fingerpad.result import Result
+from fingerpad.accuracy import refinement
+from fingerpad.accuracy.recompute import Solve, State
+from fingerpad.accuracy.refinement import Refinement
+from fingerpad.accuracy.rigid_screen import ORDER
+from fingerpad.io.interrupt import Interrupted
+from fingerpad.io.result import Result
+from fingerpad.model.options import plan
+from fingerpad.model.simulation import Simulation
+from fingerpad.richardson import MORE, ONCE, plus_minus
+from fingerpad.runs import full as running
+from fingerpad.runs.batch import key
 from fingerpad.scene import SceneError, from_data
-from fingerpad.screen import ORDER
-from fingerpad.simulation import Simulation
-from fingerpad.study import key
 from tests.runs import run
-from variational.continuation import StepFailed
-from variational.solver import Control
+from variational.solvers.continuation import StepFailed
+from variational.solvers.newton import Control
+from variational.solvers.transfer import StateSnapshot
 from variational.state import ContactState
-from variational.transfer import Carried
 
-NOTHING = Carried(*(np.zeros(0) for _ in range(2)), {}, {}, {}, np.zeros(2), Control(), 0.0)
+NOTHING = StateSnapshot(*(np.zeros(0) for _ in range(2)), {}, {}, {}, np.zeros(2), Control(), 0.0)
 EXACT = 0.5
 
 
@@ -57,11 +57,13 @@ def known(scene, needed, states, comm, look=None) -> Solve:
     return Solve({"full_slip": State(NOTHING, 1, row, np.full(17, 1e-3 / 17), sed)}, scene.mesh, 1000, 10, 1.0)
 
 
-def search(monkeypatch, asked, solve=known, pause=lambda: None) -> Search:
+def search(monkeypatch, asked, solve=known, pause=lambda: None) -> Refinement:
     memory = {"numerics": {"memory": 1e15}}  # of solves that are none
     scene = from_data(({"accuracy": asked} if asked else {}) | memory)
-    monkeypatch.setattr(accuracy, "solve_again", solve)
-    found = Search(scene, plan(scene), known(scene, None, {}, MPI.COMM_SELF), MPI.COMM_SELF, lambda text: None, pause)
+    monkeypatch.setattr(refinement, "solve_again", solve)
+    found = Refinement(
+        scene, plan(scene), known(scene, None, {}, MPI.COMM_SELF), MPI.COMM_SELF, lambda text: None, pause
+    )
     found.run()
     return found
 
@@ -109,15 +111,15 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
         search.solves.append(found)
         return found
 
-    monkeypatch.setattr(Search, "_with_steps", with_steps)
+    monkeypatch.setattr(Refinement, "_with_steps", with_steps)
     monkeypatch.setattr(
-        accuracy,
+        refinement,
         "solve_again",
         lambda scene, needed, states, comm, look: Solve(dict(states), scene.mesh, 1000, 10, 1.0),
     )
     scene = from_data({"accuracy": {"contact_length": 0.04}, "numerics": {"step_scale": 2.0}})
     path = stepped(1.0, scene.mesh)
-    found = Search(scene, plan(scene), path, MPI.COMM_SELF, lambda text: None, lambda: None)
+    found = Refinement(scene, plan(scene), path, MPI.COMM_SELF, lambda text: None, lambda: None)
     found.run()
     assert paths == [-1, 1, 2]
     assert found.halved == {"contact": 1, "bulk": 1, "steps": 2}
@@ -168,10 +170,10 @@ def springs(scene, needed, states, comm, look=None) -> Solve:
 
 def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
     """A rigid screen takes off what the springs put on, and no part of that is in the error of the mesh."""
-    monkeypatch.setattr(accuracy, "solve_again", springs)
+    monkeypatch.setattr(refinement, "solve_again", springs)
     scene, lines = from_data({}), list[str]()
     path = springs(scene, None, {}, MPI.COMM_SELF)
-    found = Search(scene, plan(scene), path, MPI.COMM_SELF, lines.append, lambda: None)
+    found = Refinement(scene, plan(scene), path, MPI.COMM_SELF, lines.append, lambda: None)
     found.run()
     state = found.states({"full_slip": contact()})["full_slip"]
     assert state.penalty.contact_length == pytest.approx(-1e-5, rel=1e-9)
@@ -183,9 +185,11 @@ def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
 
 @pytest.mark.parametrize("formulation", ["nitsche", "augmented"])
 def test_formulations_without_a_penalty_tell_none(monkeypatch, formulation):
-    monkeypatch.setattr(accuracy, "solve_again", springs)
+    monkeypatch.setattr(refinement, "solve_again", springs)
     scene = from_data({"contact": {"formulation": formulation}})
-    found = Search(scene, plan(scene), springs(scene, None, {}, None), MPI.COMM_SELF, lambda text: None, lambda: None)
+    found = Refinement(
+        scene, plan(scene), springs(scene, None, {}, None), MPI.COMM_SELF, lambda text: None, lambda: None
+    )
     found.run()
     assert found.penalty == {}
     assert found.states({"full_slip": contact()})["full_slip"].penalty.known() == {}
@@ -266,7 +270,7 @@ def test_friction_without_full_slip_is_refused():
     scene = from_data({"accuracy": {"mu_app": 0.01}})
     path = Solve({"charged": known(scene, None, {}, None).states["full_slip"]}, scene.mesh, 1000, 10, 1.0)
     with pytest.raises(StepFailed, match="accuracy.mu_app is 0.01, which full slip decides"):
-        Search(scene, plan(scene), path, MPI.COMM_SELF, lambda text: None, lambda: None)
+        Refinement(scene, plan(scene), path, MPI.COMM_SELF, lambda text: None, lambda: None)
 
 
 # -- scenes ------------------------------------------------------------------------------------------------
@@ -407,4 +411,4 @@ def test_loads_to_normal_contact(places, kept):
     loads = [{"name": "away", "bone_height": 1e-5}, {"name": "press", "f_ext": 1.0}, {"name": "slide"}]
     moves = [{} if place is None else {"bone_x": place} for place in places]
     scene = from_data({"history": [load | move for load, move in zip(loads, moves, strict=True)]})
-    assert accuracy.loads_to_normal_contact(scene) == scene.history[:kept]
+    assert refinement.loads_to_normal_contact(scene) == scene.history[:kept]

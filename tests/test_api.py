@@ -10,14 +10,14 @@ import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad import full, grid
-from fingerpad.advice import finer_mesh_may_help
-from fingerpad.processes import End
-from fingerpad.result import Cost
+from fingerpad.io.result import Cost
+from fingerpad.io.states import PREFIXES, STATES
+from fingerpad.model.hints import finer_mesh_may_help
+from fingerpad.runs import full, sweep
+from fingerpad.runs.processes import End
 from fingerpad.scene import from_data
-from fingerpad.states import PREFIXES, STATES
-from variational.continuation import StepFailed
-from variational.failure import NotConverged
+from variational.solvers.continuation import StepFailed
+from variational.solvers.failure import NotConverged
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
 
 SMALL = {
@@ -103,7 +103,7 @@ def test_arrays_have_documented_shapes(ran):
 
 
 def test_model_without_its_libraries_is_refused_in_a_sentence(monkeypatch):
-    monkeypatch.setitem(sys.modules, "fingerpad.smooth", None)
+    monkeypatch.setitem(sys.modules, "fingerpad.reduced.smooth", None)
     monkeypatch.delattr(fp, "smooth", raising=False)
     monkeypatch.setattr("fingerpad.installed.OPTIONAL", ("fingerpad",))
     with pytest.raises(ImportError, match="the model 'smooth' needs fingerpad, which is not installed;"):
@@ -223,7 +223,7 @@ def test_sweep_is_taken_up_again(tmp_path, monkeypatch):
         (Path(arguments[1]) / "summary.json").write_text(json.dumps(done.to_dict()), encoding="utf-8")
         return End(0, "", "", "")
 
-    monkeypatch.setattr("fingerpad.study.run", run)
+    monkeypatch.setattr("fingerpad.runs.batch.run", run)
     for _ in range(2):
         found = fp.sweep(fp.Scene(), tmp_path, model="smooth", voltage=[0.0, 100.0])
     assert asked == [(0.0, "smooth"), (100.0, "smooth"), (100.0, "smooth")]
@@ -252,20 +252,20 @@ def test_sweep_that_makes_no_sense_is_refused(tmp_path, axes, words):
 def test_scenes_of_a_sweep_are_those_of_replace(key, values):
     """With the coarse start of an accuracy, and the numbers of a formulation's own."""
     table, name = key.split(".")
-    for value, scene in zip(values, grid._scenes(fp.Scene(), {key: values}), strict=True):
+    for value, scene in zip(values, sweep._scenes(fp.Scene(), {key: values}), strict=True):
         assert scene == fp.Scene().replace(**{table: {name: value}})
 
 
 def test_axis_may_be_an_entry_of_a_history():
     history = [{"name": "press", "f_ext": 5.0}, {"name": "charge", "voltage": 100.0}]
-    scenes = grid._scenes(fp.Scene(history=history), {"history[1].voltage": [50.0, 80.0]})
+    scenes = sweep._scenes(fp.Scene(history=history), {"history[1].voltage": [50.0, 80.0]})
     assert [(s.history[0].f_ext, s.history[1].voltage) for s in scenes] == [(5.0, 50.0), (5.0, 80.0)]
 
 
 def test_point_that_cannot_be_run_is_a_failure_of_its_own(tmp_path, monkeypatch):
     """A finger whose bone touches the skin, beside one that can be meshed: one sentence, and no process."""
     asked = []
-    monkeypatch.setattr("fingerpad.study.run", lambda *given: asked.append(given) or End(1, "CRASH_1", "gone", ""))
+    monkeypatch.setattr("fingerpad.runs.batch.run", lambda *given: asked.append(given) or End(1, "CRASH_1", "gone", ""))
     found = fp.sweep(fp.Scene(), tmp_path, **{"geometry.bone_centre": [2e-3, 8e-3]})
     assert len(asked) == 1 and found[1].failure == "CRASH_1: gone"
     assert found[0].failure.startswith("the bone touches the skin's layers") and "\n" not in found[0].failure
@@ -308,7 +308,7 @@ def test_scene_of_a_file(tmp_path):
 def test_too_many_points_are_refused(tmp_path):
     values = list(np.linspace(1, 100, 200))
     with pytest.raises(fp.SceneError, match="the sweep has 40000 points; at most 10000"):
-        grid.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=values, f_ext=values)
+        sweep.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=values, f_ext=values)
 
 
 def test_world_is_the_default(monkeypatch):

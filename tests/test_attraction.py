@@ -9,7 +9,8 @@ from mpi4py import MPI
 from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_problem import D_EQ, EPS_0, H_0, VOLTAGE, make, rates, residual, wave
-from variational import electroadhesion, kinematics
+from variational import kinematics
+from variational.attraction import electroadhesion
 from variational.problem import Problem
 
 

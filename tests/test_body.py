@@ -7,16 +7,16 @@ import pytest
 from mpi4py import MPI
 
 import geometry
-from fingerpad.body import Body
+from fingerpad.model.body import Body
 from geometry import tags
 from geometry.mesh import load
 from variational import body as parts
-from variational.continuation import StepFailed, Target
-from variational.ogden import Ogden
-from variational.penalty import Penalty
+from variational.contact.penalty import Penalty
+from variational.materials.ogden import Ogden
+from variational.materials.saint_venant import SaintVenant
 from variational.problem import Interface
 from variational.roughness.bam import BearingArea
-from variational.saint_venant import SaintVenant
+from variational.solvers.continuation import StepFailed, Target
 
 MU_F, H_0, FORCE, VOLTAGE = 0.25, 0.51e-6, 4.4, 150.0
 SKIN, SPRINGS = Ogden(86.76e3, -14.53, 0.48), Penalty(1.5e12, 5e10)

@@ -7,7 +7,7 @@ import pytest
 from benchmarks import chart, errors, points
 from benchmarks.convergence import Limit
 from benchmarks.points import AGAIN, QUANTITIES, STATES, Point
-from fingerpad.study import key
+from fingerpad.runs.batch import key
 
 
 def point(label, work, seconds, error):

@@ -11,12 +11,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fingerpad import balance, closed_form, terminal
 from fingerpad.cli import COMMANDS, cost, estimate, keys, main, microscale, ranges, sweep
 from fingerpad.cli.arguments import Parser, positive, scene_of, separate
-from fingerpad.needs import plan
+from fingerpad.io import terminal
+from fingerpad.model import balance
+from fingerpad.model.options import plan
+from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene, from_data, load
-from fingerpad.sentences import SceneError
+from fingerpad.scene.messages import SceneError
 from variational.roughness.bam import BearingArea
 from variational.roughness.selfaffine import SelfAffine
 from variational.state import ContactState
@@ -295,7 +297,7 @@ def test_estimate_is_the_closed_form(tmp_path, capsys):
     with file.open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
     assert [(float(r["f_ext"]), float(r["voltage"])) for r in rows] == [(50, 0), (50, 100), (75, 0), (75, 100)]
-    one = closed_form.solve(from_data({"f_ext": 75.0, "voltage": 100.0})).full_slip
+    one = cylinders.solve(from_data({"f_ext": 75.0, "voltage": 100.0})).full_slip
     assert float(rows[-1]["mu_app"]) == one.mu_app
     assert float(rows[0]["mu_app"]) == pytest.approx(0.25, rel=1e-12)
 

@@ -10,14 +10,14 @@ from scipy.optimize import brentq
 from geometry import tags
 from geometry.bodies import block, ridge
 from geometry.mesh import load
-from variational import contact
 from variational.body import Body
-from variational.contact import History
-from variational.penalty import Penalty
+from variational.contact import formulation
+from variational.contact.formulation import History
+from variational.contact.penalty import Penalty
 from variational.problem import Interface, Ogden
 from variational.quantities import Observer
 from variational.roughness.bam import BearingArea
-from variational.solver import Control, Solver
+from variational.solvers.newton import Control, Solver
 
 pytestmark = pytest.mark.mpi
 WIDTH, HEIGHT = 1e-3, 0.5e-3
@@ -68,7 +68,7 @@ def uniform_pressure(depth: float, p_el: float = 0.0) -> float:
 @pytest.mark.parametrize(("gap", "pressure"), [(1e-6, 0.0), (0.0, 0.0), (-1e-9, 1.5e3), (-1e-7, 1.5e5)])
 def test_pressure(gap, pressure):
     """Pressure is the stiffness times the depth, and never negative. Tolerance: roundoff."""
-    assert float(contact.pressure(ufl.as_ufl(gap), EPS_N)) == pytest.approx(pressure, rel=1e-14)
+    assert float(formulation.pressure(ufl.as_ufl(gap), EPS_N)) == pytest.approx(pressure, rel=1e-14)
 
 
 # -- patch test ----------------------------------------------------------------------------------------

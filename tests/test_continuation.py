@@ -1,4 +1,4 @@
-"""Steps that are cut, leapt over, and given up, on a block that slides."""
+"""Steps that are cut, stepped_over_fold over, and given up, on a block that slides."""
 
 import itertools
 
@@ -8,9 +8,9 @@ from mpi4py import MPI
 from geometry.bodies import block
 from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, WIDTH, over
-from variational import continuation
-from variational.continuation import StepFailed, Target
-from variational.failure import NotConverged
+from variational.solvers import continuation
+from variational.solvers.continuation import StepFailed, Target
+from variational.solvers.failure import NotConverged
 
 
 @pytest.fixture
@@ -43,7 +43,7 @@ def test_range_without_equilibrium_is_leapt_over(sliding):
     """Steps of 60 um lead into it; one of 90 um leads over it, is said to have, and costs one failed attempt."""
     reached = sliding(0.235e-3, 0.260e-3, cycling=True)
     assert reached[-1][0] == pytest.approx(0.6e-3)
-    leaps = [(x, attempt) for x, attempt in reached if attempt.leapt]
+    leaps = [(x, attempt) for x, attempt in reached if attempt.stepped_over_fold]
     assert [x for x, _ in leaps] == [pytest.approx(0.27e-3)]
     assert [len(attempt.cutbacks) for _, attempt in reached if attempt.cutbacks] == [1]
 
@@ -60,7 +60,7 @@ def test_range_too_wide_for_one_leap(sliding):
     """Halved steps go up to it, until a leap from nearby leads over."""
     reached = sliding(0.215e-3, 0.275e-3, cycling=True)
     assert reached[-1][0] == pytest.approx(0.6e-3)
-    assert sum(attempt.leapt for _, attempt in reached) == 1
+    assert sum(attempt.stepped_over_fold for _, attempt in reached) == 1
 
 
 @pytest.mark.parametrize("each", [0, 100])
@@ -84,7 +84,7 @@ def test_jump_is_not_crept_up_to_for_ever(sliding):
 
 def test_other_failures_are_not_leapt_over(sliding):
     """Newton's method failing is no sign of an equilibrium further on: the step is halved, and at last given up."""
-    assert not any(attempt.leapt for _, attempt in sliding(0.235e-3, 0.260e-3, cycling=False))
+    assert not any(attempt.stepped_over_fold for _, attempt in sliding(0.235e-3, 0.260e-3, cycling=False))
     with pytest.raises(StepFailed, match="bone x 0.00023.* m: TEST"):
         sliding(0.235e-3, 0.350e-3, cycling=False)
 

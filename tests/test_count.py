@@ -5,11 +5,12 @@ from functools import partial
 import pytest
 from mpi4py import MPI
 
-from fingerpad import budget
-from fingerpad.accuracy import Search
-from fingerpad.again import Solve
-from fingerpad.needs import plan
-from fingerpad.scene import Numerics, SceneError, check, from_data
+from fingerpad.accuracy.recompute import Solve
+from fingerpad.accuracy.refinement import Refinement
+from fingerpad.model import memory
+from fingerpad.model.check import check
+from fingerpad.model.options import plan
+from fingerpad.scene import Numerics, SceneError, from_data
 from geometry import count, fingertip
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
@@ -58,18 +59,18 @@ def test_triangles_of_larger_meshes(size, triangles):
 @pytest.mark.parametrize(("unknowns", "memory"), [(27258, 0.354), (73208, 0.561), (186302, 1.171), (873366, 5.729)])
 def test_memory_of_runs(monkeypatch, unknowns, memory):
     """Measured, in GB, of runs with quadratic elements; the fit is within a fifth."""
-    monkeypatch.setattr(budget.count, "triangles", lambda *arguments: unknowns / 4)
-    found = budget.estimate(from_data({}))
+    monkeypatch.setattr(memory.count, "triangles", lambda *arguments: unknowns / 4)
+    found = memory.estimate(from_data({}))
     assert found.unknowns == unknowns
     assert found.memory / 1e9 == pytest.approx(memory, rel=0.2)
 
 
 def test_two_million_unknowns_are_allowed(monkeypatch):
-    monkeypatch.setattr(budget.count, "triangles", lambda *arguments: 2e6 / 4)
-    budget.refuse_beyond(from_data({}))
-    monkeypatch.setattr(budget.count, "triangles", lambda *arguments: 3e6 / 4)
+    monkeypatch.setattr(memory.count, "triangles", lambda *arguments: 2e6 / 4)
+    memory.refuse_beyond(from_data({}))
+    monkeypatch.setattr(memory.count, "triangles", lambda *arguments: 3e6 / 4)
     with pytest.raises(GeometryError):
-        budget.refuse_beyond(from_data({}))
+        memory.refuse_beyond(from_data({}))
 
 
 @pytest.mark.parametrize(
@@ -103,6 +104,6 @@ def test_refinement_ends_where_memory_does():
     numerics = scene.numerics.model_copy(update={"memory": 3e8})
     scene = scene.model_copy(update={"numerics": numerics})
     path = Solve({"full_slip": None}, scene.mesh, 1, 1, 0.0)
-    search = Search(scene, plan(scene), path, MPI.COMM_SELF, lambda line: None, lambda: None)
+    search = Refinement(scene, plan(scene), path, MPI.COMM_SELF, lambda line: None, lambda: None)
     search.run()
     assert search.failure.startswith("the accuracy asked for could not be established: the mesh would have some ")

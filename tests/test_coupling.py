@@ -10,11 +10,11 @@ import pytest
 from mpi4py import MPI
 from scipy.optimize import brentq
 
-from variational.coupling import Coupling
-from variational.failure import NotConverged
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap, Closure
-from variational.timing import Timings
+from variational.solvers.coupling import Coupling
+from variational.solvers.failure import NotConverged
+from variational.solvers.timing import Timings
 
 H_0, EPS_0, FOLD_VOLTAGE = 0.514e-6, 8.854e-12, 200.0
 CENTRE = 2e-6  # m

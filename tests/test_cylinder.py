@@ -10,7 +10,7 @@ from scipy.integrate import quad
 
 from benchmarks.verification import dugdale, two_scales
 from benchmarks.verification.microscale import H_0
-from variational.cylinder import Cylinder, NoEquilibriumError, hertz_modulus
+from variational.attraction.cylinder import Cylinder, NoEquilibriumError, hertz_modulus
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap, Closure
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fingerpad import scene as scenes
-from fingerpad.parameters import Contact, Load
 from fingerpad.scene import Scene, SceneError, override
+from fingerpad.scene import scene as scenes
+from fingerpad.scene.parameters import Contact, Load
 from geometry.parameters import Fingertip, MeshSize
 from tests.fuzz import mutant
 

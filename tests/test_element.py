@@ -14,14 +14,15 @@ from scipy.optimize import brentq
 from geometry import tags
 from geometry.bodies import block, ridge
 from geometry.mesh import load
-from variational import kinematics, stress
+from variational import kinematics
 from variational.cellwise import Cellwise
+from variational.contact.penalty import Penalty
 from variational.element import ELEMENTS
-from variational.penalty import Penalty
+from variational.materials import stress
 from variational.pressure import LayerwisePressure
 from variational.problem import Interface, Ogden, Problem, SaintVenant
 from variational.quantities import Observer
-from variational.solver import Control, Solver
+from variational.solvers.newton import Control, Solver
 from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
-from fingerpad.files import Table, replace_json
-from fingerpad.interrupt import Interrupt, Interrupted
+from fingerpad.io.files import Table, replace_json
+from fingerpad.io.interrupt import Interrupt, Interrupted
 from tests.measures import accepted
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -89,8 +89,8 @@ def test_signals_that_mpirun_passes_on(tmp_path):
 
 def test_a_second_signal_acts_at_once(monkeypatch):
     clock, killed = [0.0], []
-    monkeypatch.setattr("fingerpad.interrupt.time.monotonic", lambda: clock[0])
-    monkeypatch.setattr("fingerpad.interrupt.os.kill", lambda *what: killed.append(what))
+    monkeypatch.setattr("fingerpad.io.interrupt.time.monotonic", lambda: clock[0])
+    monkeypatch.setattr("fingerpad.io.interrupt.os.kill", lambda *what: killed.append(what))
     with Interrupt(MPI.COMM_SELF) as interrupt:
         for clock[0] in (0.0, 0.9):
             signal.raise_signal(signal.SIGTERM)
@@ -118,13 +118,13 @@ def test_ignored_signals_stay_ignored():
 RAISES = """
 import sys
 from pathlib import Path
-from fingerpad.entry import MPI, start
+from fingerpad.startup import MPI, start
 start()
-from fingerpad.files import Table, replace_json
-from fingerpad.interrupt import Interrupt, Interrupted
+from fingerpad.io.files import Table, replace_json
+from fingerpad.io.interrupt import Interrupt, Interrupted
 from tests.runs import run
 from fingerpad.scene import load
-from variational.continuation import Continuation
+from variational.solvers.continuation import Continuation
 accept, steps = Continuation._accept, []
 def raising(self):
     accept(self)
@@ -151,7 +151,7 @@ def test_what_one_rank_raises_ends_all(tmp_path, rank):
 # -- a full disk -------------------------------------------------------------------------------------------
 def test_full_disk(tmp_path):
     """ADIOS2 cannot write the first load's fields; a limit of file sizes stands for the disk."""
-    code = "import resource, runpy, sys\nfrom fingerpad.entry import start; start()\n"
+    code = "import resource, runpy, sys\nfrom fingerpad.startup import start; start()\n"
     code += "resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))\n"
     code += "runpy.run_module('fingerpad', run_name='__main__')"
     scene = ROOT / "demos" / "scenes" / "coarse.toml"

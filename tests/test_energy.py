@@ -11,11 +11,11 @@ from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests import spring
 from tests.test_contact import HEIGHT, MU_F, WIDTH, make
-from variational import electroadhesion
-from variational.electroadhesion import Attraction
+from variational.attraction import electroadhesion
+from variational.attraction.electroadhesion import Attraction
 from variational.energy import Balance, EnergyBook
 from variational.quantities import Observer
-from variational.solver import Control
+from variational.solvers.newton import Control
 
 
 @pytest.fixture(scope="module", params=["block", "ridge"])

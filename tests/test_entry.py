@@ -35,12 +35,12 @@ def python(folder: Path, code: str, **environment: str) -> subprocess.CompletedP
 
 @pytest.fixture(scope="module")
 def clean(tmp_path_factory) -> str:
-    done = python(tmp_path_factory.mktemp("clean"), "from fingerpad.entry import start; start()" + STATE)
+    done = python(tmp_path_factory.mktemp("clean"), "from fingerpad.startup import start; start()" + STATE)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
 
-@pytest.mark.parametrize("first", ["from fingerpad.entry import start; start()", "import fingerpad.full"])
+@pytest.mark.parametrize("first", ["from fingerpad.startup import start; start()", "import fingerpad.runs.full"])
 def test_nothing_is_taken_from_the_current_folder(tmp_path, clean, first):
     """Neither by a program nor by a script of one's own."""
     for name, text in FOUND.items():
@@ -64,7 +64,7 @@ def test_the_home_folder_is_obeyed(tmp_path):
     home.mkdir()
     place.mkdir()
     (home / ".petscrc").write_text("-a home\n-b home\n-c home\n")
-    code = "from fingerpad.entry import start; start(['-c', 'line'])\nfrom petsc4py import PETSc\n"
+    code = "from fingerpad.startup import start; start(['-c', 'line'])\nfrom petsc4py import PETSc\n"
     code += "o = PETSc.Options(); print(*(o.getString(name) for name in 'abc'))"
     done = python(place, code, HOME=str(home), PETSC_OPTIONS="-b environment -c environment")
     assert done.stdout == "home environment line\n"
@@ -73,6 +73,6 @@ def test_the_home_folder_is_obeyed(tmp_path):
 def test_modules_of_the_current_folder_are_not_run(tmp_path):
     """Processes of a sweep are started with python3 -m, which looks there first."""
     (tmp_path / "numpy.py").write_text("raise SystemExit('found')")
-    run = "processes.run('fingerpad.study', ['no.json', '.', '9', 'full'], 9).message"
+    run = "processes.run('fingerpad.runs.batch', ['no.json', '.', '9', 'full'], 9).message"
     code = f"from fingerpad import processes; print({run})"
     assert "No such file or directory: 'no.json'" in python(tmp_path, code).stdout

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fingerpad.estimate import MORE, ONCE, Knob, errors, to_halve
+from fingerpad.richardson import MORE, ONCE, MeshParameter, errors, to_halve
 
 
 def law(order: float, c: float = 0.1):
@@ -10,9 +10,9 @@ def law(order: float, c: float = 0.1):
     return lambda n: {"q": 1 + c * 2 ** (-order * n)}
 
 
-def knob(q, *at: int) -> Knob:
+def knob(q, *at: int) -> MeshParameter:
     """Return a knob that was halved from each of these on."""
-    found = Knob()
+    found = MeshParameter()
     for n in at:
         found.see(q(n), q(n + 1))
     return found
@@ -30,7 +30,7 @@ def test_second_order_is_overestimated_three_times():
 
 
 def test_energy_density_is_taken_for_second_order():
-    found = Knob()
+    found = MeshParameter()
     found.see({"slip_sed_0": 1.3}, {"slip_sed_0": 1.0})
     assert found.share("slip_sed_0") == pytest.approx(0.1, rel=1e-12)
 
@@ -38,7 +38,7 @@ def test_energy_density_is_taken_for_second_order():
 @pytest.mark.parametrize(("name", "left"), [("slip_f_t", 0.1 / 4), ("slip_sed_0", 0.1 / 4 / 3)])
 def test_accidentally_small_change_is_not_believed(name, left):
     """A change of nothing at all counts as the quarter of the one before it that second order leaves."""
-    found = Knob()
+    found = MeshParameter()
     found.see({name: 1.1}, {name: 1.0})
     found.see({name: 1.0}, {name: 1.0})
     assert found.share(name) == pytest.approx(left, rel=1e-12)
@@ -46,13 +46,13 @@ def test_accidentally_small_change_is_not_believed(name, left):
 
 def test_ridges_that_change_both_ways_do_not_cancel():
     """Sixteen that go up and down by 0.1, a sum that does not change: 0.4, as if their signs were random."""
-    found = Knob()
+    found = MeshParameter()
     found.see({"length": [1.0] * 16}, {"length": [1.1, 0.9] * 8})
     assert found.share("length") == pytest.approx(0.4, rel=1e-12)
 
 
 def test_ridges_that_change_one_way_add_up():
-    found = Knob()
+    found = MeshParameter()
     found.see({"length": [1.0] * 16}, {"length": [1.1] * 16})
     assert found.share("length") == pytest.approx(1.6, rel=1e-12)
 
@@ -71,7 +71,7 @@ def test_each_knob_has_its_own_factor_of_safety():
 
 def test_a_knob_that_does_not_act_on_a_quantity_is_left_out():
     """The steps of normal contact say nothing of full slip."""
-    knobs = {"a": knob(law(1.0), 0), "steps": Knob([{"other": 1.0}])}
+    knobs = {"a": knob(law(1.0), 0), "steps": MeshParameter([{"other": 1.0}])}
     assert errors(knobs, ["q"])["q"] == pytest.approx(ONCE * 0.05, rel=1e-12)
 
 
@@ -92,7 +92,7 @@ def test_as_few_are_halved_as_will_do(allowed, keys):
 
 def test_one_that_does_not_matter_is_not_halved_for_another():
     """Of two quantities, the second has no share of the knob b."""
-    other = Knob()
+    other = MeshParameter()
     other.see({"p": 1.0}, {"p": 0.9})
     knobs = {"a": knob(law(1.0), 0), "b": other}
     assert to_halve(knobs, {"q": 0.01}) == ["a"]

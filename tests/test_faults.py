@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad import full
+from fingerpad.runs import full
 from fingerpad.scene import from_data
 from geometry.bodies import block
 from geometry.mesh import load
 from tests.measures import accepted
 from tests.runs import run
 from tests.test_contact import HEIGHT, MU_F, WIDTH, over
-from variational.continuation import Attempt, Continuation
-from variational.failure import NotConverged
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap
-from variational.solver import Control, Solver
+from variational.solvers.continuation import Attempt, Continuation
+from variational.solvers.failure import NotConverged
+from variational.solvers.newton import Control, Solver
 
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
 HISTORY = [{"name": "press", "bone_height": -60e-6}, {"name": "charge", "voltage": 100.0}]

@@ -8,15 +8,15 @@ from scipy.optimize import brentq
 from geometry import tags
 from geometry.bodies import block, ridge
 from geometry.mesh import load
-from variational.augmented import AugmentedLagrangian
 from variational.body import Body
-from variational.contact import History
-from variational.continuation import Continuation, StepFailed, Target
-from variational.failure import NotConverged
-from variational.nitsche import Nitsche
-from variational.penalty import Penalty
+from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.formulation import History
+from variational.contact.nitsche import Nitsche
+from variational.contact.penalty import Penalty
 from variational.problem import Interface, Ogden
 from variational.roughness.bam import BearingArea
+from variational.solvers.continuation import Continuation, StepFailed, Target
+from variational.solvers.failure import NotConverged
 
 pytestmark = pytest.mark.mpi
 WIDTH, HEIGHT = 1e-3, 0.5e-3

@@ -12,15 +12,15 @@ from geometry import tags
 from geometry.bodies import block
 from geometry.mesh import load
 from tests import test_contact, test_problem
-from variational import return_mapping
-from variational.augmented import AugmentedLagrangian
 from variational.body import Body
-from variational.contact import Formulation, _limit
-from variational.continuation import Target
-from variational.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction, law_of
-from variational.nitsche import Nitsche
-from variational.penalty import Penalty
+from variational.contact import return_mapping
+from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.formulation import Formulation, _limit
+from variational.contact.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction, law_of
+from variational.contact.nitsche import Nitsche
+from variational.contact.penalty import Penalty
 from variational.problem import Interface, Ogden
+from variational.solvers.continuation import Target
 
 EPS_T = 1e11
 LIMIT = 2e4

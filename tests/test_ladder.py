@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from benchmarks import ladder as page
-from fingerpad import closed_form, full, ladder, ridge_cell, start
-from fingerpad.processes import End
-from fingerpad.result import Result
+from fingerpad.io.result import Result
+from fingerpad.io.states import PREFIXES
+from fingerpad.reduced import cylinders, ridge_cell
+from fingerpad.runs import compare, full, start
+from fingerpad.runs.processes import End
 from fingerpad.scene import SceneError, from_data
-from fingerpad.states import PREFIXES
-from variational.continuation import StepFailed
+from variational.solvers.continuation import StepFailed
 from variational.state import RESULTS
 
 
@@ -23,7 +24,7 @@ def scene(**data):
 # -- rung 1 ------------------------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def default():
-    return closed_form.solve(scene())
+    return cylinders.solve(scene())
 
 
 @pytest.mark.parametrize("state", ["charged", "full_slip"])
@@ -54,7 +55,7 @@ def test_what_it_cannot_know_is_absent(default):
 
 def test_uncharged_length_is_the_runs(default):
     """At a force of the runs nothing is interpolated; they are kept with four digits."""
-    found = closed_form.solve(scene(f_ext=50.0, voltage=0.0))
+    found = cylinders.solve(scene(f_ext=50.0, voltage=0.0))
     assert found.charged.contact_length == pytest.approx(1.0116e-3, rel=1e-9)
     assert found.full_slip.contact_length == pytest.approx(0.9843e-3, rel=1e-9)
     assert found.full_slip.mu_app == pytest.approx(0.25, rel=1e-12)
@@ -62,18 +63,18 @@ def test_uncharged_length_is_the_runs(default):
 
 
 def test_length_that_is_given_is_kept():
-    answer = closed_form.solve(scene(), closed_form.given(1.5e-3, 16))
+    answer = cylinders.solve(scene(), cylinders.given(1.5e-3, 16))
     assert answer.full_slip.contact_length == pytest.approx(1.5e-3, rel=1e-12)
     assert "as given" in answer.notes[0]
 
 
 def test_force_beyond_the_runs_is_said():
-    assert "extrapolated" in closed_form.solve(scene(f_ext=2.0)).notes[0]
+    assert "extrapolated" in cylinders.solve(scene(f_ext=2.0)).notes[0]
 
 
 def test_state_past_the_end_of_the_closure_is_said():
     """A tenth of the length bears ten times the pressure, beyond zero separation."""
-    notes = closed_form.solve(scene(voltage=0.0), closed_form.given(0.15e-3, 16)).notes
+    notes = cylinders.solve(scene(voltage=0.0), cylinders.given(0.15e-3, 16)).notes
     assert any("beyond zero separation" in note for note in notes)
 
 
@@ -87,17 +88,17 @@ def test_state_past_the_end_of_the_closure_is_said():
 )
 def test_scene_it_does_not_know_is_refused(data, sentence):
     with pytest.raises(SceneError, match=sentence):
-        closed_form.solve(scene(**data))
+        cylinders.solve(scene(**data))
 
 
 def test_other_finger_with_its_length_is_answered():
     other = scene(geometry={"width": 19e-3})
-    assert closed_form.solve(other, closed_form.given(1.5e-3, 16)).full_slip.mu_app > 0.4
+    assert cylinders.solve(other, cylinders.given(1.5e-3, 16)).full_slip.mu_app > 0.4
 
 
 def test_ridge_without_a_round_tip_is_refused():
     with pytest.raises(SceneError, match="gives a ridge 2 crests; the model 'cylinders' takes ridges for cylinders"):
-        closed_form.solve(scene(geometry={"ridge_profile": [1.0, -0.5]}), closed_form.given(1.5e-3, 16))
+        cylinders.solve(scene(geometry={"ridge_profile": [1.0, -0.5]}), cylinders.given(1.5e-3, 16))
 
 
 # -- lengths of a run --------------------------------------------------------------------------------------
@@ -115,7 +116,7 @@ def keep(folder, **values):
 
 def test_length_of_a_run(tmp_path):
     keep(tmp_path)
-    found = closed_form.solve(scene(), closed_form.from_run(scene(), tmp_path))
+    found = cylinders.solve(scene(), cylinders.from_run(scene(), tmp_path))
     assert found.charged.contact_length == pytest.approx(1.7e-3, rel=1e-12)
     assert found.full_slip.contact_length == pytest.approx(1.6e-3, rel=1e-12)
     assert found.full_slip.ridges_in_contact == 16
@@ -128,19 +129,19 @@ def test_length_of_a_run(tmp_path):
 def test_run_of_no_use_is_refused(tmp_path, values, sentence):
     keep(tmp_path, **values)
     with pytest.raises(SceneError, match=sentence):
-        closed_form.from_run(scene(), tmp_path)
+        cylinders.from_run(scene(), tmp_path)
 
 
 def test_missing_run_is_refused(tmp_path):
     with pytest.raises(SceneError, match="cannot be read"):
-        closed_form.from_run(scene(), tmp_path)
+        cylinders.from_run(scene(), tmp_path)
 
 
 def test_errors_of_a_run_stand_beside_its_values(tmp_path):
     """With what ± is; a state that comes without an error has its value alone."""
     answer = Result.from_dict(keep(tmp_path, slip_contact_length_error=2e-5))
     assert answer.full_slip.error.known() == {"contact_length": 2e-5}
-    lines = ladder.table([answer]).splitlines()
+    lines = compare.table([answer]).splitlines()
     assert next(line for line in lines if line.startswith("full slip: contact length")).endswith("1.600 ± 0.020")
     assert next(line for line in lines if line.startswith("charged normal contact: contact length")).endswith(
         "  1.7000"
@@ -161,7 +162,7 @@ def test_full_model_without_a_start_follows_the_path(monkeypatch, tmp_path):
 
     monkeypatch.setattr(start, "answer", lost)
     monkeypatch.setattr(full, "run", lambda *_: Result.from_dict(keep(tmp_path)))
-    answer = ladder.started(scene(), tmp_path)
+    answer = compare.started(scene(), tmp_path)
     assert answer.full_slip.contact_length == 1.6e-3
     assert answer.notes == ("full slip was not found; the path was followed instead",)
 
@@ -183,7 +184,7 @@ def test_answers_are_kept_and_failures_asked_again(monkeypatch, tmp_path):
 
     monkeypatch.setattr(page, "grid", lambda size: {(75.0, u): scene(voltage=u) for u in (0.0, 200.0)})
     monkeypatch.setattr(page, "ask", ask)
-    file = tmp_path / "ladder.json"
+    file = tmp_path / "compare.json"
     for _ in range(2):
         known = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
         page.collect(known, tmp_path / "runs", ["2"], 1, file)
@@ -196,13 +197,13 @@ def test_answers_are_kept_and_failures_asked_again(monkeypatch, tmp_path):
 
 # -- the page ----------------------------------------------------------------------------------------------
 def test_lengths_in_the_program_are_the_runs():
-    """Those that rung 1 interpolates are the full runs' of docs/ladder.json, to the four digits they are kept with."""
-    known = json.loads((Path(page.__file__).parents[1] / "docs" / "ladder.json").read_text(encoding="utf-8"))
+    """Those that rung 1 interpolates are the full runs' of docs/compare.json, to the four digits they are kept with."""
+    known = json.loads((Path(page.__file__).parents[1] / "docs" / "compare.json").read_text(encoding="utf-8"))
     for state in ("charged", "full_slip"):
-        for k, f in enumerate(closed_form._FORCES):
+        for k, f in enumerate(cylinders._FORCES):
             run = known[page.name(f, 0.0)]["3"]["summary"]
-            assert closed_form._LENGTHS[state][k] == pytest.approx(run[f"{PREFIXES[state]}_contact_length"], abs=0.5e-7)
-            assert closed_form._RIDGES[state][k] == run[f"{PREFIXES[state]}_ridges_in_contact"]
+            assert cylinders._LENGTHS[state][k] == pytest.approx(run[f"{PREFIXES[state]}_contact_length"], abs=0.5e-7)
+            assert cylinders._RIDGES[state][k] == run[f"{PREFIXES[state]}_ridges_in_contact"]
 
 
 def test_errors_are_against_the_full_model():

@@ -10,22 +10,23 @@ import pytest
 import ufl
 from mpi4py import MPI
 
-from fingerpad import closed_form, coarse, laws, reach, ridge_cell, smooth
-from fingerpad.laws import Laws, used
-from fingerpad.needs import plan
-from fingerpad.scene import Scene, SceneError, from_data
-from fingerpad.simulation import Simulation
-from fingerpad.written import digest
+from fingerpad.model import touching
+from fingerpad.model.options import plan
+from fingerpad.model.simulation import Simulation
+from fingerpad.reduced import coarse, cylinders, ridge_cell, smooth
+from fingerpad.scene import Scene, SceneError, from_data, laws
+from fingerpad.scene.law_source import digest
+from fingerpad.scene.laws import Laws, used
 from geometry import tags
-from variational.coupling import Coupling
-from variational.cylinder import Cylinder
-from variational.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction
-from variational.material import Material
-from variational.neo_hooke import NeoHooke
-from variational.ogden import Ogden
+from variational.attraction.cylinder import Cylinder
+from variational.contact.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction
+from variational.materials.material import Material
+from variational.materials.neo_hooke import NeoHooke
+from variational.materials.ogden import Ogden
+from variational.materials.saint_venant import SaintVenant
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap, Closure, check
-from variational.saint_venant import SaintVenant
+from variational.solvers.coupling import Coupling
 
 DERJAGUIN = Derjaguin(0.3, tau_0=5e3)
 
@@ -318,7 +319,7 @@ def test_closures_of_the_package_are_closures():
 def test_cylinders_take_any_friction_law():
     """f_T is the limit at each state's mean pressure over its length. Tolerance: roundoff."""
     for law in (DERJAGUIN, OWN["friction"], Coulomb(0.25)):
-        slip = closed_form.solve(Scene().with_laws(friction=law)).full_slip
+        slip = cylinders.solve(Scene().with_laws(friction=law)).full_slip
         length = slip.contact_length
         assert slip.f_t == pytest.approx(law.limit(slip.f_contact / length) * length, rel=1e-14)
         assert slip.mu_app == pytest.approx(slip.f_t / 75.0, rel=1e-14)
@@ -326,17 +327,17 @@ def test_cylinders_take_any_friction_law():
 
 def test_cylinders_take_any_closure():
     """Each ridge is Maugis's cylinder at the closure's own gap."""
-    found = closed_form.solve(Scene().with_laws(closure=Held()))
+    found = cylinders.solve(Scene().with_laws(closure=Held()))
     assert found.record["slip_d_eq"] == 2e-6
-    assert found.full_slip.f_electrostatic != closed_form.solve(Scene()).full_slip.f_electrostatic
+    assert found.full_slip.f_electrostatic != cylinders.solve(Scene()).full_slip.f_electrostatic
 
 
 def test_cylinders_know_the_default_fingers_lengths_alone():
     scene = Scene().with_laws(materials={"stratum_corneum": NeoHooke(1e5)})
     with pytest.raises(SceneError, match="materials are given for stratum_corneum, and a contact length is known of"):
-        closed_form.solve(scene)
-    given = closed_form.given(1.5e-3, 15)
-    own, default = (closed_form.solve(one, given).full_slip.f_electrostatic for one in (scene, Scene()))
+        cylinders.solve(scene)
+    given = cylinders.given(1.5e-3, 15)
+    own, default = (cylinders.solve(one, given).full_slip.f_electrostatic for one in (scene, Scene()))
     assert own != default
 
 
@@ -355,7 +356,7 @@ def test_reduced_models_take_no_mesh(tmp_path):
     file = tmp_path / "mine.msh"
     file.write_text("", encoding="utf-8")
     scene = Scene().with_laws(mesh=file)
-    for solve in (closed_form.solve, lambda scene: smooth.solve(scene, tmp_path)):
+    for solve in (cylinders.solve, lambda scene: smooth.solve(scene, tmp_path)):
         with pytest.raises(SceneError, match="answers for fingers of the scene's own geometry"):
             solve(scene)
 
@@ -383,7 +384,7 @@ def test_tables_of_a_ridge_depend_on_its_laws():
 
 def test_rule_of_thumb_takes_a_law():
     """More friction rolls the finger further, by the coefficient at a ridge's pressure."""
-    plain, rough = (reach.by_rule(Scene().with_laws(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
+    plain, rough = (touching.by_rule(Scene().with_laws(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
     assert rough.mesh.touching_half_arc > plain.mesh.touching_half_arc == 5e-3
 
 
@@ -393,7 +394,7 @@ def test_coarse_finger_takes_a_law():
     finger = coarse._Finger.__new__(coarse._Finger)
     finger.scene, finger.loads, finger.modulus = scene, scene.loads(), laws.skin_modulus(scene)
     finger.solver = type("Solver", (), {"reaction": np.array([0.0, 75.0])})()
-    ridge = Cylinder(closed_form.tip_radius(scene.geometry), finger.modulus, scene.h_0, Held()).under_load(5.0, 200.0)
+    ridge = Cylinder(cylinders.tip_radius(scene.geometry), finger.modulus, scene.h_0, Held()).under_load(5.0, 200.0)
     expected = DERJAGUIN.limit(ridge.p_c) * ridge.length * 15 / 75.0
     assert finger.friction(DERJAGUIN, 15) == pytest.approx(expected, rel=1e-9)
 
@@ -467,6 +468,6 @@ def test_laws_of_a_run_tell_its_folder():
 def test_answers_name_their_laws():
     """The summary of a model has every law in words."""
     scene = Scene().with_laws(friction=DERJAGUIN)
-    summary = json.loads(json.dumps(closed_form.solve(scene).to_dict(), allow_nan=False))
+    summary = json.loads(json.dumps(cylinders.solve(scene).to_dict(), allow_nan=False))
     assert summary["laws"] == used(scene)
     assert summary["parameters"]["laws"]["friction"]["tau_0"] == 5e3

@@ -8,7 +8,7 @@ from dolfinx.fem.petsc import assemble_matrix
 from mpi4py import MPI
 from numpy.testing import assert_allclose
 
-from variational.layout import RigidRimLayout
+from variational.solvers.layout import RigidRimLayout
 
 pytestmark = pytest.mark.mpi
 CELLS = 4

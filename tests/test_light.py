@@ -7,23 +7,23 @@ import pytest
 
 HEAVY = ("dolfinx", "ufl", "basix", "ffcx", "petsc4py", "mpi4py", "gmsh")
 LIGHT = (
-    "fingerpad.api",
-    "fingerpad.grid",
-    "fingerpad.result",
+    "fingerpad.runs.solve",
+    "fingerpad.runs.sweep",
+    "fingerpad.io.result",
     "fingerpad.scene",
-    "fingerpad.closed_form",
-    "fingerpad.rungs",
-    "fingerpad.needs",
-    "fingerpad.budget",
-    "fingerpad.place",
+    "fingerpad.reduced.cylinders",
+    "fingerpad.reduced.answer",
+    "fingerpad.model.options",
+    "fingerpad.model.memory",
+    "fingerpad.io.place",
     "fingerpad.cli",
     "fingerpad.cli.arguments",
     "fingerpad.cli.estimate",
     "fingerpad.cli.microscale",
     "fingerpad.cli.params",
     "fingerpad.cli.topography",
-    "fingerpad.terminal",
-    "variational.cylinder",
+    "fingerpad.io.terminal",
+    "variational.attraction.cylinder",
     "variational.state",
     "variational.roughness.bam",
     "variational.roughness.heightfile",
@@ -34,12 +34,14 @@ LIGHT = (
 )
 WORK = """
 import fingerpad as fp
-from fingerpad import budget, scene
+from fingerpad.model import memory
+from fingerpad.model.check import check
+from fingerpad.scene import scene
 found = scene.load(None, {"voltage": 100.0})
-scene.check(found)
+check(found)
 assert 0.25 < fp.run(found, model="cylinders").full_slip.mu_app < 0.5
 assert found.roughness.bearing_area(found.h_0)(1e4).d_eq > 0
-assert budget.estimate(found).memory > 1e8
+assert memory.estimate(found).memory > 1e8
 """
 DOOR = """
 import sys
@@ -83,4 +85,4 @@ def test_friction_laws_by_the_door():
 
 def test_what_is_blocked_is_blocked():
     """Without this the tests above would hold of any module."""
-    assert "ModuleNotFoundError" in without("import variational.ogden", *HEAVY).stderr
+    assert "ModuleNotFoundError" in without("import variational.materials.ogden", *HEAVY).stderr

@@ -7,9 +7,9 @@ import pytest
 from mpi4py import MPI
 
 from benchmarks import limits
-from fingerpad.processes import End
+from fingerpad.runs.processes import End
 from fingerpad.scene import Scene
-from variational.continuation import StepFailed
+from variational.solvers.continuation import StepFailed
 
 
 class Path:
@@ -27,12 +27,12 @@ class Path:
             raise StepFailed(f"lost at {self.contact:g}")
 
 
-class Keeper:
+class StateRecorder:
     """Keeps nothing but the mesh it saw."""
 
     def __init__(self, simulation):
         self.contact, self.states = simulation.contact, {}
-        Keeper.kept = self.states
+        StateRecorder.kept = self.states
 
     def keep(self, name):
         self.states[name] = self.contact
@@ -45,7 +45,7 @@ class Keeper:
 def path(monkeypatch):
     Path.tried = []
     monkeypatch.setattr(limits, "Simulation", Path)
-    monkeypatch.setattr(limits, "Keeper", Keeper)
+    monkeypatch.setattr(limits, "StateRecorder", StateRecorder)
 
 
 def test_path_that_is_lost_is_followed_on_a_finer_mesh(path):
@@ -56,7 +56,7 @@ def test_path_that_is_lost_is_followed_on_a_finer_mesh(path):
 @pytest.mark.parametrize(("uncharged", "kept"), [(True, {"press": 10e-6}), (False, {})])
 def test_uncharged_contact_is_kept_where_it_is_asked_for(path, uncharged, kept):
     limits._path(Scene(), uncharged, MPI.COMM_SELF)
-    assert Keeper.kept == kept
+    assert StateRecorder.kept == kept
 
 
 def test_path_that_is_lost_on_all_meshes_is_a_failure(path, monkeypatch):

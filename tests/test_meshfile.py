@@ -11,12 +11,12 @@ import pytest
 from mpi4py import MPI
 
 import geometry
-from fingerpad.body import Body
+from fingerpad.model.body import Body
 from geometry import tags
 from geometry.mesh import load
 from geometry.profiles import GeometryError
-from variational.ogden import Ogden
-from variational.penalty import Penalty
+from variational.contact.penalty import Penalty
+from variational.materials.ogden import Ogden
 
 MM = 1e-3
 SKIN, SPRINGS = Ogden(86.76e3, -14.53, 0.48), Penalty(1.5e12, 5e10)

@@ -10,22 +10,22 @@ import pytest
 import ufl
 from mpi4py import MPI
 
-from fingerpad import full as run_module
-from fingerpad import mirror, needs
-from fingerpad.needs import plan
+from fingerpad.model import options, symmetry
+from fingerpad.model.options import plan
+from fingerpad.runs import full as run_module
 from fingerpad.scene import Scene, from_data
 from geometry import tags
 from geometry.mesh import TaggedMesh
 from tests.runs import run
 from variational.body import Body
-from variational.continuation import Target
+from variational.contact.penalty import Penalty
 from variational.energy import EnergyBook
 from variational.output import Snapshot
-from variational.penalty import Penalty
 from variational.problem import Interface, Ogden
 from variational.quantities import RidgeLoads
 from variational.roughness.bam import BearingArea
-from variational.stability import StabilityCheck
+from variational.solvers.continuation import Target
+from variational.solvers.stability import StabilityCheck
 
 H_0, WIDTH, HEIGHT, FORCE = 0.514e-6, 0.5e-3, 0.5e-3, 3.0
 MU_F = 0.02  # so little that some points slip
@@ -66,7 +66,7 @@ def mesh_of(half: bool, n: int = 6) -> dolfinx.mesh.Mesh:
     cells = np.concatenate([np.stack([a, a + 1, a + n + 2], 1), np.stack([a, a + n + 2, a + n + 1], 1)])
     if not half:
         nothing = np.zeros(len(cells))
-        whole = mirror.snapshot(Snapshot(points, points, cells, nothing, nothing))
+        whole = symmetry.snapshot(Snapshot(points, points, cells, nothing, nothing))
         points, cells = whole.x, whole.triangles
     element = ufl.Mesh(basix.ufl.element("Lagrange", "triangle", 1, shape=(2,)))
     return dolfinx.mesh.create_mesh(MPI.COMM_SELF, cells, x=points, e=element)
@@ -101,7 +101,7 @@ class Block:
         path.run(Target("charge", voltage=100.0))
         self.energy = book.step(path.surface_state, self.solver.bone, self.solver.reaction, coupling.d_eq)
         loads = path.observer.ridge_loads(path.surface_state)
-        self.loads = mirror.loads(loads) if half else loads
+        self.loads = symmetry.loads(loads) if half else loads
 
 
 @pytest.fixture(scope="module")
@@ -160,8 +160,8 @@ def test_half_block_has_half_the_unknowns(blocks):
 # -- mirrored numbers --------------------------------------------------------------------------------------
 def test_mirrored_ridges():
     ramp = np.array([1.0, 2.0, 3.0])
-    loads = mirror.loads(RidgeLoads(ramp, ramp, ramp, ramp, ramp, ramp))
-    assert mirror.names([0, 1, 2]) == [-2, -1, 0, 1, 2]
+    loads = symmetry.loads(RidgeLoads(ramp, ramp, ramp, ramp, ramp, ramp))
+    assert symmetry.names([0, 1, 2]) == [-2, -1, 0, 1, 2]
     assert loads.f_contact.tolist() == loads.length.tolist() == [3, 2, 2, 2, 3]
     assert loads.f_friction.tolist() == [-3, -2, 0, 2, 3]
 
@@ -169,7 +169,7 @@ def test_mirrored_ridges():
 def test_mirrored_snapshot_is_one_body():
     """No edge on the line belongs to one triangle only, and what moves right moves left."""
     points = np.array([[0, 0], [1, 0], [0, 1.0]])
-    whole = mirror.snapshot(Snapshot(points, points, np.array([[0, 1, 2]]), np.ones(1), np.ones(1, dtype=np.int32)))
+    whole = symmetry.snapshot(Snapshot(points, points, np.array([[0, 1, 2]]), np.ones(1), np.ones(1, dtype=np.int32)))
     assert whole.x.tolist() == whole.u.tolist() == [[0, 0], [1, 0], [0, 1], [-1, 0]]
     assert whole.triangles.tolist() == [[0, 1, 2], [2, 3, 0]]
     areas = [np.linalg.det(whole.x[t[1:]] - whole.x[t[0]]) for t in whole.triangles]
@@ -193,7 +193,7 @@ def fingers(tmp_path_factory):
     scene = from_data({"mesh": MESH, "history": HISTORY})
     half = run(scene, folders[0], MPI.COMM_WORLD)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(run_module, "plan", lambda scene: replace(needs.plan(scene), both_halves=True))
+        patch.setattr(run_module, "plan", lambda scene: replace(options.plan(scene), both_halves=True))
         whole = run(scene, folders[1], MPI.COMM_WORLD)
     assert "failure" not in half and "failure" not in whole
     return (half, whole), folders

@@ -8,24 +8,24 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad import full as run_module
-from fingerpad import needs
-from fingerpad.needs import plan
+from fingerpad.model import options
+from fingerpad.model.options import plan
+from fingerpad.runs import full as run_module
 from fingerpad.scene import Scene, from_data
 from geometry import fingertip, tags
 from geometry.bodies import ridge
 from geometry.mesh import load
 from geometry.parameters import Fingertip
 from tests.runs import run
-from variational.augmented import AugmentedLagrangian
+from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.body import Body
-from variational.continuation import Target
-from variational.electroadhesion import ELECTROSTATIC
-from variational.nitsche import Nitsche
-from variational.penalty import Penalty
+from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.nitsche import Nitsche
+from variational.contact.penalty import Penalty
 from variational.problem import Interface, Ogden
 from variational.quantities import RidgeLoads
 from variational.roughness.bam import BearingArea
+from variational.solvers.continuation import Target
 
 H_0, FORCE = 0.514e-6, 5.0
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
@@ -149,7 +149,7 @@ def summary_of(data, folder, monkeypatch=None, **parts) -> dict:
     """Run a scene, with parts of the model that the plan would leave out if ``parts`` say so."""
     scene = from_data({"mesh": MESH} | data)
     if monkeypatch is not None:
-        monkeypatch.setattr(run_module, "plan", lambda scene: replace(needs.plan(scene), **parts))
+        monkeypatch.setattr(run_module, "plan", lambda scene: replace(options.plan(scene), **parts))
     summary = run(scene, folder, MPI.COMM_WORLD)
     assert "failure" not in summary
     return summary

@@ -11,13 +11,13 @@ from scipy.optimize import brentq
 from benchmarks.verification.points import Points
 from geometry import tags
 from tests.test_problem import H_0, anchor_apart, direction, make, rates, taylor, wave
-from variational.material import Material
-from variational.neo_hooke import NeoHooke
-from variational.nitsche import Nitsche
-from variational.ogden import Ogden
-from variational.penalty import Penalty
+from variational.contact.nitsche import Nitsche
+from variational.contact.penalty import Penalty
+from variational.materials.material import Material
+from variational.materials.neo_hooke import NeoHooke
+from variational.materials.ogden import Ogden
+from variational.materials.saint_venant import SaintVenant
 from variational.problem import Interface, Problem
-from variational.saint_venant import SaintVenant
 from variational.surface import Surface
 
 G, NU = 2.5e3, 0.45

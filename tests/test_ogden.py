@@ -13,7 +13,8 @@ from dolfinx import fem, mesh
 from mpi4py import MPI
 from scipy.optimize import brentq
 
-from variational import compat, kinematics, ogden, saint_venant
+from variational import compat, kinematics
+from variational.materials import ogden, saint_venant
 
 SKIN = (86.76e3, -14.53, 0.48)  # G_0 in Pa, alpha, nu of Table 2
 FAT = (25e3, 5.0, 0.48)

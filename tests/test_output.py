@@ -9,10 +9,11 @@ import ufl
 from dolfinx import fem
 from mpi4py import MPI
 
-from variational import compat, kinematics, ogden, saint_venant, stress
+from variational import compat, kinematics
 from variational.cellwise import Cellwise
+from variational.contact.penalty import Penalty
+from variational.materials import ogden, saint_venant, stress
 from variational.output import Fields, gather_mesh, sed_per_cell
-from variational.penalty import Penalty
 from variational.problem import Interface, Ogden, Problem, SaintVenant
 from variational.receptors import Receptors
 from variational.surface import Surface

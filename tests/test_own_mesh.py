@@ -7,8 +7,9 @@ import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.needs import plan
-from fingerpad.scene import check, from_data
+from fingerpad.model.check import check
+from fingerpad.model.options import plan
+from fingerpad.scene import from_data
 from geometry import fingertip
 from geometry.parameters import Fingertip, MeshSize
 from tests.test_meshfile import write

@@ -13,8 +13,8 @@ from benchmarks.paper import friction, micro, page, scenes, section, sed, style,
 from benchmarks.paper.statement import HOLDS, IN_PART, NOT, Statement, verdict
 from benchmarks.runs import Run
 from benchmarks.traces import FORCES, VOLTAGES
+from fingerpad.runs.batch import key
 from fingerpad.scene import Scene, from_data
-from fingerpad.study import key
 from geometry import tags
 
 MU_0 = 0.25

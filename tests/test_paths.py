@@ -13,14 +13,14 @@ from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import MU_F, make
 from variational.body import Body
-from variational.continuation import Attempt, Continuation, Target
-from variational.coupling import Coupling
+from variational.contact.penalty import Penalty
 from variational.energy import Balance, EnergyBook
-from variational.penalty import Penalty
 from variational.problem import Interface, SaintVenant
 from variational.quantities import Observer, RidgeLoads
 from variational.roughness.bam import BearingArea
-from variational.solver import Solver
+from variational.solvers.continuation import Attempt, Continuation, Target
+from variational.solvers.coupling import Coupling
+from variational.solvers.newton import Solver
 
 H_0, EPS_0 = 0.514e-6, 8.854e-12
 

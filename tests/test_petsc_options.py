@@ -3,8 +3,8 @@
 import pytest
 from petsc4py import PETSc
 
-from fingerpad import petsc_options
-from fingerpad.petsc_options import OptionError
+from fingerpad.io import petsc_options
+from fingerpad.io.petsc_options import OptionError
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.image import imread
 from matplotlib.tri import Triangulation
 
-from fingerpad import pictures, titles
+from fingerpad.io import pictures, titles
 from geometry import tags
 
 TITLE = titles.conditions(75.0, 200.0, 0.25)
@@ -152,5 +152,5 @@ def test_history_without_sliding(tmp_path):
 
 def test_no_dolfinx_and_no_window():
     """Pictures are drawn from plain arrays, on machines without a display."""
-    code = "import sys, fingerpad.pictures; sys.exit('dolfinx' in sys.modules or 'matplotlib.pyplot' in sys.modules)"
+    code = "import sys, fingerpad.io.pictures; sys.exit('dolfinx' in sys.modules or 'matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -8,7 +8,7 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fingerpad.place import LEFT, Place, PlaceError
+from fingerpad.io.place import LEFT, Place, PlaceError
 from fingerpad.scene import from_data
 from tests.runs import run
 
@@ -114,7 +114,7 @@ def test_a_crash_before_the_first_step_leaves_the_last_one(scene, folder, finish
     def crash(*_):
         raise ZeroDivisionError
 
-    monkeypatch.setattr("fingerpad.full.Simulation", crash)
+    monkeypatch.setattr("fingerpad.runs.full.Simulation", crash)
     with pytest.raises(ZeroDivisionError):
         run(scene, folder, MPI.COMM_WORLD)
     assert kept(folder) == finished

@@ -8,9 +8,9 @@ from dolfinx import fem
 from dolfinx.fem.petsc import assemble_matrix
 
 from geometry import tags
-from variational.augmented import AugmentedLagrangian
-from variational.nitsche import Nitsche
-from variational.penalty import Penalty
+from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.nitsche import Nitsche
+from variational.contact.penalty import Penalty
 from variational.problem import Interface, Ogden, Problem, SaintVenant
 from variational.surface import Surface
 

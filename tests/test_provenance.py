@@ -6,7 +6,7 @@ import re
 import pytest
 from petsc4py import PETSc
 
-from fingerpad.provenance import provenance
+from fingerpad.io.provenance import provenance
 
 
 def test_versions():

@@ -3,15 +3,16 @@
 import pytest
 from mpi4py import MPI
 
-from fingerpad import coarse, reach
-from fingerpad.needs import plan
-from fingerpad.reach import by_rule, decide
+from fingerpad.model import touching
+from fingerpad.model.options import plan
+from fingerpad.model.simulation import Simulation
+from fingerpad.model.touching import by_rule, decide
+from fingerpad.reduced import coarse
 from fingerpad.scene import Scene, from_data
-from fingerpad.simulation import Simulation
 from geometry.profiles import GeometryError
 from geometry.sizing import touching_ridges
 from tests.runs import run
-from variational.friction import Coulomb
+from variational.contact.friction import Coulomb
 
 COMM = MPI.COMM_WORLD
 PRESS = {"name": "press", "bone_height": -50e-6}
@@ -38,7 +39,7 @@ def test_default_mesh_is_what_it_was(default):
 def test_default_ridges_are_enough_for_what_full_runs_touch(default):
     """Ridge 9 touches at full slip in all full runs of the default scene; ridge 10, the last, must not."""
     assert ridges(default.scene) > 9
-    assert default.cost["last_ridge"] + reach.MARGIN == ridges(default.scene)
+    assert default.cost["last_ridge"] + touching.MARGIN == ridges(default.scene)
 
 
 def test_coarse_solve_is_cheap(default):

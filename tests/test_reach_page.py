@@ -5,7 +5,7 @@ import json
 import pytest
 
 from benchmarks import reach, traces
-from fingerpad.study import key
+from fingerpad.runs.batch import key
 
 NAME, SCENE = "5 N/m, 0 V, 10 µm", traces.trace(5.0, 0.0, 10e-6)
 

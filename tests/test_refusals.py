@@ -6,15 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from fingerpad import scene as scenes
+from fingerpad.model.check import check
 from fingerpad.scene import Scene, SceneError
+from fingerpad.scene import scene as scenes
 
 SCENES = Path(__file__).parent.parent / "demos/scenes"
 
 
 def refusal(path: Path | None = None, **overrides) -> str:
     with pytest.raises(SceneError) as error:
-        scenes.check(scenes.load(path, {key.replace("__", "."): value for key, value in overrides.items()}))
+        check(scenes.load(path, {key.replace("__", "."): value for key, value in overrides.items()}))
     message = str(error.value)
     assert "\n" not in message
     return message

@@ -10,18 +10,19 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fingerpad import console, drawing, report, writing
-from fingerpad.again import Keeper
-from fingerpad.needs import plan
+from fingerpad.accuracy.recompute import StateRecorder
+from fingerpad.io import console, drawing, writing
+from fingerpad.io.states import RESULTS, named
+from fingerpad.io.views import Profile
+from fingerpad.model import report
+from fingerpad.model.options import plan
+from fingerpad.model.simulation import Simulation
+from fingerpad.model.steps import force_error
 from fingerpad.scene import from_data
-from fingerpad.simulation import Simulation
-from fingerpad.states import RESULTS, named
-from fingerpad.steps import force_error
-from fingerpad.views import Profile
 from tests import test_demo
 from tests.runs import run
-from variational.friction import CONE_ROUNDOFF
-from variational.solver import PREFIX, Solver
+from variational.contact.friction import CONE_ROUNDOFF
+from variational.solvers.newton import PREFIX, Solver
 
 MU_0 = 0.25
 SMALL = {
@@ -125,7 +126,7 @@ def test_errors_are_estimated_of_the_headline(more, load):
     """The states kept for it are the last full slip that was held and normal contact, not those of another load."""
     scene = from_data(LEAN | {"history": [PRESS, SLIDE, *more]})
     simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: keeper.see(step), lambda: None)
-    keeper = Keeper(simulation)
+    keeper = StateRecorder(simulation)
     simulation.run()
     found, kept = named(simulation.states), keeper.solve().states
     assert found["full_slip"].load == load and found["charged"].load == "press"

@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad import ridge_cell
+from fingerpad.reduced import ridge_cell
 from fingerpad.scene import from_data
 from geometry import tags
 from geometry.bodies import block
 from geometry.mesh import load
 from variational.body import Body
-from variational.continuation import Target
+from variational.contact.ridge_law import RidgeLaw, RidgeTable, ramps
 from variational.problem import Interface, SaintVenant
-from variational.ridge_law import RidgeLaw, RidgeTable, ramps
 from variational.roughness.bam import BearingArea
+from variational.solvers.continuation import Target
 
 COARSE = {"mesh": {"contact": 30e-6}, "f_ext": 10.0, "voltage": 0.0}
 PERIOD = 0.5e-3

@@ -7,11 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from fingerpad import scene as scenes
+from fingerpad.model.check import check
 from fingerpad.scene import Load, Scene
-from variational.augmented import AugmentedLagrangian
-from variational.nitsche import Nitsche
-from variational.penalty import Penalty
+from fingerpad.scene import scene as scenes
+from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.nitsche import Nitsche
+from variational.contact.penalty import Penalty
 
 SCENES = Path(__file__).parent.parent / "demos/scenes"
 
@@ -26,7 +27,7 @@ def test_default_scene():
         Load(name="charge", voltage=200.0),
         Load(name="slide", bone_x=5e-3, until_full_slip=True),
     )
-    scenes.check(scene)
+    check(scene)
 
 
 def test_default_materials_are_table_2():
@@ -92,7 +93,7 @@ def test_no_force_where_the_skin_is_held(write):
 @pytest.mark.parametrize("path", sorted(SCENES.glob("*.toml")), ids=lambda path: path.stem)
 def test_scenes_that_come_along(path):
     scene = scenes.load(path)
-    scenes.check(scene)
+    check(scene)
     assert scene.loads()
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from benchmarks.calibration import stiffer
+from fingerpad.accuracy.rigid_screen import ORDER, rigid, stiffened
 from fingerpad.scene import from_data
-from fingerpad.screen import ORDER, rigid, stiffened
 
 
 def test_law_is_extrapolated_exactly():

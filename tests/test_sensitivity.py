@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks import sensitivity
 from benchmarks.sensitivity import Change
-from fingerpad.study import key
+from fingerpad.runs.batch import key
 
 
 def test_every_changed_finger_can_be_built():

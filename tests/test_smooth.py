@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad import ridge_cell, smooth
-from fingerpad.estimate import ONCE
+from fingerpad.reduced import ridge_cell, smooth
+from fingerpad.richardson import ONCE
 from fingerpad.scene import SceneError, from_data
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles

@@ -6,10 +6,10 @@ from mpi4py import MPI
 from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, WIDTH, make
-from variational import solver as module
-from variational.failure import NotConverged
 from variational.problem import SLIPS, STICKS
-from variational.solver import Control
+from variational.solvers import newton as module
+from variational.solvers.failure import NotConverged
+from variational.solvers.newton import Control
 
 pytestmark = pytest.mark.mpi
 

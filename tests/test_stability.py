@@ -9,8 +9,8 @@ from geometry.mesh import load
 from tests import spring
 from tests.test_contact import HEIGHT, MU_F, VOLTAGE, WIDTH, make
 from variational.quantities import Observer
-from variational.solver import Control
-from variational.stability import StabilityCheck
+from variational.solvers.newton import Control
+from variational.solvers.stability import StabilityCheck
 
 pytestmark = pytest.mark.mpi
 BEFORE, BEYOND = 1.05, 0.95  # of (h_0 + y) at the fold

@@ -20,7 +20,7 @@ from geometry import strip
 from geometry.mesh import load
 from geometry.parameters import Fingertip
 from variational.roughness.bam import BearingArea
-from variational.solver import Control
+from variational.solvers.newton import Control
 
 # A press of half an newton a metre on facets of 60 um: two seconds a run.
 TINY = Case(contact_size=60e-6, force=0.5, voltage=50.0, element="P1", slide=0.0)
@@ -249,7 +249,7 @@ def test_picture(tiny, chart, tmp_path):
 
 def test_page(tiny, chart, tmp_path):
     """It holds each run of charts and named failures, with the reason of one that failed."""
-    named = plan.Named("hopeless", "A penalty too high.", (("1.5e20 Pa/m", HOPELESS),))
+    named = plan.Named("irrecoverable", "A penalty too high.", (("1.5e20 Pa/m", HOPELESS),))
     table.write(tmp_path / "stability.md", [chart], plan.neighbours(), [named], CLOSURE, tiny, left=0)
     text = (tmp_path / "stability.md").read_text()
     assert text.count("| ● converged |") == 4

@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad import simulation as simulation_module
-from fingerpad import smooth, start
-from fingerpad.again import Keeper
-from fingerpad.needs import plan
+from fingerpad.accuracy.recompute import StateRecorder
+from fingerpad.model import simulation as simulation_module
+from fingerpad.model.options import plan
+from fingerpad.model.simulation import Simulation
+from fingerpad.reduced import smooth
+from fingerpad.runs import start
 from fingerpad.scene import from_data
-from fingerpad.simulation import Simulation
-from variational.continuation import StepFailed
+from variational.solvers.continuation import StepFailed
 
 SCENE = {
     "f_ext": 1.0,
@@ -34,7 +35,7 @@ def started(folder):
 def path():
     scene = from_data(SCENE)
     simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: keeper.see(step), lambda: None)
-    keeper = Keeper(simulation)
+    keeper = StateRecorder(simulation)
     simulation.run()
     return keeper.solve()
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from fingerpad import states
+from fingerpad.io import states
 from variational.state import ContactState
 
 STEADY, LEAST = 1e-6, 1e-9

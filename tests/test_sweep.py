@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from fingerpad import study as module
-from fingerpad.processes import End, Pool
-from fingerpad.processes import run as run_module
+from fingerpad.runs import batch as module
+from fingerpad.runs.batch import key, result, sweep
+from fingerpad.runs.processes import End, Pool
+from fingerpad.runs.processes import run as run_module
 from fingerpad.scene import from_data
-from fingerpad.study import key, result, sweep
 
 
 @pytest.fixture
@@ -112,6 +112,6 @@ def test_pool_reports_every_job_once():
 
 
 def test_crash_says_its_last_words():
-    end = run_module("fingerpad.study", ["no scene.json", "nowhere", "5", "full"], 5.0)
+    end = run_module("fingerpad.runs.batch", ["no scene.json", "nowhere", "5", "full"], 5.0)
     assert end.reason == "CRASH_1"
     assert "no scene.json" in end.message

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from benchmarks import traces
-from fingerpad.study import key
+from fingerpad.runs.batch import key
 
 
 def keep(folder, scene, **values):

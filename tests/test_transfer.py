@@ -10,9 +10,9 @@ from mpi4py import MPI
 from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import MU_F, over
-from variational.continuation import Continuation, StepFailed, Target
-from variational.failure import NotConverged
-from variational.transfer import carry, give, interpolate
+from variational.solvers.continuation import Continuation, StepFailed, Target
+from variational.solvers.failure import NotConverged
+from variational.solvers.transfer import carry, give, interpolate
 
 pytestmark = pytest.mark.mpi
 H_0, FORCE, VOLTAGE = 0.514e-6, 4.4, 150.0

@@ -5,11 +5,11 @@ import pytest
 from dolfinx import fem
 from mpi4py import MPI
 
-from fingerpad.needs import plan
+from fingerpad.model.options import plan
+from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data
-from fingerpad.simulation import Simulation
-from variational import solver as solver_module
-from variational.continuation import StepFailed
+from variational.solvers import newton as solver_module
+from variational.solvers.continuation import StepFailed
 
 FINGER = {
     "geometry": {"ridge_count": 9},

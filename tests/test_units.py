@@ -2,8 +2,8 @@
 
 import pytest
 
-from fingerpad import scene as scenes
 from fingerpad.scene import SceneError
+from fingerpad.scene import scene as scenes
 from geometry.units import QUANTITIES, to_si
 from tests.test_light import HEAVY, without
 

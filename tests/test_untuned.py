@@ -8,8 +8,8 @@ import pytest
 from benchmarks import accuracy, hertz, limits, untuned
 from benchmarks.convergence import Limit
 from benchmarks.errors import DEFAULT
+from fingerpad.runs.batch import key
 from fingerpad.scene import Scene, start
-from fingerpad.study import key
 
 
 def test_the_same_scenes_are_drawn_each_time():

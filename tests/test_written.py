@@ -9,10 +9,10 @@ from functools import partial
 import numpy as np
 import pytest
 
-from fingerpad import ridge_cell
-from fingerpad.laws import Laws, used
+from fingerpad.reduced import ridge_cell
 from fingerpad.scene import Scene
-from fingerpad.written import digest
+from fingerpad.scene.law_source import digest
+from fingerpad.scene.laws import Laws, used
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap, Closure
 
@@ -98,7 +98,7 @@ def test_words_of_a_law_have_no_hash(tmp_path):
 def test_law_without_a_source_counts_in_its_process_alone():
     """Code of a session: the same key twice in one process, another one in the next."""
     code = (
-        "from fingerpad.laws import Laws\n"
+        "from fingerpad.scene.laws import Laws\n"
         "from variational.roughness.closure import AirGap, Closure\n"
         "class Mine(Closure):\n"
         "    def __call__(self, p_c): return AirGap(2e-6 + 0 * p_c)\n"

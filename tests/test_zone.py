@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad import full as run_module
-from fingerpad import needs
-from fingerpad.needs import plan
+from fingerpad.model import options
+from fingerpad.model.contact_zone import ContactZone, FingerExceeded, RestartRequired
+from fingerpad.model.options import plan
+from fingerpad.model.simulation import Simulation
+from fingerpad.runs import full as run_module
 from fingerpad.scene import from_data
-from fingerpad.simulation import Simulation
-from fingerpad.zone import Woken, Zone, ZoneExceeded
 from geometry.sizing import touching_ridges
 from tests.runs import run
-from variational.stability import Stability, StabilityCheck
+from variational.solvers.stability import Stability, StabilityCheck
 
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8}
 WAVELENGTH = 483e-6
@@ -70,7 +70,7 @@ def test_woken_run_says_what_it_was_asked(woken):
 def test_how_many_are_woken(half_arc, more):
     """Two on either side, a quarter of many, none where all can touch."""
     scene = from_data({"mesh": {"touching_half_arc": half_arc}})
-    zone = Zone.__new__(Zone)
+    zone = ContactZone.__new__(ContactZone)
     zone._scene = scene
     wider = zone._wider()
     if more is None:
@@ -101,7 +101,7 @@ def test_skin_that_comes_near_is_woken():
     simulation = brought_near(4 * WAVELENGTH, 8e-6)
     assert not simulation.observer.ridge_loads().length.any()
     with pytest.raises(
-        Woken, match="skin beyond the ridges that are meshed to touch is at a height of 8e-06 m"
+        RestartRequired, match="skin beyond the ridges that are meshed to touch is at a height of 8e-06 m"
     ) as wake:
         look(simulation)
     assert touching_ridges(wake.value.scene.geometry, wake.value.scene.mesh)[-1] == 6
@@ -118,7 +118,7 @@ def test_skin_beyond_all_ridges_may_come_near_but_not_touch(clearance, exceeded)
     simulation._zone._lowest_outside = lambda: clearance
     if not exceeded:
         return look(simulation)
-    with pytest.raises(ZoneExceeded, match="the finger has no more ridges"):
+    with pytest.raises(FingerExceeded, match="the finger has no more ridges"):
         look(simulation)
 
 
@@ -148,7 +148,7 @@ def test_half_that_is_not_stable_is_made_whole(half):
 def test_finger_made_whole_is_the_one_that_was_whole(half, tmp_path, monkeypatch):
     """Step for step and digit for digit."""
     folder, summary = half
-    monkeypatch.setattr(run_module, "plan", lambda scene: replace(needs.plan(scene), both_halves=True))
+    monkeypatch.setattr(run_module, "plan", lambda scene: replace(options.plan(scene), both_halves=True))
     assert press(tmp_path, 1.3e-3)["unknowns"] == summary["unknowns"]
     for name in ("steps", "ridges", "receptors", "coupling"):
         assert columns(folder, name) == columns(tmp_path, name), name

@@ -11,14 +11,14 @@ import numpy as np
 from dolfinx import fem
 from numpy.typing import NDArray
 
-from variational.carried import carried
-from variational.continuation import Attempt, Continuation, Target
-from variational.coupling import Coupling
-from variational.material import Material
+from variational.materials.material import Material
 from variational.problem import Interface, Problem
 from variational.quantities import Observer
 from variational.roughness.closure import Closure
-from variational.solver import Solver
+from variational.solvers.cell import carried
+from variational.solvers.continuation import Attempt, Continuation, Target
+from variational.solvers.coupling import Coupling
+from variational.solvers.newton import Solver
 from variational.surface import Surface
 
 Facets = NDArray[np.int32]
@@ -95,14 +95,15 @@ class Body:
             element: a name of :data:`variational.element.ELEMENTS`.
             points: Gauss points on a facet.
             force_scale: force per length (N/m) in which residuals are measured.
-            tolerance: see :class:`variational.solver.Solver`.
+            tolerance: see :class:`variational.solvers.newton.Solver`.
             held: facets that do not move sideways.
-            carried_sides: facets that move sideways with the bone (:mod:`variational.carried`), in place of ``held``.
+            carried_sides: facets that move sideways with the bone (:mod:`variational.solvers.cell`), in
+                place of ``held``.
             mirror: facets at x = 0 of the half of a body that is its own mirror image.
             coupling_tolerance: relative error of air gaps at which the loop over the scales ends.
             coupling_cap: most sweeps of that loop.
-            by_gap: see :class:`variational.coupling.Coupling`.
-            on_accept: called after each accepted step, see :class:`variational.continuation.Continuation`.
+            by_gap: see :class:`variational.solvers.coupling.Coupling`.
+            on_accept: called after each accepted step, see :class:`variational.solvers.continuation.Continuation`.
             touch_depth: how far the bone is lowered by displacement before force takes over (m).
             step_scale: factor on the largest steps of force, voltage and displacement.
 

@@ -6,13 +6,13 @@ At an equilibrium the residual (:mod:`~variational.problem`) is work free but fo
           = -R \cdot du^{bone} + \frac{\partial E}{\partial U^2}\, dU^2
           + \sum_j \frac{\partial E}{\partial d_{eq,j}}\, d d_{eq,j} - \int |t_t| \, |ds| \,dS
 
-with E strain energy and the attraction's potential, R the force on the bone, s the friction's anchor. The potential
-is proportional to U^2; its derivative is the work of the voltage source less what the charged gap keeps. An air gap
-that follows the pressure (:mod:`~variational.coupling`) does work as well. Work is taken by the trapezoidal rule, that
-of the air gaps as the mean of the energy's changes at both shapes: an air gap may jump tenfold while the skin stays. A
-point slips only while it is at the limit of the friction law, so its traction is the mean of the limits at both ends,
-whatever it bore before it slipped: that is of second order along smooth paths, as the rest is, and right where a step
-spans sticking and slipping or a reversal. What is left over,
+with E strain energy and the attraction's potential, R the force on the bone, s the friction's anchor. The potential is
+proportional to U^2; its derivative is the work of the voltage source less what the charged gap keeps. An air gap that
+follows the pressure (:mod:`~variational.solvers.coupling`) does work as well. Work is taken by the trapezoidal rule,
+that of the air gaps as the mean of the energy's changes at both shapes: an air gap may jump tenfold while the skin
+stays. A point slips only while it is at the limit of the friction law, so its traction is the mean of the limits at
+both ends, whatever it bore before it slipped: that is of second order along smooth paths, as the rest is, and right
+where a step spans sticking and slipping or a reversal. What is left over,
 
 .. math:: \text{released} = \text{external} + \text{voltage} + \text{air gap} - \Delta \text{stored} - \text{dissipated}
 
@@ -36,8 +36,8 @@ from dolfinx import fem
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from variational.electroadhesion import ELECTROSTATIC
-from variational.insulator import VACUUM_PERMITTIVITY
+from variational.attraction.electroadhesion import ELECTROSTATIC
+from variational.attraction.insulator import VACUUM_PERMITTIVITY
 from variational.problem import Problem
 from variational.quantities import SurfaceState
 
@@ -112,7 +112,7 @@ class EnergyBook:
     def _potential(self, surface: SurfaceState, d_eq: Array) -> Array:
         """Return the attraction's potential (J/m) at 1 V by ridge, shape (ridges,).
 
-        It is :func:`variational.electroadhesion.potential` in NumPy.
+        It is :func:`variational.attraction.electroadhesion.potential` in NumPy.
         """
         y, d = surface.y, d_eq[self._problem.surface.ridge, None]
         near, h_0 = np.minimum(y, d), self._problem.interface.h_0

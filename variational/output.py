@@ -20,8 +20,9 @@ from dolfinx import fem
 from dolfinx.io import VTXWriter
 from numpy.typing import NDArray
 
-from variational import compat, kinematics, stress
+from variational import compat, kinematics
 from variational.cellwise import Cellwise, owned_cells
+from variational.materials import stress
 from variational.problem import Problem
 
 Array = NDArray[np.float64]

@@ -8,14 +8,15 @@ Find u, equal to the bone's translation on its rim, with for all v alike
 The unknown is :math:`w = u - u^{bone}`, the displacement relative to the bone, which is a constant of the forms. A
 rigid translation then adds no digits to the strains: at 10 mm of sliding they are as exact as at none.
 
-P = dW/dF of a :mod:`~variational.material`, the volumetric part as the :mod:`~variational.element` has it, which may
-bring a pressure p and a second equation, p = K (J - 1) weakly; p_n and t_t: a law of :mod:`~variational.friction` and
-:mod:`~variational.contact` in one of the formulations :mod:`~variational.penalty`, :mod:`~variational.nitsche` (with
-terms of its own) and :mod:`~variational.augmented`; p_el: :mod:`~variational.electroadhesion`, written as the
-derivative of its potential. Without a voltage the attraction is left out, without a law of friction t_t is.
-Friction makes the derivative unsymmetric. The derivative may carry a shift :math:`\int \eta\, du \cdot v \,dS`, which
-is no part of the equations but of pseudo-transient continuation (:mod:`~variational.solver`). This module adds up
-forms and never solves.
+P = dW/dF of a :mod:`~variational.materials.material`, the volumetric part as the :mod:`~variational.element` has it,
+which may bring a pressure p and a second equation, p = K (J - 1) weakly; p_n and t_t: a law of
+:mod:`~variational.contact.friction` and :mod:`~variational.contact.formulation` in one of the formulations
+:mod:`~variational.contact.penalty`, :mod:`~variational.contact.nitsche` (with terms of its own) and
+:mod:`~variational.contact.augmented`; p_el: :mod:`~variational.attraction.electroadhesion`, written as the derivative
+of its potential. Without a voltage the attraction is left out, without a law of friction t_t is. Friction makes the
+derivative unsymmetric. The derivative may carry a shift :math:`\int \eta\, du \cdot v \,dS`, which is no part of the
+equations but of pseudo-transient continuation (:mod:`~variational.solvers.newton`). This module adds up forms and never
+solves.
 """
 
 from collections.abc import Mapping
@@ -27,14 +28,16 @@ import numpy as np
 import ufl
 from dolfinx import fem
 
-from variational import electroadhesion, jit, kinematics, stress
-from variational.contact import Contact, Formulation, History, Skin
+from variational import jit, kinematics
+from variational.attraction import electroadhesion
+from variational.contact.formulation import Contact, Formulation, History, Skin
+from variational.contact.friction import Friction, law_of
 from variational.element import ELEMENTS, at_centroid
-from variational.friction import Friction, law_of
-from variational.material import Material
-from variational.ogden import Ogden as Ogden
+from variational.materials import stress
+from variational.materials.material import Material
+from variational.materials.ogden import Ogden as Ogden
+from variational.materials.saint_venant import SaintVenant as SaintVenant
 from variational.pressure import LayerwisePressure
-from variational.saint_venant import SaintVenant as SaintVenant
 from variational.surface import Surface
 
 STICKS, SLIPS = 1e-9, -1e-9  # first guesses for points on the friction cone
@@ -83,7 +86,7 @@ class Problem:
         guess: constant, what points on the friction cone are first taken for: STICKS or SLIPS.
         ease: constant, part of the tangential stiffness of the contact that acts: 1 but on the way to an equilibrium.
         d_eq: equivalent air gap (m), one value a cell, read on the ridges.
-        anchor: accepted friction history (m), see :mod:`variational.friction`; None without friction.
+        anchor: accepted friction history (m), see :mod:`variational.contact.friction`; None without friction.
         multiplier: accepted contact pressure (Pa), read by an augmented Lagrangian.
         history: what the two were last accepted with, and where.
         contact: the projected tractions.

@@ -6,7 +6,7 @@ import numpy as np
 import ufl
 from numpy.typing import NDArray
 
-from variational.friction import CONE_ROUNDOFF
+from variational.contact.friction import CONE_ROUNDOFF
 from variational.problem import Problem
 
 Array = NDArray[np.float64]
@@ -41,7 +41,7 @@ class SurfaceState:
     x: Array
     y: Array
     gap: Array
-    """Length (m) that is negative in contact, see :meth:`variational.contact.Formulation.opening`."""
+    """Length (m) that is negative in contact, see :meth:`variational.contact.formulation.Formulation.opening`."""
     anchor: Array
     p_n: Array
     t_t: Array

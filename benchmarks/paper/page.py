@@ -8,7 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from benchmarks.paper.statement import HOLDS, Statement
-from fingerpad.files import replace, replace_json
+from fingerpad.io.files import replace, replace_json
 
 _PUBLISHED = Path(__file__).parent / "experiment" / "published.csv"
 _NUMBERS = Path("paper", "paper.json")

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.traces import FORCES, SITES, VOLTAGES, trace
-from fingerpad.reach import by_rule
+from fingerpad.model.touching import by_rule
 from fingerpad.scene import Scene, from_data
 
 SIZE = 10e-6  # m, contact size

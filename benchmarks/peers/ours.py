@@ -12,10 +12,10 @@ from geometry.bodies import ridge
 from geometry.mesh import TaggedMesh, load
 from variational.body import Body
 from variational.compat import cell_geometry
-from variational.contact import History
-from variational.penalty import Penalty
+from variational.contact.formulation import History
+from variational.contact.penalty import Penalty
 from variational.problem import Interface, Ogden
-from variational.solver import Control
+from variational.solvers.newton import Control
 
 _MM = 1e-3  # m
 _STIFFNESS = 1e9  # Pa/m in a N/mm^3

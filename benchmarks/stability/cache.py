@@ -9,8 +9,8 @@ from dataclasses import asdict
 from pathlib import Path
 
 from benchmarks.stability.case import Case, Outcome
-from fingerpad import processes
-from fingerpad.processes import Pool
+from fingerpad.runs import processes
+from fingerpad.runs.processes import Pool
 
 
 class Cache:

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, replace
 from typing import Literal
 
-from variational.augmented import AugmentedLagrangian
-from variational.contact import Formulation
-from variational.nitsche import Nitsche
-from variational.penalty import Penalty
+from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.formulation import Formulation
+from variational.contact.nitsche import Nitsche
+from variational.contact.penalty import Penalty
 
 Status = Literal["converged", "continuation", "failed"]
 REFERENCE_SIZE = 1.25e-6

@@ -6,10 +6,9 @@ CASE is JSON, and so is the outcome, the last line printed; after LIMIT seconds 
 
 The bone's rim is the strip's flat top. The lateral faces are carried by the neighbours: they move sideways with the
 bone and freely up and down. A free stump of soft dermis under a stiff epidermis tips over before it slips; faces glued
-to the bone would hold the epidermis up, which is 24 times stiffer than the dermis that should. Carried ridges behave
-like one of many equal ones, and 4.4 N/m on each give the finger's contact length and friction. Only where a trailing
-ridge is to snap off, or dermis to bulge, have they to be free.
-"""
+to the bone would hold the epidermis up, which is 24 times stiffer than the dermis that should. Carried ridges
+behave like one of many equal ones, and 4.4 N/m on each give the finger's contact length and friction. Only where a
+trailing ridge is to snap off, or dermis to bulge, have they to be free. """
 
 import json
 import sys
@@ -26,20 +25,20 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from benchmarks.stability.case import FORMULATIONS, Case, Outcome
-from fingerpad.processes import limit_processor_time
+from fingerpad.runs.processes import limit_processor_time
 from geometry import strip, tags
 from geometry.mesh import TaggedMesh, load
 from geometry.parameters import Fingertip, MeshSize
 from variational import compat, jit
-from variational.carried import carried
-from variational.continuation import Attempt, Continuation, StepFailed, Target
-from variational.coupling import Coupling
-from variational.failure import NotConverged
 from variational.kinematics import deformation_gradient
 from variational.problem import Interface, Ogden, Problem
 from variational.quantities import Observer, SurfaceState
 from variational.roughness.bam import BearingArea
-from variational.solver import Control, Solver
+from variational.solvers.cell import carried
+from variational.solvers.continuation import Attempt, Continuation, StepFailed, Target
+from variational.solvers.coupling import Coupling
+from variational.solvers.failure import NotConverged
+from variational.solvers.newton import Control, Solver
 from variational.surface import Surface
 
 _H_0 = 0.514e-6  # m

@@ -10,7 +10,7 @@ from benchmarks.stability.case import Case, Outcome
 from benchmarks.stability.loop import Loop, loop
 from benchmarks.stability.pictures import NAMES, SYMBOLS, tick
 from benchmarks.stability.plan import Chart, Named, Panel
-from fingerpad.files import replace
+from fingerpad.io.files import replace
 from variational.roughness.bam import BearingArea
 
 _INTRODUCTION = """# Where the solver converges

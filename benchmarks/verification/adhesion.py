@@ -25,12 +25,12 @@ from benchmarks.verification import dugdale
 from benchmarks.verification.case import Case, Outcome, Row
 from benchmarks.verification.over_screen import formulations, over_screen, plane_strain_modulus
 from geometry.bodies import block, pad
-from variational.continuation import Target
-from variational.electroadhesion import ELECTROSTATIC
-from variational.insulator import VACUUM_PERMITTIVITY
-from variational.penalty import Penalty
+from variational.attraction.electroadhesion import ELECTROSTATIC
+from variational.attraction.insulator import VACUUM_PERMITTIVITY
+from variational.contact.penalty import Penalty
 from variational.problem import Interface, SaintVenant
-from variational.stability import StabilityCheck
+from variational.solvers.continuation import Target
+from variational.solvers.stability import StabilityCheck
 
 _H_0 = 0.514e-6
 _CONTACT = Penalty(1e12, 1e11)

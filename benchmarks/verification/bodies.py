@@ -13,10 +13,10 @@ from petsc4py import PETSc
 from geometry import tags
 from geometry.mesh import TaggedMesh, load
 from variational import jit
-from variational.material import Material
-from variational.penalty import Penalty
+from variational.contact.penalty import Penalty
+from variational.materials.material import Material
 from variational.problem import Interface, Problem
-from variational.solver import Solver
+from variational.solvers.newton import Solver
 from variational.surface import Surface
 
 Array = NDArray[np.float64]

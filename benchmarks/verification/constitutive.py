@@ -26,9 +26,10 @@ from benchmarks.verification import principal
 from benchmarks.verification.case import Case, Outcome, Row, worst
 from benchmarks.verification.points import Points
 from benchmarks.verification.principal import Solid, skin
-from variational import kinematics, ogden
-from variational.material import Material
-from variational.ogden import Ogden
+from variational import kinematics
+from variational.materials import ogden
+from variational.materials.material import Material
+from variational.materials.ogden import Ogden
 
 Array = NDArray[np.float64]
 TABLE = {"SC": (86.76e3, -14.53), "VE": (61.75e3, -14.53), "dermis": (2.55e3, -14.53), "subcutis": (25e3, 5.0)}

@@ -24,7 +24,8 @@ from benchmarks.verification.bodies import FreeSolver, body, free_problem
 from benchmarks.verification.case import Case, Outcome, Row
 from geometry import tags
 from geometry.bodies import block
-from variational import compat, jit, kinematics, stress
+from variational import compat, jit, kinematics
+from variational.materials import stress
 from variational.problem import Ogden, Problem
 
 Array = NDArray[np.float64]

@@ -22,8 +22,8 @@ import numpy as np
 import ufl
 from scipy.optimize import brentq
 
-from variational.electroadhesion import Attraction
-from variational.insulator import VACUUM_PERMITTIVITY
+from variational.attraction.electroadhesion import Attraction
+from variational.attraction.insulator import VACUUM_PERMITTIVITY
 
 
 def constant_attraction(ramp: float) -> Attraction:

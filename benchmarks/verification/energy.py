@@ -16,11 +16,11 @@ from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import load
 from variational.body import Body
+from variational.contact.penalty import Penalty
 from variational.energy import Balance, EnergyBook
-from variational.penalty import Penalty
 from variational.problem import Interface, Ogden
 from variational.quantities import Observer
-from variational.solver import Control, Solver
+from variational.solvers.newton import Control, Solver
 
 D_EQ, VOLTAGE = 2e-6, 100.0
 PHASES = ("press", "charge", "slide", "back", "discharge", "lift")

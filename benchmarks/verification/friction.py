@@ -27,12 +27,12 @@ from matplotlib.figure import Figure
 from benchmarks.verification.case import Case, Outcome, Row
 from benchmarks.verification.over_screen import Array, formulations, over_screen, profile
 from geometry.bodies import block, pad, ridge
-from variational.augmented import AugmentedLagrangian
-from variational.contact import Formulation
-from variational.continuation import Continuation, Target
-from variational.nitsche import Nitsche
-from variational.penalty import Penalty
+from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.formulation import Formulation
+from variational.contact.nitsche import Nitsche
+from variational.contact.penalty import Penalty
 from variational.problem import Interface, Ogden, SaintVenant
+from variational.solvers.continuation import Continuation, Target
 
 _H_0 = 0.514e-6
 _SKIN = Ogden(86.76e3, -14.53, 0.48)

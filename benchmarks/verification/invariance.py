@@ -24,10 +24,10 @@ from benchmarks.verification.points import Points
 from benchmarks.verification.principal import moduli
 from geometry import tags
 from geometry.bodies import block
-from variational import saint_venant
 from variational.element import ELEMENTS
+from variational.materials import saint_venant
 from variational.problem import Ogden, Problem, SaintVenant
-from variational.solver import Solver
+from variational.solvers.newton import Solver
 
 Array = NDArray[np.float64]
 NAIL = (170e6, 0.3)

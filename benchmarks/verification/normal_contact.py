@@ -33,10 +33,10 @@ from scipy.optimize import brentq
 from benchmarks.verification.case import Case, Outcome, Row
 from benchmarks.verification.over_screen import Array, formulations, over_screen, plane_strain_modulus, profile
 from geometry.bodies import block, foot, pad
-from variational.augmented import AugmentedLagrangian
-from variational.continuation import Target
-from variational.penalty import Penalty
+from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.penalty import Penalty
 from variational.problem import Interface, SaintVenant
+from variational.solvers.continuation import Target
 
 YOUNG, NU, RADIUS, HALF_WIDTH = 1e6, 0.3, 1.0, 0.5e-3
 SPAN = 50 * HALF_WIDTH

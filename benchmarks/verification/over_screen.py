@@ -10,15 +10,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from geometry import tags
 from geometry.mesh import load
-from variational.augmented import AugmentedLagrangian
 from variational.body import Body
-from variational.contact import Formulation
-from variational.continuation import Continuation
-from variational.material import Material
-from variational.nitsche import Nitsche
-from variational.penalty import Penalty
+from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.formulation import Formulation
+from variational.contact.nitsche import Nitsche
+from variational.contact.penalty import Penalty
+from variational.materials.material import Material
 from variational.problem import Interface
 from variational.roughness.closure import AirGap, Closure
+from variational.solvers.continuation import Continuation
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from benchmarks.verification.case import Case, Outcome, Row
-from fingerpad.files import replace, replace_json
+from fingerpad.io.files import replace, replace_json
 
 Results = Mapping[str, Sequence[tuple[Case, Outcome]]]
 _HEADER = """# Verification

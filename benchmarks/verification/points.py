@@ -8,8 +8,9 @@ from dolfinx import fem, mesh
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from variational import compat, jit, stress
-from variational.material import Material
+from variational import compat, jit
+from variational.materials import stress
+from variational.materials.material import Material
 
 Array = NDArray[np.float64]
 

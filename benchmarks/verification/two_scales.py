@@ -18,10 +18,10 @@ from geometry import tags
 from geometry.bodies import block
 from geometry.mesh import load
 from variational.body import Body
-from variational.continuation import Target
-from variational.penalty import Penalty
+from variational.contact.penalty import Penalty
 from variational.problem import Interface, SaintVenant
 from variational.roughness.bam import BearingArea
+from variational.solvers.continuation import Target
 
 _SIDE = 0.25e-3  # m, width and height
 _YOUNG = 1e10  # Pa

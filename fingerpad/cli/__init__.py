@@ -13,9 +13,9 @@ from difflib import get_close_matches
 from importlib import metadata
 from pathlib import Path
 
-from fingerpad import terminal
 from fingerpad.installed import OPTIONAL, needed_by
-from fingerpad.sentences import SceneError, clip
+from fingerpad.io import terminal
+from fingerpad.scene.messages import SceneError, clip
 
 COMMANDS = {
     "estimate": "friction over force and voltage by a closed form, in seconds, without finite elements",

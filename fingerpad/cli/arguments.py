@@ -9,10 +9,11 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn
 
-from fingerpad import terminal
 from fingerpad.cli.keys import every
-from fingerpad.scene import Scene, check, load, override
-from fingerpad.sentences import SceneError, clip
+from fingerpad.io import terminal
+from fingerpad.model.check import check
+from fingerpad.scene import Scene, load, override
+from fingerpad.scene.messages import SceneError, clip
 
 _PETSC = "-fingerpad_"  # prefix of PETSc's options
 _NEAR = 0.6  # likeness, from 0 to 1, at which an option may have been meant

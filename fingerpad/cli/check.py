@@ -4,14 +4,14 @@ import importlib.util
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from fingerpad.budget import estimate
 from fingerpad.cli import cost
 from fingerpad.cli.arguments import Parser, say, scene_of
-from fingerpad.folder import check_folder
-from fingerpad.laws import used
-from fingerpad.needs import Plan, plan
-from fingerpad.reach import by_rule
+from fingerpad.io.folder import check_folder
+from fingerpad.model.memory import estimate
+from fingerpad.model.options import ModelOptions, plan
+from fingerpad.model.touching import by_rule
 from fingerpad.scene import Load, Scene
+from fingerpad.scene.laws import used
 from geometry.sizing import touching_ridges
 
 _EXAMPLES = """
@@ -61,7 +61,7 @@ def _aims(load: Load) -> Iterator[str]:
         yield f"bone sideways to {load.bone_x * 1e3:g} mm{', or until full slip' if load.until_full_slip else ''}"
 
 
-def _model(scene: Scene, needed: Plan) -> Iterator[str]:
+def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
     found, touching = estimate(scene, needed), by_rule(scene)
     ridges = touching_ridges(touching.geometry, touching.mesh)
     given = scene.mesh.touching_half_arc is not None
@@ -72,7 +72,7 @@ def _model(scene: Scene, needed: Plan) -> Iterator[str]:
     yield f"some {found.memory * 1e-9:.2g} GB of memory, of the {scene.numerics.memory * 1e-9:.3g} GB allowed"
 
 
-def _cost(scene: Scene, needed: Plan) -> Iterator[str]:
+def _cost(scene: Scene, needed: ModelOptions) -> Iterator[str]:
     found = cost.expected(scene, needed)
     yield f"some {_about(found.factorisations)} factorisations"
     yield f"some {_duration(found.seconds)} of processor time, by a rule from kept runs (fingerpad/cli/cost.py)"
@@ -93,7 +93,7 @@ def _about(value: float) -> str:
     return f"{rounded:,.0f}".replace(",", " ") if rounded >= 10 else f"{rounded:g}"
 
 
-def _picture(scene: Scene, needed: Plan, folder: Path) -> str:
+def _picture(scene: Scene, needed: ModelOptions, folder: Path) -> str:
     """Draw the mesh; return what was drawn, or why nothing was."""
     missing = [name for name in ("gmsh", "matplotlib") if importlib.util.find_spec(name) is None]
     if missing:

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from fingerpad import closed_form
-from fingerpad.api import MODELS, solved
 from fingerpad.cli.arguments import Parser, path, positive, say, scene_of
-from fingerpad.folder import check_folder
-from fingerpad.result import Result
+from fingerpad.io.folder import check_folder
+from fingerpad.io.result import Result
+from fingerpad.reduced import cylinders
+from fingerpad.runs.solve import MODELS, solved
 from fingerpad.scene import Scene
-from fingerpad.sentences import SceneError
+from fingerpad.scene.messages import SceneError
 
 _EXAMPLES = """
     fingerpad compare --set voltage=100
@@ -42,16 +42,16 @@ def main(argv: Sequence[str]) -> int:
     scene = scene_of(args)
     check_folder(args.out)
     footprint = _footprint(scene, args.contact_length, args.ridges, args.run)
-    from fingerpad import entry
+    from fingerpad import startup
 
-    entry.start(petsc)
-    from fingerpad import ladder
+    startup.start(petsc)
+    from fingerpad.runs import compare
 
     def answer(model: str) -> Result:
         if model == "cylinders":
-            return closed_form.solve(scene, footprint)
+            return cylinders.solve(scene, footprint)
         if model == "full" and args.from_smooth:
-            return ladder.started(scene, args.out)
+            return compare.started(scene, args.out)
         return solved(scene, model, args.out / "full" if model == "full" else args.out, lines=True)
 
     def answer_or_refusal(model: str) -> Result:
@@ -61,17 +61,15 @@ def main(argv: Sequence[str]) -> int:
             return Result(scene, model, None, None, None, failure=str(error))
 
     results = [answer_or_refusal(model) for model in MODELS if model in args.model]
-    say(ladder.table(results))
+    say(compare.table(results))
     return max(1 if result.failure else 0 for result in results)
 
 
-def _footprint(
-    scene: Scene, length: float | None, ridges: int | None, run: Path | None
-) -> closed_form.Footprint | None:
+def _footprint(scene: Scene, length: float | None, ridges: int | None, run: Path | None) -> cylinders.Footprint | None:
     if run is not None:
         if length is not None or ridges is not None:
             raise SceneError("--run is given and a contact length too; give one of the two")
-        return closed_form.from_run(scene, run)
+        return cylinders.from_run(scene, run)
     if (length is None) != (ridges is None):
         raise SceneError("one of --contact-length and --ridges is given without the other; give both or none")
-    return None if length is None or ridges is None else closed_form.given(length, ridges)
+    return None if length is None or ridges is None else cylinders.given(length, ridges)

@@ -12,8 +12,8 @@ are those of ``docs/chart.json``. ``tests/test_command.py`` derives all of them 
 import math
 from dataclasses import dataclass
 
-from fingerpad.budget import estimate
-from fingerpad.needs import Plan
+from fingerpad.model.memory import estimate
+from fingerpad.model.options import ModelOptions
 from fingerpad.scene import Load, Scene
 
 RUNS, FORCE, VOLTAGE = 160.0, 0.33, 0.74
@@ -31,7 +31,7 @@ class Cost:
     """Of the processor (s), the set-up included."""
 
 
-def expected(scene: Scene, needed: Plan) -> Cost:
+def expected(scene: Scene, needed: ModelOptions) -> Cost:
     """Return what the path of a scene's loads will take on the mesh that it starts from."""
     f_ext, voltage, total = 0.0, 0.0, 0.0
     for load in scene.loads():

@@ -4,12 +4,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from fingerpad import closed_form
 from fingerpad.cli import ranges, tables
 from fingerpad.cli.arguments import Parser, path, say, scene_of, writable
+from fingerpad.io.quantities import PER_LENGTH
+from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene, from_data
-from fingerpad.sentences import SceneError
-from fingerpad.words import PER_LENGTH
+from fingerpad.scene.messages import SceneError
 
 # Largest errors at full slip against the full runs of the default finger in docs/ladder.json, over their forces (N/m)
 # and voltages (V); tests/test_command.py compares.
@@ -84,7 +84,7 @@ def grid(scene: Scene, forces: Sequence[float], voltages: Sequence[float]) -> tu
         for voltage in voltages:
             row: dict[str, Any] = {"f_ext": f_ext, "voltage": voltage}
             try:
-                found = closed_form.solve(_with(scene, f_ext=f_ext, voltage=voltage)).full_slip
+                found = cylinders.solve(_with(scene, f_ext=f_ext, voltage=voltage)).full_slip
                 row |= {c.key: getattr(found, c.key) for c in _COLUMNS if c.key not in row}
             except SceneError as error:
                 lost.append(f"At {f_ext:g} N/m and {voltage:g} V: {error}.")

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from fingerpad.cli.arguments import Parser, path, say, scene_of, writable
-from fingerpad.sentences import SceneError
+from fingerpad.scene.messages import SceneError
 
 _EXAMPLES = """
     fingerpad mesh --out finger.msh --plot finger.png

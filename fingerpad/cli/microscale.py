@@ -9,7 +9,7 @@ import numpy as np
 from fingerpad.cli import ranges, tables
 from fingerpad.cli.arguments import Parser, path, say, scene_of, writable
 from fingerpad.scene import Scene, from_data
-from fingerpad.sentences import SceneError
+from fingerpad.scene.messages import SceneError
 
 _PRESSURES = "1e3:1e6:13:log"
 _COLUMNS = (

@@ -7,7 +7,7 @@ from typing import Any
 from fingerpad.cli.arguments import Parser, say
 from fingerpad.cli.keys import Key, every
 from fingerpad.scene import Scene
-from fingerpad.sentences import SceneError, clip
+from fingerpad.scene.messages import SceneError, clip
 
 _WIDTH = 120
 _EXAMPLES = """

@@ -4,7 +4,7 @@ import contextlib
 from pathlib import Path
 from typing import Any
 
-with contextlib.chdir("/"):  # matplotlibrc of the current folder is not obeyed, see fingerpad.entry
+with contextlib.chdir("/"):  # matplotlibrc of the current folder is not obeyed, see fingerpad.startup
     import matplotlib
 
 import numpy as np

@@ -8,7 +8,7 @@ import re
 
 import numpy as np
 
-from fingerpad.sentences import SceneError, clip
+from fingerpad.scene.messages import SceneError, clip
 
 _MOST = 10_000  # values of one range
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"

@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 
-from fingerpad import terminal
-from fingerpad.api import MODELS, solved
 from fingerpad.cli.arguments import Parser, say, scene_of
-from fingerpad.folder import check_folder
-from fingerpad.sentences import SceneError
+from fingerpad.io import terminal
+from fingerpad.io.folder import check_folder
+from fingerpad.runs.solve import MODELS, solved
+from fingerpad.scene.messages import SceneError
 
 _EXAMPLES = """
     fingerpad run --set f_ext="50 N/m" --set voltage=150 --out results/mine
@@ -33,11 +33,11 @@ def main(argv: Sequence[str]) -> int:
             raise SceneError(f"{petsc[0]} is given and --model is cylinders, which solves nothing by PETSc")
         say(str(solved(scene, args.model, args.out if terminal.rank() == 0 else None)))
         return 0
-    from fingerpad.entry import start
+    from fingerpad.startup import start
 
     start(petsc)
     # PETSc has its options from here on.
-    from fingerpad.full import exit_code
+    from fingerpad.runs.full import exit_code
 
     result = solved(scene, args.model, args.out, lines=True)
     if args.model != "full":

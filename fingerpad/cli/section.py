@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.needs import Plan
-from fingerpad.reach import by_rule
+from fingerpad.model.options import ModelOptions
+from fingerpad.model.touching import by_rule
 from fingerpad.scene import Scene
-from fingerpad.sentences import SceneError
+from fingerpad.scene.messages import SceneError
 from geometry import tags
 from geometry.profiles import GeometryError
 
@@ -69,7 +69,7 @@ def meshed(scene: Scene, receptors: bool, half: bool) -> Iterator[Any]:
         gmsh.finalize()
 
 
-def section(scene: Scene, needed: Plan) -> Section:
+def section(scene: Scene, needed: ModelOptions) -> Section:
     """Return the mesh of what a run of a scene would hold, for a picture."""
     with meshed(scene, needed.receptors, not needed.both_halves) as gmsh:
         return _read(gmsh)

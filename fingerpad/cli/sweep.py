@@ -4,14 +4,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from fingerpad.api import MODELS
 from fingerpad.cli import ranges
 from fingerpad.cli.arguments import Parser, positive, say
-from fingerpad.folder import check_folder
-from fingerpad.grid import sweep
-from fingerpad.reading import plain, put, read
+from fingerpad.io.folder import check_folder
+from fingerpad.runs.solve import MODELS
+from fingerpad.runs.sweep import sweep
 from fingerpad.scene import from_data, override
-from fingerpad.sentences import SceneError, clip, show
+from fingerpad.scene.messages import SceneError, clip, show
+from fingerpad.scene.reading import plain, put, read
 
 _EXAMPLES = """
     fingerpad sweep --over voltage=0:200:5 --over f_ext=25,75 --jobs 2 --out results/sweep

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from fingerpad.files import replace
+from fingerpad.io.files import replace
 
 
 @dataclass(frozen=True)

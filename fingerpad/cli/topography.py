@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, path, positive, say, writable
-from fingerpad.sentences import SceneError, clip
+from fingerpad.scene.messages import SceneError, clip
 from variational.roughness.heightfile import UNITS, Found, is_plain, scan
 from variational.roughness.spectrum import Fit, power_spectrum, roughness_table
 from variational.roughness.topography import distribution

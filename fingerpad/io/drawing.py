@@ -1,0 +1,192 @@
+"""The pictures of a run from its states and views, each under a title that names the state it shows; on rank 0."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from fingerpad.io import pictures, titles
+from fingerpad.io.states import PREFIXES, WORDS, before_sliding, named, partial_slip
+from fingerpad.io.views import Profile, View
+from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from variational.output import Snapshot
+
+_PATH, _FINAL = "path on the starting mesh", "final mesh"
+_TITLES = {name: words.capitalize() for name, words in WORDS.items()}
+KINDS = ("surface", "finger", "history")
+
+
+class End(NamedTuple):
+    """The finger at the end of a load."""
+
+    state: ContactState
+    snapshot: "Snapshot"
+    sites: NDArray[np.float64] | None
+    """Current places (m) of the Merkel sites, shape (sites, 2); None where there are none."""
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """What a run's pictures are drawn from."""
+
+    mu_0: float | None
+    """Friction coefficient; None where the law of friction is not Coulomb's."""
+    states: Sequence[ContactState]
+    profiles: Mapping[int, Profile]
+    """The skin by step."""
+    ends: Mapping[str, End]
+    """By load."""
+    finer: Mapping[str, View]
+    """Normal contact and full slip on another mesh than the path's, by their names in :mod:`fingerpad.io.states`."""
+    starting_size: float | None
+    """Contact size (m) of the mesh of the path, where an accuracy was asked for."""
+
+    def write(self, folder: Path) -> None:
+        """Write every picture and its arrays into a folder."""
+        for load, end in self.ends.items():
+            _keep(folder / f"finger_{load.replace(' ', '_')}.npz", end.snapshot, end.sites)
+            self._finger(folder / f"finger_{load.replace(' ', '_')}.png", f"After {load}", *end, self._path_note())
+        for name, view in self.finer.items():
+            if view.snapshot is not None:
+                words = WORDS[name].replace(" ", "_")
+                _keep(folder / f"finger_{words}.npz", view.snapshot, view.merkel)
+                self._final(folder / f"finger_{words}.png", name)
+        if self._slides():
+            np.savez_compressed(folder / "surface.npz", **self._arrays())
+            self.figure("surface", folder / "surface.png")
+            self.figure("history", folder / "history.png")
+
+    def figure(self, kind: str, path: Path | None = None) -> Figure:
+        """Draw a picture, and write it where a path is given.
+
+        Args:
+            kind: one of :data:`KINDS`: the skin in normal contact, partial and full slip, the deformed finger at full
+                slip or else at the end, friction and contact length over sliding.
+            path: of the PNG file.
+
+        Raises:
+            ValueError: another kind, or a history that has no such picture.
+        """
+        if kind == "finger":
+            return self._last_finger(path)
+        if kind == "surface":
+            profiles = self._along()
+            if not profiles:
+                raise ValueError("the run has no state with skin on the screen to draw")
+            conditions = titles.conditions_of([state.row() for _, state, _ in self._shown().values()], self.mu_0)
+            return pictures.surface(path, list(profiles.values()), conditions)
+        if kind != "history":
+            raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(KINDS)}")
+        if not self._slides():
+            raise ValueError("the run has no history of sliding; the bone never moved sideways with skin on the screen")
+        shown = [state.row() for state in self.states[len(before_sliding(self.states)) - 1 :]]
+        conditions = _joined(titles.conditions_of(shown, self.mu_0), self._path_note())
+        return pictures.history(path, shown, conditions, self.mu_0)
+
+    def _slides(self) -> bool:
+        return len(before_sliding(self.states)) not in (0, len(self.states))
+
+    def _path_note(self) -> str:
+        return "" if self.starting_size is None else _note(_PATH, self.starting_size)
+
+    def _last_finger(self, path: Path | None) -> Figure:
+        final = next((name for name in ("full_slip", "charged") if name in self.finer), None)
+        if final is not None and self.finer[final].snapshot is not None:
+            return self._final(path, final)
+        if not self.ends:
+            raise ValueError("the result has no finger to draw: no load was reached, or it was read from files")
+        load, end = list(self.ends.items())[-1]
+        return self._finger(path, f"After {load}", *end, self._path_note())
+
+    def _final(self, path: Path | None, name: str) -> Figure:
+        view = self.finer[name]
+        assert view.snapshot is not None
+        return self._finger(
+            path, _TITLES[name], view.state, view.snapshot, view.merkel, _note(_FINAL, view.mesh.contact)
+        )
+
+    def _finger(
+        self,
+        path: Path | None,
+        title: str,
+        state: ContactState,
+        snapshot: "Snapshot",
+        sites: NDArray[np.float64] | None,
+        note: str,
+    ) -> Figure:
+        conditions = titles.conditions(state.f_ext, state.voltage, self.mu_0, state.bone_x)
+        return pictures.finger(path, snapshot, sites, _joined(f"{title}: {conditions}", note))
+
+    def _shown(self) -> "dict[str, tuple[str, ContactState, View | None]]":
+        """Return the states along whose skin is drawn: title, state, and its view on the final mesh if there is one."""
+        found, partial = named(self.states), partial_slip(self.states)
+        shown = {"normal": (_TITLES["charged"], found["charged"])} if "charged" in found else {}
+        if partial is not None:
+            shown["partial"] = ("Partial slip", partial)
+        if "full_slip" in found:
+            shown["slip"] = _TITLES["full_slip"], found["full_slip"]
+        elif self._slides():
+            shown["slip"] = "Last state", self.states[-1]
+        final = {PREFIXES[name]: view for name, view in self.finer.items() if view.profile is not None}
+        return {
+            name: (title, final[name].state if name in final else state, final.get(name))
+            for name, (title, state) in shown.items()
+        }
+
+    def steps_along(self) -> list[int]:
+        """Return the steps of the states along whose skin is drawn."""
+        return [state.step for _, state, _ in self._shown().values()]
+
+    def _along(self) -> dict[str, pictures.SurfaceProfile]:
+        profiles = {}
+        for name, (title, state, view) in self._shown().items():
+            if view is not None and view.profile is not None:
+                profiles[name] = _along(view.profile, title, state, _note(_FINAL, view.mesh.contact))
+            elif state.step not in self.profiles:
+                raise ValueError("the result was read from files, which hold no skin; surface.png beside them shows it")
+            else:
+                profiles[name] = _along(self.profiles[state.step], title, state, self._path_note())
+        return profiles
+
+    def _arrays(self) -> dict[str, Any]:
+        return {
+            f"{name}_{field}": value
+            for name, profile in self._along().items()
+            for field, value in vars(profile).items()
+            if isinstance(value, np.ndarray)
+        }
+
+
+def _keep(path: Path, snapshot: "Snapshot", sites: NDArray[np.float64] | None) -> None:
+    shown: dict[str, Any] = {} if sites is None else {"merkel": sites}
+    np.savez_compressed(path, **shown, **vars(snapshot))
+
+
+def _note(mesh: str, contact_size: float) -> str:
+    return f"{mesh}, contact size {contact_size * 1e6:.3g} µm"
+
+
+def _joined(title: str, note: str) -> str:
+    return f"{title}\n{note}" if note else title
+
+
+def _along(profile: "Profile", title: str, state: ContactState, note: str) -> pictures.SurfaceProfile:
+    """Return the skin sorted along each ridge, a NaN between ridges."""
+    skin = profile.skin(np.arange(len(profile.d_eq)))
+    gap = np.broadcast_to(profile.d_eq[profile.ridge][:, None], skin.x.shape)
+    columns: list[list[Any]] = [[] for _ in range(6)]
+    for k in np.unique(profile.ridge):
+        mine = profile.ridge == k
+        order = np.argsort(skin.x[mine], axis=None)
+        for column, part in zip(columns, (skin.x, skin.y, skin.p_n, skin.t_t, skin.p_el, gap), strict=True):
+            column += [part[mine].ravel()[order], [np.nan]]
+    along = (np.concatenate(column) for column in columns)
+    given = {name: getattr(state, name) for name in ("f_ext", "voltage", "bone_x", "contact_length")}
+    arrays: dict[str, Any] = dict(zip(("x", "y", "p", "t", "p_el", "d_eq"), along, strict=True))
+    return pictures.SurfaceProfile(title=title, note=note, **arrays, **given)

@@ -1,0 +1,41 @@
+"""The folder that results are to go to, checked before anything is computed."""
+
+import os
+from pathlib import Path
+
+from fingerpad.scene.messages import SceneError, clip
+
+_FILES = 160  # bytes that the longest name of a file in the folder takes of a path
+_PATH = 80  # characters of a path in a sentence
+
+
+def check_folder(folder: Path) -> None:
+    """Refuse a folder that cannot be made or written to; nothing is made.
+
+    Raises:
+        SceneError: why not.
+    """
+    name, text = f"--out {clip(str(folder), _PATH)}", str(folder)
+    try:
+        text.encode("utf-8")
+    except UnicodeEncodeError:
+        raise SceneError(f"{name} is not UTF-8; give a folder whose name is") from None
+    if "\0" in text:
+        raise SceneError(f"{name} has a zero byte in it; give a folder whose name has none")
+    try:
+        absolute = Path(os.path.abspath(folder))
+        there = next(place for place in (absolute, *absolute.parents) if os.path.lexists(place))
+        longest, whole = (
+            os.pathconf(there if there.is_dir() else "/", kind) for kind in ("PC_NAME_MAX", "PC_PATH_MAX")
+        )
+    except OSError as error:
+        raise SceneError(f"{name} cannot be a folder: {error.strerror}") from None
+    if max(len(os.fsencode(part)) for part in absolute.parts) > longest:
+        raise SceneError(f"{name} is too long; a name can have {longest} bytes")
+    if len(os.fsencode(absolute)) + _FILES > whole:
+        raise SceneError(f"{name} is too long; a path can have {whole} bytes, of which files take {_FILES}")
+    if not there.is_dir():
+        which = "it" if there == absolute else clip(str(there), _PATH)
+        raise SceneError(f"{name} cannot be a folder, since {which} is a file; give another one")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise SceneError(f"{name} cannot be written to: {clip(str(there), _PATH)} is read-only; give another one")

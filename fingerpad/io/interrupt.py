@@ -1,0 +1,102 @@
+"""A run that is asked to stop ends after the step it is at, with everything on disk.
+
+SIGINT, SIGTERM and SIGHUP ask. Open MPI's mpirun kills its ranks a second after any of these; SIGUSR1 and SIGUSR2 it
+passes on, and environment/run sends them in place of SIGINT and SIGTERM.
+"""
+
+import os
+import signal
+import stat
+import sys
+import threading
+import time
+from types import FrameType, TracebackType
+from typing import Any
+
+from mpi4py import MPI
+
+from variational.solvers.continuation import StepFailed
+
+_MEANING: dict[int, signal.Signals] = {
+    signal.SIGINT: signal.SIGINT,
+    signal.SIGTERM: signal.SIGTERM,
+    signal.SIGHUP: signal.SIGHUP,
+    signal.SIGUSR1: signal.SIGINT,
+    signal.SIGUSR2: signal.SIGTERM,
+}
+_ONE = 1.0  # s within which signals are one: terminals, launchers and batch systems send several
+
+
+class Interrupted(StepFailed):
+    """A run that was asked to stop; nothing is wrong with its scene.
+
+    Attributes:
+        signal: that asked.
+    """
+
+    def __init__(self, number: signal.Signals, step: int) -> None:
+        """Say what is there after a step."""
+        super().__init__(
+            f"stopped by {number.name} after step {step}; every accepted step is in the folder of results, and the "
+            "same command starts again from the first"
+        )
+        self.signal = number
+
+
+class Interrupt:
+    """Holds signals back until the run asks; another one, a second later or more, acts at once.
+
+    What the caller has the run ignore (nohup: SIGHUP) stays ignored.
+    """
+
+    def __init__(self, comm: MPI.Comm) -> None:
+        """Remember whom to ask: any rank's signal stops them all."""
+        self._comm, self._signal, self._time = comm, 0, 0.0
+        self._before: dict[int, Any] = {}
+
+    def __enter__(self) -> "Interrupt":
+        """Take the signals over, which only the main thread can."""
+        if threading.current_thread() is threading.main_thread():
+            taken = [number for number in _MEANING if signal.getsignal(number) is not signal.SIG_IGN]
+            self._before = {number: signal.signal(number, self._note) for number in taken}
+        return self
+
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        now = time.monotonic()
+        if not self._signal:
+            self._signal, self._time = _MEANING[number], now
+            if number == signal.SIGHUP:
+                _leave_terminal()
+            if self._comm.rank == 0:
+                name = signal.Signals(self._signal).name
+                print(f"fingerpad: {name}: the run ends after its present step; another one ends it at once",
+                      file=sys.stderr, flush=True)  # fmt: skip
+        elif now - self._time > _ONE:
+            signal.signal(number, self._before[number])
+            os.kill(os.getpid(), number)
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Give the signals back."""
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def stop_if_asked(self, step: int) -> None:
+        """Stop after an accepted step; collective.
+
+        Raises:
+            Interrupted: a signal came.
+        """
+        number = int(self._comm.allreduce(self._signal, op=MPI.MAX))
+        if number:
+            raise Interrupted(signal.Signals(number), step)
+
+
+def _leave_terminal() -> None:
+    """Write no more to a terminal that has hung up: it would be an error."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in (1, 2):
+        if stat.S_ISCHR(os.fstat(stream).st_mode):
+            os.dup2(nowhere, stream)
+    os.close(nowhere)

@@ -1,0 +1,158 @@
+"""The folder of a run's results: of one scene, and of one run at a time.
+
+The scene is kept in the folder (``scene.json``) and another one is refused there, so that no file of one scene stays
+beside a summary of another, and no run is overwritten because ``--out`` was forgotten. The same scene may be run
+again: what its earlier run left stays until the new one has reached its first step, and goes then as a whole.
+Results are not written beside and put in place at the end, since every accepted step is to be seen at once and has
+to outlive the run. A run that resumes an earlier one would begin in :meth:`Place.take`, with the files that are there.
+"""
+
+import contextlib
+import errno
+import fcntl
+import json
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TextIO
+
+from fingerpad.io.files import replace_json
+from fingerpad.scene import Scene, SceneError
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
+
+# All that a run leaves, for the next run of the same scene to delete; what else is in the folder is not touched.
+LEFT = (
+    *(
+        "steps.csv",
+        "ridges.csv",
+        "receptors.csv",
+        "*_final.csv",
+        "coupling.csv",
+        "summary.json",
+        "summary.json.part",
+        "run.log",
+    ),
+    *("displacement.bp", "stress.bp", "sed.bp", "finger_*.npz", "finger_*.png", "surface.npz", "surface*.png"),
+    "history.png",
+)
+_NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP)  # some network file systems
+
+
+class Serial:
+    """The one rank of a model without MPI, as far as a folder needs it."""
+
+    rank = 0
+
+    def bcast(self, value: Any) -> Any:
+        """Return the value."""
+        return value
+
+    def barrier(self) -> None:
+        """Wait for nobody."""
+
+
+class PlaceError(SceneError):
+    """A folder that results cannot be written to; one sentence."""
+
+
+class Place:
+    """A folder that is locked for one run.
+
+    Attributes:
+        folder: where results go.
+    """
+
+    def __init__(self, folder: Path, scene: Scene, comm: "MPI.Comm | Serial", model: str = "full") -> None:
+        """Choose a folder for a scene; nothing is touched before :meth:`take`, except that the folder is made.
+
+        Args:
+            folder: of the results.
+            scene: that they are of.
+            comm: communicator of the run.
+            model: that answers, see :data:`fingerpad.runs.solve.MODELS`.
+        """
+        self.folder, self._comm = folder, comm
+        self._parameters = json.loads(json.dumps(scene.parameters()))  # as they are read back
+        if model != "full":
+            self._parameters["model"] = model
+        self._lock: TextIO | None = None
+
+    def __enter__(self) -> "Place":
+        """Lock the folder; collective.
+
+        Raises:
+            PlaceError: another run is at it, it holds another scene's results, or cannot be written to.
+        """
+        refusal = ""
+        if self._comm.rank == 0:
+            try:
+                self._open()
+            except PlaceError as error:
+                refusal = str(error)
+            except OSError as error:
+                refusal = f"results cannot be written to {_short(self.folder)}: {error.strerror}; choose another folder"
+        refusal = self._comm.bcast(refusal)
+        if refusal:
+            self.__exit__()
+            raise PlaceError(refusal)
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        """Unlock the folder."""
+        if self._lock is not None:
+            self._lock.close()
+
+    def _open(self) -> None:
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self._lock = (self.folder / ".lock").open("w")
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise PlaceError(f"another run is writing to {_short(self.folder)}; choose another folder") from None
+        except OSError as error:
+            if error.errno not in _NO_LOCKS:
+                raise
+        kept = self._kept()
+        if kept is not None and kept != self._parameters:
+            raise PlaceError(
+                f"{_short(self.folder)} holds the results of another scene ({_difference(kept, self._parameters)}); "
+                "choose another folder, or delete the folder"
+            )
+
+    def _kept(self) -> dict[str, Any] | None:
+        """Return the parameters of the scene whose results are in the folder; None if there are none."""
+        for name in ("scene.json", "summary.json"):
+            with contextlib.suppress(FileNotFoundError, json.JSONDecodeError, UnicodeDecodeError):
+                found = json.loads((self.folder / name).read_text(encoding="utf-8"))
+                return dict(found if name == "scene.json" else found.get("parameters", {}))
+        if (self.folder / "steps.csv").exists():
+            raise PlaceError(f"{_short(self.folder)} holds results of an unknown scene; choose another folder")
+        return None
+
+    def take(self) -> None:
+        """Make way for the run's files: an earlier run's go; collective."""
+        if self._comm.rank == 0:
+            for file in [file for pattern in LEFT for file in self.folder.glob(pattern)]:
+                shutil.rmtree(file) if file.is_dir() else file.unlink()
+            replace_json(self.folder / "scene.json", self._parameters)
+        self._comm.barrier()
+
+
+def _difference(old: dict[str, Any], new: dict[str, Any], table: str = "") -> str:
+    """Return the first key in which two scenes differ."""
+    for key in sorted(old.keys() | new.keys()):
+        a, b = old.get(key), new.get(key)
+        if isinstance(a, dict) and isinstance(b, dict):
+            found = _difference(a, b, f"{table}{key}.")
+            if found:
+                return found
+        elif a != b:
+            plain = all(isinstance(value, int | float | str | None) for value in (a, b))
+            return f"its {table}{key} was {_short(a)}, and is {_short(b)} now" if plain else f"its {table}{key} differs"
+    return ""
+
+
+def _short(value: Any) -> str:
+    text = str(value)
+    return text if len(text) <= 80 else f"{text[:38]}…{text[-38:]}"

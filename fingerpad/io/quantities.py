@@ -1,0 +1,66 @@
+"""The quantities of a state in words and in the units of tables: N/m, mm, kPa."""
+
+import math
+from typing import NamedTuple
+
+from fingerpad.io.states import PREFIXES, WORDS
+from fingerpad.richardson import plus_minus
+
+
+class Quantity(NamedTuple):
+    """How a quantity is printed."""
+
+    words: str
+    unit: str
+    scale: float
+    """From SI to the unit."""
+    digits: int
+    """After the point, where no error says how many are significant."""
+
+
+QUANTITIES = {
+    "f_ext": Quantity("external force f_ext", "N/m", 1.0, 2),
+    "voltage": Quantity("voltage U", "V", 1.0, 1),
+    "mu_app": Quantity("apparent friction µ_app", "", 1.0, 4),
+    "f_t": Quantity("friction force f_T", "N/m", 1.0, 3),
+    "f_electrostatic": Quantity("attraction f_el", "N/m", 1.0, 3),
+    "f_contact": Quantity("contact force f_c", "N/m", 1.0, 3),
+    "contact_length": Quantity("contact length L_R", "mm", 1e3, 4),
+    "ridges_in_contact": Quantity("ridges in contact", "", 1.0, 0),
+    "bone_height": Quantity("height of the bone", "mm", 1e3, 4),
+}
+PER_LENGTH = (
+    "N/m: force per metre of finger out of the plane of the cross-section; 75 N/m are 1.5 N on 20 mm of finger."
+)
+
+
+def cell(key: str, value: float, error: float = math.nan) -> str:
+    """Return a quantity given in SI in the unit of tables, with its error where that is known and not below its digits.
+
+    Args:
+        key: a name of :data:`QUANTITIES`.
+        value: in SI; NaN where it is not known.
+        error: in SI; NaN where it is not known.
+    """
+    if math.isnan(value):
+        return "–"
+    quantity = QUANTITIES[key]
+    if not math.isnan(error) and error * quantity.scale >= 0.5 * 10.0**-quantity.digits:
+        return plus_minus(value * quantity.scale, error * quantity.scale)
+    return f"{value * quantity.scale:.{quantity.digits}f}"
+
+
+def in_words(key: str) -> str:
+    """Return a key such as ``slip_mu_app`` in words: the quantity, and the state that it is of."""
+    name = next((name for name, prefix in PREFIXES.items() if key.startswith(f"{prefix}_")), None)
+    if name is None:
+        return key
+    quantity = key.removeprefix(f"{PREFIXES[name]}_")
+    words = QUANTITIES[quantity].words if quantity in QUANTITIES else quantity
+    return f"{words} at {WORDS[name]}"
+
+
+def scaled(key: str, value: float) -> tuple[float, str]:
+    """Return a value of a key such as ``slip_contact_length``, given in SI, in the unit of tables, and that unit."""
+    known = [q for name, q in QUANTITIES.items() if key == name or key.endswith(f"_{name}")]
+    return (value * known[0].scale, known[0].unit) if known else (value, "")

@@ -1,0 +1,271 @@
+"""What a model answers: the states of a run by name and in order, their errors and costs, as values, files and text."""
+
+import csv
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fingerpad.io import terminal
+from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
+from fingerpad.io.states import PREFIXES, STATES, WORDS, LoadResult, by_load, load_result
+from fingerpad.scene import Scene, SceneError, from_data
+from fingerpad.scene.laws import coefficient
+from variational.state import CONDITIONS, RESULTS, ContactState, Errors
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from fingerpad.io.drawing import Drawing
+
+_STABILITY = ("stable", "lambda_min", "gain")
+_CHANGES = ("error", "penalty")
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What an answer took."""
+
+    processor_seconds: float = 0.0
+    """Of all ranks, meshes, microscale and compiled forms included (s)."""
+    wall_seconds: float = 0.0
+    newton_iterations: int = 0
+    factorisations: int = 0
+    unknowns: int = 0
+    """Of the largest linear system; of the final mesh, where a scene asks for an accuracy."""
+    memory_mb: float = 0.0
+    """Of all ranks (MB)."""
+    ranks: int = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """The answer of a model to a scene; the same on every rank, except for pictures, which rank 0 draws."""
+
+    scene: Scene
+    model: str
+    """``full``, ``smooth`` or ``cylinders``."""
+    uncharged: ContactState | None
+    """Uncharged normal contact, the last state before a voltage; None where a history has none, or the model does not
+    answer for it. So are the next two. For all three: :mod:`fingerpad.io.states`."""
+    charged: ContactState | None
+    """Charged normal contact, the last state before the bone moves sideways."""
+    full_slip: ContactState | None
+    """Full slip, held over a further 0.2 mm."""
+    steps: tuple[ContactState, ...] = ()
+    """Accepted states in order; none of a model without a path."""
+    loads: tuple[LoadResult, ...] = ()
+    cost: Cost = Cost()
+    failure: str = ""
+    """Why a load or an accuracy could not be reached, else empty."""
+    interrupted: str = ""
+    """Name of the signal that ended the run, else empty."""
+    notes: tuple[str, ...] = ()
+    """What a reader should be told of the answer: sources, omissions, doubts."""
+    record: dict[str, Any] = field(default_factory=dict)
+    """What else ``summary.json`` holds: omissions, restarts, the search for an accuracy, laws, provenance."""
+    folder: Path | None = None
+    """Where tables, plots and fields are; None where none were asked for."""
+    drawing: "Drawing | None" = None
+
+    @property
+    def named(self) -> dict[str, ContactState]:
+        """The named states that there are, by their names in :data:`fingerpad.io.states.STATES`."""
+        return {name: state for name in STATES if (state := getattr(self, name)) is not None}
+
+    @property
+    def last(self) -> ContactState | None:
+        """The last accepted state, or that of a model without a path."""
+        return self.steps[-1] if self.steps else (self.full_slip or self.charged or self.uncharged)
+
+    def plot(self, kind: str = "surface", path: str | Path | None = None) -> "Figure | None":
+        """Draw the skin (``"surface"``), the deformed finger (``"finger"``) or the history of sliding (``"history"``).
+
+        Args:
+            kind: which of them.
+            path: of a PNG file to write; None for the figure alone.
+
+        Returns:
+            The Matplotlib figure on rank 0, None on the others.
+
+        Raises:
+            ValueError: another kind, or one that the result has no data for.
+        """
+        if self.drawing is not None:
+            return self.drawing.figure(kind, None if path is None else Path(path))
+        if self.model != "full":
+            raise ValueError(f"the model {self.model!r} has no skin to draw; use model='full'")
+        if terminal.rank() == 0:
+            raise ValueError("the result has no states to draw")
+        return None
+
+    # -- files -----------------------------------------------------------------------------------------
+    def values(self) -> dict[str, Any]:
+        """Return conditions and results of the named states, flat: ``slip_mu_app``, None where not in the model."""
+        found: dict[str, Any] = {}
+        for name in STATES:
+            state, prefix = getattr(self, name), PREFIXES[name]
+            names = (*CONDITIONS, *RESULTS, *_STABILITY)
+            found |= {f"{prefix}_{key}": None if state is None else _plain(getattr(state, key)) for key in names}
+            for kind in _CHANGES if state is not None else ():
+                found |= {f"{prefix}_{key}_{kind}": value for key, value in getattr(state, kind).known().items()}
+        return found
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the result ready for JSON, as ``summary.json`` holds it; SI units."""
+        last = self.last
+        found: dict[str, Any] = {
+            "model": self.model,
+            "f_ext": 0.0 if last is None else last.f_ext,
+            "voltage": 0.0 if last is None else last.voltage,
+            "full_slip": self.full_slip is not None,
+            **{f.name: getattr(self.cost, f.name) for f in fields(Cost)},
+            **self.values(),
+            "states": {name: _nested(state) for name, state in self.named.items()},
+            "loads": [load.to_dict() for load in self.loads],
+            "parameters": self.scene.parameters(),
+            **self.record,
+        }
+        for name in ("failure", "interrupted"):
+            found |= {name: getattr(self, name)} if getattr(self, name) else {}
+        found |= {"notes": list(self.notes)} if self.notes else {}
+        return found
+
+    @classmethod
+    def from_dict(cls, summary: Mapping[str, Any], folder: Path | None = None) -> "Result":
+        """Return what a ``summary.json`` says, without the states on the way.
+
+        Raises:
+            SceneError: the parameters in it are no scene.
+        """
+        parameters = summary["parameters"]
+        scene = from_data({key: value for key, value in parameters.items() if key not in ("laws", "model")})
+        cost = Cost(**{f.name: summary.get(f.name, f.default) for f in fields(Cost)})
+        used = {f.name for f in fields(Cost)} | {"parameters", "states", "loads", "failure", "interrupted", "notes"}
+        used |= {"model", "f_ext", "voltage", "full_slip"}
+        names = (*CONDITIONS, *RESULTS, *_STABILITY, *(f"{f.name}_{kind}" for f in fields(Errors) for kind in _CHANGES))
+        used |= {f"{prefix}_{name}" for prefix in PREFIXES.values() for name in names}
+        record = {key: value for key, value in summary.items() if key not in used}
+        if "laws" in parameters:  # objects of Python, of which their names are left
+            record["parameters"] = parameters
+        uncharged, charged, full_slip = (_state(summary, PREFIXES[name]) for name in STATES)
+        return cls(
+            scene,
+            summary.get("model", "full"),
+            uncharged,
+            charged,
+            full_slip,
+            cost=cost,
+            failure=summary.get("failure", ""),
+            interrupted=summary.get("interrupted", ""),
+            notes=tuple(summary.get("notes", ())),
+            record=record,
+            folder=folder,
+        )
+
+    @classmethod
+    def load(cls, folder: str | Path) -> "Result":
+        """Return the result that a run left in a folder; arrays along the skin are in ``surface.npz`` there.
+
+        Raises:
+            SceneError: there is none that can be read.
+        """
+        from fingerpad.io.drawing import Drawing  # Matplotlib: not for those who only read numbers
+
+        folder = Path(folder)
+        try:
+            summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+            found = cls.from_dict(summary, folder)
+            if found.model != "full":
+                return found
+            with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
+                steps = tuple(ContactState.from_row(row) for row in csv.DictReader(file))
+            mu_0 = None if "laws" in found.record.get("parameters", {}) else coefficient(found.scene)
+            drawing = Drawing(mu_0, steps, {}, {}, {}, None)
+            return replace(found, steps=steps, loads=tuple(_loads(steps, summary)), drawing=drawing)
+        except (OSError, ValueError, KeyError) as error:
+            if isinstance(error, SceneError):
+                raise
+            raise SceneError(f"run {folder} cannot be read: {error}") from None
+
+    # -- text ------------------------------------------------------------------------------------------
+    def __str__(self) -> str:
+        """Return the block *Result* that ends a run: the named states side by side, with units and errors."""
+        shown = self.named
+        lines = ["Result" + (f" (model '{self.model}')" if self.model != "full" else "")]
+        if shown:
+            heads = [WORDS[name].split(" normal") for name in shown]
+            rows = [
+                ["", *(head[0] for head in heads)],
+                ["", *(("normal" + head[1]) if head[1:] else "" for head in heads)],
+            ]
+            rows += [row for key in QUANTITIES if (row := self._line(key))]
+            if any(state.stable is not None for state in shown.values()):
+                verdicts = {True: "yes", False: "no", None: "–"}
+                rows.append(["stable", *(verdicts[state.stable] for state in shown.values())])
+            widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+            for first, *rest in rows:
+                cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
+                lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
+        lines += [f"  {note}" for note in self._remarks()]
+        return "\n".join(lines)
+
+    def _line(self, key: str) -> list[str]:
+        """Return a quantity of the named states as a row of text; empty where no state has it."""
+        quantity, cells = QUANTITIES[key], []
+        for name, state in self.named.items():
+            shown = key not in ("mu_app", "f_t") or name == "full_slip"
+            cells.append(cell(key, getattr(state, key), getattr(state.error, key, math.nan)) if shown else "–")
+        unit = f" ({quantity.unit})" if quantity.unit else ""
+        return [f"{quantity.words}{unit}", *cells] if set(cells) - {"–"} else []
+
+    def _remarks(self) -> list[str]:
+        """Return what follows the table: why there is no full slip, what ± and N/m mean, the penalty's share."""
+        found = [f"Not finished: {self.failure}"] if self.failure else []
+        asked = any(load.until_full_slip or load.bone_x for load in self.scene.loads())
+        if asked and self.full_slip is None and not self.failure:
+            found.append("No full slip was held over a further 0.2 mm.")
+        if any(state.error.known() for state in self.named.values()):
+            found.append("±: estimated discretisation error, of the mesh alone.")
+        share = math.nan if self.full_slip is None else self.full_slip.penalty.contact_length
+        if not math.isnan(share):
+            found.append(
+                f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm."
+            )
+        return [*found, *([PER_LENGTH] if self.named else []), *self.notes]
+
+
+def _loads(steps: Sequence[ContactState], summary: Mapping[str, Any]) -> Iterator[LoadResult]:
+    """Yield what each load of a run came to; whether its end is stable is in the summary alone."""
+    stable = [load.get("stable") for load in summary.get("loads", ())]
+    for k, (name, mine) in enumerate(by_load(steps)):
+        yield load_result(name, mine, stable[k] if k < len(stable) else None)
+
+
+def _plain(value: Any) -> Any:
+    """Return a value ready for JSON: None where it is not known."""
+    return None if isinstance(value, float) and math.isnan(value) else value
+
+
+def _nested(state: ContactState) -> dict[str, Any]:
+    found: dict[str, Any] = {key: _plain(getattr(state, key)) for key in (*CONDITIONS, *RESULTS, *_STABILITY)}
+    return found | {kind: getattr(state, kind).known() for kind in _CHANGES}
+
+
+def _state(summary: Mapping[str, Any], prefix: str) -> ContactState | None:
+    if summary.get(f"{prefix}_contact_length") is None:
+        return None
+    values = {key: summary.get(f"{prefix}_{key}") for key in (*CONDITIONS, *RESULTS, *_STABILITY)}
+    given = {key: value for key, value in values.items() if value is not None}
+    for key in ("f_ext", "voltage"):  # of the scene itself, in answers of models without a path
+        given.setdefault(key, summary[key] if summary.get("model", "full") != "full" else math.nan)
+    if prefix == PREFIXES["full_slip"]:
+        given |= {"all_slip": True, "slip_held": True}
+    return ContactState(**given, error=_changes(summary, prefix, "error"), penalty=_changes(summary, prefix, "penalty"))
+
+
+def _changes(summary: Mapping[str, Any], prefix: str, kind: str) -> Errors:
+    keys = {field.name: f"{prefix}_{field.name}_{kind}" for field in fields(Errors)}
+    return Errors(**{name: summary[key] for name, key in keys.items() if summary.get(key) is not None})

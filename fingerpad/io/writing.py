@@ -1,0 +1,104 @@
+"""The files of a run as it goes: tables, fields for ParaView and the log; every accepted step is on disk at once."""
+
+import logging
+import logging.handlers
+from collections.abc import Mapping
+from typing import Any
+
+from mpi4py import MPI
+
+from fingerpad.io.files import Table, replace_json
+from fingerpad.io.place import Place
+from variational.output import Fields
+from variational.problem import Problem
+
+
+class Writer:
+    """Writes into a folder, or nothing where there is none.
+
+    Attributes:
+        log: takes what is to be logged; kept in memory until the folder is taken.
+    """
+
+    def __init__(self, place: Place | None, comm: MPI.Comm) -> None:
+        """Write nothing before :meth:`take`.
+
+        Args:
+            place: the folder, locked; None to write nothing at all.
+            comm: communicator of the run.
+        """
+        self._place, self._comm, self._taken = place, comm, False
+        self._tables: dict[str, Table] = {}
+        self._fields: Fields | None = None
+        self.log = logging.getLogger("fingerpad")
+        self.log.handlers = [logging.handlers.MemoryHandler(1000, logging.CRITICAL, flushOnClose=False)]
+        self.log.setLevel(logging.INFO)
+
+    def take(self, problem: Problem) -> None:
+        """Open the log and the fields where that has not been done, the files of an earlier run gone; collective."""
+        if self._place is None:
+            return
+        if not self._taken:
+            self._taken = True
+            self._place.take()
+            if self._comm.rank == 0:
+                _send(self.log, _LogFile(self._place.folder / "run.log", mode="w", encoding="utf-8"))
+        if self._fields is None:
+            self._fields = Fields(problem, self._place.folder)
+
+    def row(self, name: str, row: Mapping[str, Any]) -> None:
+        """Append a row to a table, on rank 0."""
+        if self._place is not None and self._comm.rank == 0:
+            if name not in self._tables:
+                self._tables[name] = Table(self._place.folder / f"{name}.csv", row)
+            self._tables[name].write(row)
+
+    def fields(self, step: int) -> None:
+        """Write the present fields under the number of their step; collective."""
+        if self._fields is not None:
+            self._fields.write(float(step))
+
+    def summary(self, found: Mapping[str, Any]) -> None:
+        """Write ``summary.json``, on rank 0."""
+        if self._place is not None and self._comm.rank == 0:
+            replace_json(self._place.folder / "summary.json", found)
+
+    def restart(self) -> None:
+        """Close tables and fields, to be started anew; collective."""
+        if self._fields is not None:
+            self._fields.close()
+            self._fields = None
+        for table in self._tables.values():
+            table.close()
+        self._tables.clear()
+
+    def close(self, whole: bool = True) -> None:
+        """Close every file.
+
+        Args:
+            whole: all ranks do so; else fields stay as they are, since closing them waits for all ranks.
+        """
+        if whole:
+            self.restart()
+        elif self._fields is not None:
+            self._fields.abandon()
+        for handler in self.log.handlers:
+            handler.close()
+
+
+class _LogFile(logging.FileHandler):
+    """A log that says so where it cannot be written, as tables do."""
+
+    def handleError(self, record: logging.LogRecord) -> None:
+        """Raise what went wrong."""
+        raise  # noqa: PLE0704
+
+
+def _send(log: logging.Logger, file: logging.Handler) -> None:
+    """Write what was logged so far, and what is to come, into a file."""
+    file.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
+    for memory in log.handlers:
+        if isinstance(memory, logging.handlers.MemoryHandler):
+            memory.setTarget(file)
+            memory.flush()
+    log.handlers = [file]

@@ -1,0 +1,327 @@
+"""One body over the screen: a ridge, a block, a finger or a mesh of your own, led by hand through its loads.
+
+The example at the door::
+
+    ridge = fp.Body(fp.geometry.ridge(size=10e-6), fp.Ogden(86.76e3, -14.53, 0.48),
+                    contact=fp.Penalty(1.5e12, 5e10), friction=0.25, roughness=fp.BearingArea(h_0=0.51e-6))
+    ridge.press(4.4).charge(200.0).slide(until_full_slip=True)
+    print(ridge.state.mu_app, ridge.state.d_eq, ridge.displacement)
+
+The body is in plane strain, so that forces and energies are per out-of-plane length, in N/m and J/m. Under mpirun all
+ranks construct the body and call its loads together; what it then holds is the same on every rank. A load is a number
+in SI or a text with a unit.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+import fingerpad.started  # noqa: F401
+from fingerpad.io.states import full_slip
+from fingerpad.model.gathered import Nodes, Points
+from fingerpad.model.steps import force_error
+from fingerpad.scene.laws import refuse_thickness
+from fingerpad.startup import MPI
+from geometry.mesh import TaggedMesh, load
+from geometry.meshfile import file
+from geometry.units import to_si
+from variational import body as setup
+from variational.attraction.electroadhesion import ELECTROSTATIC
+from variational.contact.formulation import Formulation
+from variational.contact.friction import Friction
+from variational.contact.penalty import Penalty
+from variational.energy import Balance, EnergyBook
+from variational.materials.material import Material
+from variational.problem import Interface
+from variational.roughness.closure import Closure, check
+from variational.solvers.continuation import Attempt, StepFailed, Target
+from variational.state import ContactState, RidgeStates, Skin, StepRecord
+
+Array = NDArray[np.float64]
+Quantity = float | str
+"""A number in SI, or a text with a unit: ``"0.0044 N/mm"``."""
+_TOLERANCE = 1e-9  # of the solves, over the force scale
+_STEADY = 1e-6  # relative change of a force by sliding on at full slip that means nothing
+_BEARS = 1e-6  # part of the force scale above which the bone is said to be pressed
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Energies per out-of-plane length (J/m)."""
+
+    stored: float
+    """Strain, attraction and contact springs, now."""
+    dissipated: float
+    """Spent by friction since the unloaded state."""
+    released: float
+    """By jumps since then; on a smooth path the error of the steps' works."""
+
+
+class Body:
+    """A body pressed on the screen, charged and slid.
+
+    Attributes:
+        state: the last accepted state, with its ridges and its skin.
+        states: all accepted states, in order.
+        coordinates: nodes of the unloaded mesh (m), shape (nodes, 2), in the order of the mesh's file.
+        triangles: nodes of each cell, shape (cells, 3).
+        displacement: of these nodes in the last accepted state (m), shape (nodes, 2).
+        energy: of the last accepted state and of the way there.
+        problem: the weak form, for what else is to be evaluated.
+    """
+
+    def __init__(
+        self,
+        shape: Callable[[], float] | TaggedMesh | str | Path,
+        material: Material | Mapping[str, Material],
+        *,
+        contact: Formulation = Penalty(1.5e12, 5e10),  # noqa: B008
+        friction: Friction | float | None = None,
+        roughness: Closure | None = None,
+        h_0: float | None = None,
+        element: str = "P2",
+        force_scale: float = 1.0,
+        touch_depth: float = 5e-6,
+        step_scale: float = 1.0,
+        comm: MPI.Comm = MPI.COMM_WORLD,
+    ) -> None:
+        """Mesh the body, unloaded; collective.
+
+        Args:
+            shape: a shape of :mod:`geometry`, a gmsh file (:mod:`geometry.meshfile`), or a mesh.
+            material: of the whole body, or of each layer by its name in :data:`geometry.tags.LAYERS`, with spaces or
+                with underscores.
+            contact: how contact enters the weak form.
+            friction: law of friction; a number is the coefficient of Coulomb's.
+            roughness: the microscale, from pressure to air gap; without it there is no voltage.
+            h_0: effective insulator thickness (m); by default that of ``roughness``.
+            element: a name of :data:`variational.element.ELEMENTS`.
+            force_scale: force (N/m) in which residuals are measured.
+            touch_depth: how far the bone is lowered at a time until the screen bears it (m).
+            step_scale: factor on the largest steps.
+            comm: communicator of the mesh.
+
+        Raises:
+            geometry.profiles.GeometryError: the shape or the file cannot be meshed.
+            ValueError: layers and materials do not agree, a law is none, or ``roughness`` has no ``h_0`` and none is
+                given, or another one.
+        """
+        if roughness is not None:
+            check(roughness)
+        build = file(shape) if isinstance(shape, str | Path) else shape
+        self.mesh = build if isinstance(build, TaggedMesh) else load(comm, build)
+        if h_0 is None:
+            h_0 = getattr(roughness, "h_0", None if roughness else 1.0)  # without a voltage it does not act
+            if h_0 is None:
+                raise ValueError("roughness has no h_0; give Body the effective insulator thickness, h_0=... in m")
+        if roughness is not None:
+            refuse_thickness(roughness, h_0)
+        law = Interface(contact, friction, h_0, ELECTROSTATIC if roughness else None)
+        self._closure, self._force_scale = roughness, force_scale
+        made = setup.Body(
+            self.mesh, _solids(self.mesh, material), law, roughness, element=element, force_scale=force_scale,
+            tolerance=_TOLERANCE, on_accept=self._accepted, touch_depth=touch_depth, step_scale=step_scale,
+        )  # fmt: skip
+        self.problem, self._made = made.problem, made
+        self._nodes = Nodes(made)
+        self._points = Points(made)
+        self.coordinates, self.triangles = self._nodes.coordinates, self._nodes.triangles
+        path = made.continuation
+        self._book = EnergyBook(self.problem, path.surface_state, made.solver.bone, made.solver.reaction, self._d_eq)
+        self.energy = Energy(0.0, 0.0, 0.0)
+        self.states: list[ContactState] = []
+        self._load, self._loads = "unloaded", 0
+        self.displacement = self._nodes.gather(self.problem)
+        self.state = self._present(None)
+
+    # -- loads -------------------------------------------------------------------------------------------
+    def press(self, f_ext: Quantity | None = None, *, height: Quantity | None = None) -> "Body":
+        """Press the body, by a force or by the height of the bone; return the body.
+
+        Args:
+            f_ext: external normal force on the bone (N/m), kept in what follows.
+            height: change of the bone's height from the unloaded position (m), negative when pressed; kept likewise.
+
+        Raises:
+            ValueError: not one of the two is given, or ``f_ext`` is not positive.
+            StepFailed: see :meth:`slide`.
+        """
+        if (f_ext is None) == (height is None):
+            raise ValueError("press takes either f_ext, in N/m, or height, in m")
+        if f_ext is None:
+            return self._reach(Target("press", bone_height=_finite("height", height, "m")))
+        force = _finite("f_ext", f_ext, "N/m")
+        if force <= 0:
+            raise ValueError(f"f_ext is {force:g} N/m; it must be positive; lift() takes a body off the screen")
+        return self._reach(Target("press", f_ext=force))
+
+    def lift(self, height: Quantity = 0.0) -> "Body":
+        """Lift the bone by displacement; return the body.
+
+        Args:
+            height: change of the bone's height from the unloaded position (m). A body that sticks to the screen needs
+                more than 0 to come off.
+
+        Raises:
+            StepFailed: see :meth:`slide`.
+        """
+        return self._reach(Target("lift", bone_height=_finite("height", height, "m")))
+
+    def charge(self, voltage: Quantity) -> "Body":
+        """Change the voltage U (V) between screen and body; return the body.
+
+        Raises:
+            ValueError: the body has no roughness, or ``voltage`` is negative.
+            StepFailed: see :meth:`slide`.
+        """
+        u = _finite("voltage", voltage, "V")
+        if u < 0:
+            raise ValueError(f"voltage is {u:g} V; it must not be negative")
+        if self._closure is None:
+            raise ValueError("the body has no roughness, so that it has no air gap to charge; give Body a roughness")
+        return self._reach(Target("charge", voltage=u))
+
+    def slide(self, distance: Quantity | None = None, *, until_full_slip: bool = False) -> "Body":
+        """Move the bone sideways; return the body.
+
+        Args:
+            distance: how far, from where it is (m), negative towards x < 0.
+            until_full_slip: stop as soon as all points in contact slip one way; without a distance, the bone moves
+                towards x > 0 by the size of the body at most.
+
+        Raises:
+            ValueError: neither a distance nor ``until_full_slip`` is given, or full slip is asked for without friction.
+            StepFailed: no equilibrium was found, or there was no full slip. The states accepted before are kept, and
+                the body is in the last one of them.
+        """
+        if distance is None and not until_full_slip:
+            raise ValueError("slide takes a distance, in m, or until_full_slip=True")
+        if until_full_slip and self.problem.anchor is None:
+            raise ValueError("the body has no friction, so that it has no full slip; give Body a friction")
+        far = float(np.ptp(self.coordinates, axis=0).max()) if distance is None else _finite("distance", distance, "m")
+        x = float(self._made.solver.control.x) + far
+        self._reach(Target("slide", bone_x=x, until_full_slip=until_full_slip))
+        if until_full_slip and not self.state.all_slip:
+            raise StepFailed(f"slide: there is no full slip within {abs(far):g} m; give a larger distance")
+        return self
+
+    def _reach(self, target: Target) -> "Body":
+        self._load = target.name
+        self._loads += 1
+        self._made.continuation.run(target)
+        return self
+
+    # -- accepted states -----------------------------------------------------------------------------------
+    @property
+    def skin(self) -> Skin:
+        """The skin that can touch, in the last accepted state; arrays of shape (facets, points), from left to right."""
+        assert self.state.skin is not None
+        return self.state.skin
+
+    @property
+    def _d_eq(self) -> Array:
+        return self._made.coupling.d_eq
+
+    def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
+        solver = self._made.solver
+        balance = self._book.step(self._made.continuation.surface_state, solver.bone, solver.reaction, self._d_eq)
+        self.energy = Energy(
+            balance.stored, self.energy.dissipated + balance.dissipation, self.energy.released + balance.released
+        )
+        self.displacement = self._nodes.gather(self.problem)
+        self.state = self._present(self._record(balance, attempt))
+        self.states.append(self.state)
+
+    def _present(self, record: StepRecord | None) -> ContactState:
+        made, solver = self._made, self._made.solver
+        surface = made.continuation.surface_state
+        loads = made.observer.ridge_loads(surface)
+        slipping, all_slip = made.continuation.slip
+        f_ext, f_t = float(solver.reaction[1]), 0.0 - float(solver.reaction[0])  # no negative zero
+        found = ContactState(
+            step=made.continuation.steps,
+            load=self._load,
+            load_number=self._loads,
+            f_ext=f_ext,
+            voltage=float(self.problem.voltage.value),
+            bone_x=float(solver.bone[0]),
+            bone_height=float(solver.bone[1]),
+            f_t=f_t,
+            mu_app=f_t / f_ext if f_ext > _BEARS * self._force_scale else 0.0,
+            f_contact=float(loads.f_contact.sum()),
+            f_electrostatic=float(loads.f_attraction.sum()),
+            ridges_in_contact=int((loads.length > 0).sum()),
+            contact_length=float(loads.length.sum()),
+            slipping=slipping,
+            all_slip=all_slip,
+            record=record,
+            ridges=RidgeStates(
+                np.array(made.surface.names), loads.length, loads.f_contact, loads.f_friction, loads.f_attraction,
+                loads.p_c, self._d_eq.copy(),
+            ),
+            skin=self._points.gather(surface),
+        )  # fmt: skip
+        least = force_error(solver.layout.global_size, max(_TOLERANCE, solver.floor), solver.force_scale)
+        began, held = full_slip(self.states, found, _STEADY, least)
+        return replace(found, slip_began=began, slip_held=held)
+
+    def _record(self, balance: Balance, attempt: Attempt) -> StepRecord:
+        made = self._made
+        return StepRecord(
+            penetration=made.observer.penetration(made.continuation.surface_state),
+            imbalance=made.solver.imbalance(),
+            floor=made.solver.floor,
+            stored=balance.stored,
+            dissipation=balance.dissipation,
+            energy_released=balance.released,
+            released_error=balance.released_error,
+            newton_iterations=attempt.newton,
+            factorisations=attempt.factorisations,
+            sweeps=attempt.sweeps,
+            cutbacks=len(attempt.cutbacks),
+            jump=attempt.jump,
+        )
+
+
+def _solids(mesh: TaggedMesh, material: Material | Mapping[str, Material]) -> dict[int, Material]:
+    """Return the material of each layer's tag."""
+    layers = mesh.layers()
+    if isinstance(material, Material):
+        return dict.fromkeys(layers.values(), material)
+    if not isinstance(material, Mapping):
+        raise ValueError(f"material is {material!r}; it must be a Material, or a dictionary of one for each layer")
+    listed = ", ".join(map(repr, layers))
+    given, material = material, {}
+    for key, solid in given.items():
+        name = key.replace("_", " ") if isinstance(key, str) else key
+        if name in material:
+            raise ValueError(f"there are two materials for the layer {name!r}, with a space and with _; give it once")
+        material[name] = solid
+    for name in material:
+        if name not in layers:
+            near = get_close_matches(str(name), layers, n=1)
+            hint = f"did you mean {near[0]!r}?" if near else f"its layers are {listed}"
+            raise ValueError(f"there is a material for {name!r}, which is no layer of the body; {hint}")
+        if not isinstance(material[name], Material):
+            raise ValueError(f"the material of {name!r} is {material[name]!r}; it must be a Material")
+    missing = next((name for name in layers if name not in material), None)
+    if missing is not None:
+        raise ValueError(f"there is no material for the layer {missing!r}; the body's layers are {listed}")
+    return {tag: material[name] for name, tag in layers.items()}
+
+
+def _finite(name: str, value: Quantity | None, unit: str) -> float:
+    """Return a number in SI; a text has a unit of its own."""
+    if isinstance(value, str):
+        try:
+            return to_si(value, unit)
+        except ValueError as error:
+            raise ValueError(f"{name} is {value!r}; {error}") from None
+    if value is None or not math.isfinite(value):
+        raise ValueError(f"{name} is {value} {unit}; it must be a finite number")
+    return float(value)

@@ -1,0 +1,74 @@
+"""What a scene asks of a machine, estimated before anything is meshed, and refused where it is beyond what may be used.
+
+The number of triangles is :mod:`geometry.count`'s, of unknowns what the element makes of it. Memory, of which the
+factors of MUMPS are most, grows as the power 1.13 of the unknowns: runs on one rank that pressed, charged and slid took
+0.35 GB with 27 000, 0.56 GB with 73 000, 1.2 GB with 186 000 and 5.7 GB with 873 000 of them. It is an estimate. More
+ranks take some 0.2 GB each; refining to an accuracy, which holds two meshes at a time, takes more as well.
+"""
+
+from dataclasses import dataclass
+
+from fingerpad.model.options import ModelOptions, plan
+from fingerpad.model.touching import by_rule
+from fingerpad.scene import Scene
+from geometry import count
+from geometry.profiles import GeometryError
+
+_UNKNOWNS = {"P1": 1.0, "P2": 4.0, "P2 reduced": 4.0, "P2-P1": 4.5, "P3": 9.0}  # of a triangle, on large meshes
+_AT_LEAST = 0.23e9  # bytes, of the program itself
+_FIRST, _POWER = 1.06e3, 1.13  # bytes of one unknown, and the power with which they grow
+
+
+@dataclass(frozen=True)
+class Budget:
+    """What a mesh of a scene will come to, about."""
+
+    triangles: float
+    unknowns: float
+    memory: float
+    """Bytes, on all ranks together."""
+
+
+def estimate(scene: Scene, needed: ModelOptions | None = None) -> Budget:
+    """Return what a scene will come to, some milliseconds.
+
+    Args:
+        scene: one whose geometry was checked.
+        needed: the parts of the model; those that the scene needs if None.
+    """
+    needed, scene = needed or plan(scene), by_rule(scene)
+    triangles = count.triangles(scene.geometry, scene.mesh, needed.receptors, not needed.both_halves)
+    unknowns = _UNKNOWNS[scene.numerics.element] * triangles
+    return Budget(triangles, unknowns, _AT_LEAST + _FIRST * unknowns**_POWER)
+
+
+def refuse_beyond(scene: Scene, needed: ModelOptions | None = None) -> None:
+    """Refuse a scene that would need more memory than it allows; arguments as above.
+
+    Raises:
+        GeometryError: how much, and what to change.
+    """
+    found = estimate(scene, needed)
+    if found.memory > scene.numerics.memory:
+        raise GeometryError(
+            f"the mesh would have some {_about(found.triangles)} triangles and {_about(found.unknowns)} unknowns, and "
+            f"need about {_about(found.memory / 1e9)} GB; numerics.memory allows {scene.numerics.memory / 1e9:.3g} GB: "
+            f"raise it, or make {_finest(scene)} larger"
+        )
+
+
+def _about(value: float) -> str:
+    """Return a number of two digits, as it is read."""
+    return f"{float(f'{value:.2g}'):,.0f}".replace(",", " ")
+
+
+def _finest(scene: Scene) -> str:
+    """Return the key of the size that would save most triangles if it were doubled."""
+    present = by_rule(scene)
+    keys = ["contact", "interface", "coarsest", *(["receptor"] if scene.output.receptors else []), "growth"]
+
+    def doubled(key: str) -> float:
+        mesh = present.mesh.model_copy(update={key: 2 * getattr(present.mesh, key)})
+        return count.triangles(present.geometry, mesh, scene.output.receptors)
+
+    return f"mesh.{min(keys, key=doubled)}"

@@ -1,0 +1,208 @@
+r"""The model "cylinders": every ridge in contact the same charged cylinder, an answer in a fraction of a second.
+
+n ridges bear :math:`f = f_{ext} / n` each; :mod:`variational.attraction.cylinder` says what contact force, attraction
+and air gap that makes. Friction at full slip is the limit of the friction law at the mean pressure, over the length in
+contact; Coulomb's is :math:`f_T = \mu_0 (f_{ext} + f_{el})`. What the cylinders cannot say by themselves is how many
+ridges there are and how long their contact is, for that is the finger's doing. A :class:`Footprint` says so, of normal
+contact and full slip:
+
+- :func:`fitted`: of the default finger *without* voltage, interpolated between full runs. The modulus E* of the
+  cylinders is then the one with which Hertz's law gives that length, by which it knows of finite strain, layers and
+  shear; and the length under voltage follows from Maugis's equations.
+- :func:`given`: the length *at* the scene's voltage, from a user or a run. E* is the stratum corneum's,
+  :math:`2 G_0 / (1 - \nu)`, and acts on the attraction beyond the contact's ends alone.
+
+It leaves out that ridges in the middle bear more than those at the edge, and that ridges come and go with the
+voltage; how much that is: ``docs/ladder.md``.
+"""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fingerpad.io.result import Cost, Result
+from fingerpad.io.states import PREFIXES, WORDS
+from fingerpad.reduced.answer import STATES, Stopwatch, at_rest, at_slip, refuse_others
+from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.laws import skin_modulus, used
+from fingerpad.scene.messages import show
+from geometry.parameters import Fingertip
+from geometry.profiles import Profiles
+from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState, hertz_modulus
+from variational.state import ContactState
+
+# The default finger's full runs without voltage, contact size 10 um: f_ext (N/m), then contact length (m) and ridges in
+# contact in each state. benchmarks/ladder.py keeps the same numbers in docs/ladder.json.
+_FORCES = (5.0, 10.0, 25.0, 50.0, 75.0, 100.0, 120.0, 150.0)
+_LENGTHS = {
+    "charged": (0.2313e-3, 0.3577e-3, 0.6504e-3, 1.0116e-3, 1.3028e-3, 1.4998e-3, 1.7017e-3, 1.8910e-3),
+    "full_slip": (0.2373e-3, 0.3500e-3, 0.6535e-3, 0.9843e-3, 1.2377e-3, 1.4615e-3, 1.6060e-3, 1.7901e-3),
+}
+_RIDGES = {"charged": (7, 9, 11, 15, 17, 17, 19, 19), "full_slip": (7, 9, 12, 14, 16, 17, 18, 18)}
+_SHAPING = ("geometry", "materials", "contact")  # tables of a scene of which these lengths are a matter
+
+
+@dataclass(frozen=True)
+class Footprint:
+    """How long the contact is, and on how many ridges, by state: ``charged`` and ``full_slip``."""
+
+    length: dict[str, float]
+    """Contact length (m)."""
+    ridges: dict[str, int]
+    charged: bool
+    """Whether the lengths are those at the scene's voltage, or those without."""
+    source: str
+    """Where they come from, for a reader."""
+
+
+def fitted(scene: Scene) -> Footprint:
+    """Return the default finger's contact without voltage, by interpolation of logarithms between full runs.
+
+    Raises:
+        SceneError: the scene's finger is another one.
+    """
+    default = Scene()
+    if scene.laws.materials:
+        raise SceneError(
+            f"materials are given for {', '.join(scene.laws.materials)}, and a contact length is known of the default "
+            "finger alone; give a contact length and a number of ridges, a folder of a run, or use the model 'smooth'"
+        )
+    for name in _SHAPING:
+        if getattr(scene, name) != getattr(default, name):
+            raise SceneError(
+                f"{name} is not that of the default finger, whose contact length is known; give a contact length and "
+                "a number of ridges, a folder of a run, or use the model 'smooth'"
+            )
+    source = "uncharged contact length interpolated between full runs of the default finger"
+    if not _FORCES[0] <= scene.f_ext <= _FORCES[-1]:
+        source = f"uncharged contact length extrapolated from full runs at {_FORCES[0]:g} to {_FORCES[-1]:g} N/m"
+    if scene.friction_law() != default.friction_law():
+        source += f"; that of full slip with a friction coefficient of {default.friction:g}"
+    length = {state: _interpolate(scene.f_ext, _LENGTHS[state]) for state in STATES}
+    ridges = {state: max(1, round(_interpolate(scene.f_ext, _RIDGES[state]))) for state in STATES}
+    return Footprint(length, ridges, False, source)
+
+
+def _interpolate(f_ext: float, values: tuple[float, ...] | tuple[int, ...]) -> float:
+    """Return a power law through the two neighbours, at the ends through the last two."""
+    x, y = np.log(_FORCES), np.log(values)
+    k = int(np.clip(np.searchsorted(x, np.log(f_ext)) - 1, 0, len(x) - 2))
+    return float(np.exp(y[k] + (y[k + 1] - y[k]) * (np.log(f_ext) - x[k]) / (x[k + 1] - x[k])))
+
+
+def given(length: float, ridges: int) -> Footprint:
+    """Return a contact length (m) at the scene's voltage, the same in both states.
+
+    Raises:
+        SceneError: a length or a number of ridges that is not positive.
+    """
+    if not 0 < length < np.inf or ridges < 1:
+        raise SceneError(
+            f"contact length is {length:g} m on {show(ridges)} ridges; it must be greater than 0, on at least 1"
+        )
+    return Footprint(dict.fromkeys(STATES, length), dict.fromkeys(STATES, ridges), True, "contact length as given")
+
+
+def from_run(scene: Scene, folder: Path) -> Footprint:
+    """Return the contact of a full run of the scene, perhaps with another mesh, friction or roughness.
+
+    Raises:
+        SceneError: there is no run, it did not reach full slip, or it is one at another force or voltage.
+    """
+    try:
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise SceneError(f"run {folder} cannot be read: {error}") from None
+    for name, unit in (("f_ext", "N/m"), ("voltage", "V")):
+        if not np.isclose(summary[name], getattr(scene, name), rtol=1e-6, atol=1e-9):
+            raise SceneError(
+                f"run {folder} is one at {name} {summary[name]:g} {unit}, and the scene's is {getattr(scene, name):g}; "
+                "give a run of this scene"
+            )
+    length = {state: summary.get(f"{PREFIXES[state]}_contact_length") for state in STATES}
+    ridges = {state: summary.get(f"{PREFIXES[state]}_ridges_in_contact") for state in STATES}
+    if None in (*length.values(), *ridges.values()):
+        raise SceneError(f"run {folder} did not reach full slip, so that its contact length there is not known")
+    return Footprint(length, ridges, True, f"contact length of the run in {folder}")  # type: ignore[arg-type]
+
+
+def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
+    """Return the answer of the cylinders; without a footprint it is the default finger's.
+
+    Raises:
+        SceneError: a scene with a history, another finger than the footprint's, or ridges that do not stay.
+    """
+    clock = Stopwatch()
+    refuse_others(scene, "cylinders")
+    footprint = footprint or fitted(scene)
+    found: dict[str, ContactState] = {}
+    exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
+    notes, states = [footprint.source, exact, "the bone's height is not in this model"], {}
+    for state in STATES:
+        try:
+            ridge = _ridge(scene, footprint, state)
+        except NoEquilibriumError as error:
+            raise SceneError(f"{WORDS[state]} of the model 'cylinders': {error}") from None
+        n = footprint.ridges[state]
+        contact = {
+            "f_contact": n * ridge.f_contact,
+            "f_electrostatic": n * ridge.f_attraction,
+            "contact_length": n * ridge.length,
+            "ridges_in_contact": n,
+        }
+        found[state] = at_rest(scene, contact) if state == "charged" else at_slip(scene, contact)
+        states[state] = ridge
+        notes += _remarks(scene, state, ridge)
+    more: dict[str, Any] = {
+        f"{PREFIXES[state]}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
+    }
+    more["laws"] = used(scene)
+    cost = Cost(processor_seconds=clock.seconds())
+    return Result(
+        scene, "cylinders", None, found["charged"], found["full_slip"], cost=cost, notes=tuple(notes), record=more
+    )
+
+
+def _ridge(scene: Scene, footprint: Footprint, state: str) -> RidgeState:
+    n, length = footprint.ridges[state], footprint.length[state]
+    f, radius, closure = scene.f_ext / n, tip_radius(scene.geometry), scene.closure()
+    if footprint.charged:
+        return Cylinder(radius, skin_modulus(scene), scene.h_0, closure).over_length(length / n, f, scene.voltage)
+    modulus = hertz_modulus(radius, f, length / n)
+    return Cylinder(radius, modulus, scene.h_0, closure).under_load(f, scene.voltage)
+
+
+def _remarks(scene: Scene, state: str, ridge: RidgeState) -> list[str]:
+    """Say where on the closure the ridges are, and whether there are other equilibria."""
+    said = []
+    place = scene.closure().state(ridge.p_c, scene.voltage)
+    if place:
+        said.append(f"{WORDS[state]}: a mean pressure of {ridge.p_c:.4g} Pa is {place}")
+    if ridge.others:
+        pressures = ", ".join(f"{p:.4g}" for p in ridge.others)
+        said.append(
+            f"{WORDS[state]}: further equilibria at a mean pressure of {pressures} Pa, of ridges not on the screen yet"
+        )
+    return said
+
+
+def tip_radius(finger: Fingertip) -> float:
+    """Return the radius of curvature of a ridge's tip (m).
+
+    Raises:
+        SceneError: a ridge has several crests, or a flat one.
+    """
+    step, profiles = 1e-3 * finger.ridge_wavelength, Profiles(finger)
+    crest = profiles.crests[-1]
+    low, high = (float(profiles.skin(s)) for s in (crest, crest + step))
+    places = {round(s / step) % 1000 for s in profiles.crests}  # one in either groove is the same one
+    if len(places) > 1 or high <= low:
+        what = f"{len(places)} crests" if len(places) > 1 else "a flat tip"
+        raise SceneError(
+            f"geometry.ridge_profile gives a ridge {what}; the model 'cylinders' takes ridges for cylinders, so use "
+            "the model 'smooth'"
+        )
+    return step**2 / (2 * (high - low))

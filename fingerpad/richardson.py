@@ -1,0 +1,121 @@
+r"""Discretisation error, knob by knob, from states solved again on other meshes.
+
+A knob is a set of element sizes, or the step size, that is halved at once. Knobs are halved one at a time and never
+two in one solve, so that each change of a quantity q is one knob's: :math:`\Delta_k`, from twice the size in use to
+the size in use. An error of :math:`C_k h_k^{p_k}` each gives to first order
+
+.. math:: q - q_{exact} = \sum_k \frac{q(2 h_k) - q(h_k)}{2^{p_k} - 1}, \qquad
+          E = \sum_k \frac{|\Delta_k|}{2^{p_k} - 1}
+
+(Richardson's extrapolation as an estimate; Roache 1994, doi 10.1115/1.2910291). E adds magnitudes: signs that cancel on
+one mesh need not on the next. It is of the finest mesh solved on: what shows the error also lowers it.
+
+What is told is E times a factor of safety, one for the share of each knob: :data:`ONCE` for a knob that was halved
+once, of which one change is all that is known, :data:`MORE` for others. Roache takes 3 and 1.25, for two meshes and for
+three. Where an accuracy is asked for, it is this error that has to be within it: a finer mesh is the price.
+
+The orders are those known beforehand: p = 1, that of a contact's edge on a mesh that does not know where it is, for
+forces and lengths, so that the error left is as large as the last change; p = 2, that of the strains of quadratic
+elements, for energy densities at sites deep in the skin that hardly see the edge. An order observed from three meshes
+is mostly noise, since an edge moves facet by facet (``docs/accuracy.md``).
+
+For the same reason a change may come out small by accident. That of a sum over ridges counts as at least the root of
+the sum of their squared changes, what changes of random sign come to; and any as at least a quarter of the one before
+it, which is second order.
+
+(A dual-weighted residual would need the adjoint of an active set and of two scales, and says nothing of a state in
+which a ridge has jumped. Another mesh sees all that, and one re-solved state costs some ten factorisations.)
+
+Plain numbers only: no mesh, no solver.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+Parts = Mapping[str, ArrayLike]  # a number, or the parts of a sum, shape (ridges,)
+
+ONCE, MORE = 2.0, 1.5
+"""Factors of safety on the share of a knob that was halved once, and of one that was halved more often.
+
+With them the error that is told covers the known one in at least 90 % of the known cases, of each kind of quantity, and
+in the default scene in all: ``docs/calibration.json`` has the cases, ``benchmarks/calibration.py`` counts them into the
+last section of ``docs/accuracy.md``, and ``tests/test_calibration.py`` holds the factors to it.
+"""
+
+
+@dataclass
+class MeshParameter:
+    """What halving one knob changed, from its first size to the one in use."""
+
+    changes: list[dict[str, float]] = field(default_factory=list)
+    """By how much each quantity changed, at each halving; magnitudes."""
+
+    def see(self, coarse: Parts, fine: Parts) -> None:
+        """Take note of values before and after the next halving."""
+        self.changes.append({name: _change(coarse[name], fine[name]) for name in coarse if name in fine})
+
+    def acts_on(self, name: str) -> bool:
+        """Return whether the knob has a part in a quantity's error."""
+        return name in self.changes[-1]
+
+    def share(self, name: str) -> float:
+        """Return the estimated part of a quantity's error that is this knob's, at the size in use, in its unit."""
+        change = self.changes[-1][name]
+        if len(self.changes) > 1:
+            change = max(change, self.changes[-2][name] / 4)
+        return change / (2 ** order(name) - 1)
+
+    def safe(self, name: str) -> float:
+        """Return the same with its factor of safety."""
+        return self.share(name) * (ONCE if len(self.changes) == 1 else MORE)
+
+
+def _change(before: ArrayLike, now: ArrayLike) -> float:
+    parts = np.atleast_1d(np.subtract(now, before))
+    return max(abs(float(parts.sum())), float(np.linalg.norm(parts)))
+
+
+def order(name: str) -> int:
+    """Return the order with which the error of a quantity falls."""
+    return 2 if "_sed_" in name else 1
+
+
+def errors(knobs: Mapping[str, MeshParameter], names: Sequence[str]) -> dict[str, float]:
+    """Return the error of each quantity, with its factors of safety, in its unit."""
+    return {name: sum(knob.safe(name) for knob in knobs.values() if knob.acts_on(name)) for name in names}
+
+
+def to_halve(knobs: Mapping[str, MeshParameter], allowed: Mapping[str, float]) -> list[str]:
+    """Return the knobs to halve once more on the way to errors within what is allowed, by name.
+
+    Of each quantity that is not within it, as few as will do by their orders, those with the largest shares first, and
+    none that spends no more than its equal part. One halving at a time, since the order is that of small changes, and a
+    mesh finer than need be costs more than one more round.
+
+    Args:
+        knobs: that can be halved, with what halving them changed.
+        allowed: largest error of each quantity, in its unit.
+
+    Returns:
+        In the order of ``knobs``; empty if every error is within what is allowed.
+    """
+    found: set[str] = set()
+    estimate = errors(knobs, list(allowed))
+    for name, most in allowed.items():
+        left = estimate[name]
+        shares = {key: knob.safe(name) for key, knob in knobs.items() if knob.acts_on(name)}
+        for key in sorted(shares, key=shares.__getitem__, reverse=True):
+            if left <= most or shares[key] * len(shares) <= most:
+                break
+            left -= shares[key] * (1 - 2 ** -order(name))
+            found.add(key)
+    return [key for key in knobs if key in found]
+
+
+def plus_minus(value: float, error: float) -> str:
+    """Return a value with its error, which is given to two digits: ``0.4750 ± 0.0041``."""
+    digits = int(max(0, 1 - np.floor(np.log10(error)))) if error > 0 else 6
+    return f"{value:.{digits}f} ± {error:.{digits}f}"

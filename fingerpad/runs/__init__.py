@@ -1,0 +1,1 @@
+"""One scene by any model, many scenes, and models side by side."""

@@ -1,0 +1,116 @@
+"""Many scenes, each run in a process of its own and kept by what it is made of.
+
+A scene's folder is named by a hash of all its parameters: run again, a sweep computes only what has changed, and one
+that is killed has lost the runs in hand. The hash knows nothing of the program: after a change of the mechanics the
+folder must be deleted.
+
+    python3 -m fingerpad.runs.batch SCENE.json FOLDER LIMIT MODEL    one run, as the sweep starts it
+"""
+
+import fcntl
+import hashlib
+import json
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from fingerpad.io.files import replace_json
+from fingerpad.io.terminal import watched
+from fingerpad.runs.processes import End, Pool, limit_processor_time, run
+from fingerpad.scene import Scene
+
+Summary = dict[str, Any]
+_LIMIT = 900.0  # s of processor time for one scene
+
+
+def key(scene: Scene) -> str:
+    """Return the name under which a scene's results are kept."""
+    return hashlib.sha256(json.dumps(scene.parameters(), sort_keys=True).encode()).hexdigest()[:16]
+
+
+def result(scene: Scene, folder: Path) -> Summary | None:
+    """Return the summary of a scene that has been run in a sweep's folder to its end, whatever that was."""
+    try:
+        summary = dict(json.loads((folder / key(scene) / "summary.json").read_text(encoding="utf-8")))
+    except (OSError, json.JSONDecodeError):
+        return None
+    return None if summary.get("interrupted") else summary
+
+
+def progress() -> Progress:
+    """Return a bar of things done, time taken and time remaining; nothing where the output is no terminal."""
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
+    bar = Progress(*columns, TimeElapsedColumn(), TimeRemainingColumn(), transient=True)
+    bar.disable = not watched()
+    return bar
+
+
+def sweep(
+    scenes: Mapping[str, Scene], folder: Path, jobs: int = 2, limit: float = _LIMIT, model: str = "full"
+) -> dict[str, Summary]:
+    """Run what has not been run yet, with a progress bar.
+
+    Args:
+        scenes: by name.
+        folder: of all results.
+        jobs: processes at a time.
+        limit: seconds of processor time for one scene.
+        model: ``"full"`` or ``"smooth"``.
+
+    Returns:
+        The summaries by name. That of a run that crashed, took too long or was asked to stop holds ``failure`` alone,
+        and it is run again the next time; what it left is in its folder.
+    """
+    found = {name: result(scene, folder) for name, scene in scenes.items()}
+    broken: dict[str, Summary] = {}
+
+    def job(name: str) -> End:
+        place = folder / key(scenes[name])
+        place.mkdir(parents=True, exist_ok=True)
+        with (place / "lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)  # another sweep may be at it
+            if result(scenes[name], folder) is not None:
+                return End(0, "", "", "")
+            (place / "asked.json").write_text(json.dumps(scenes[name].parameters(), indent=1), encoding="utf-8")
+            return run("fingerpad.runs.batch", [str(place / "asked.json"), str(place), str(limit), model], limit)
+
+    def done(name: str, end: End, left: int) -> None:
+        summary = result(scenes[name], folder)
+        if summary is None:
+            broken[name] = {"failure": f"{end.reason}: {end.message}" if end.reason else "INTERRUPTED"}
+        words = (summary or broken[name]).get("failure") or "done"
+        bar.console.print(f"{name}: {words}", highlight=False, markup=False, soft_wrap=True)
+        bar.advance(task)
+
+    missing = [name for name, summary in found.items() if summary is None]
+    with progress() as bar:
+        task = bar.add_task("scenes", total=len(missing))
+        Pool[str, End](job, jobs).run(missing, done)
+    return {name: result(scene, folder) or broken[name] for name, scene in scenes.items()}
+
+
+def _one(scene: Path, folder: Path, model: str) -> None:
+    from fingerpad.startup import MPI, start
+
+    start()
+    from fingerpad.runs.solve import kept, solved, tables_in
+    from fingerpad.scene import SceneError, from_data
+
+    asked = from_data(json.loads(scene.read_text(encoding="utf-8")))
+    try:
+        if model == "full":
+            solved(asked, model, folder, lines=True)
+        else:
+            from fingerpad.reduced import smooth
+
+            kept(smooth.solve(asked, tables_in(folder.parent), MPI.COMM_WORLD), folder, MPI.COMM_WORLD)
+    except SceneError as error:  # it would be the same the next time
+        replace_json(folder / "summary.json", {"failure": str(error)})
+
+
+if __name__ == "__main__":
+    limit_processor_time(float(sys.argv[3]))
+    _one(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[4])

@@ -1,0 +1,61 @@
+"""The models of one scene side by side, the cheapest first, with what each of them cost.
+
+    cylinders   ridges as charged cylinders, for a contact length that is known (:mod:`fingerpad.reduced.cylinders`)
+    smooth      a smooth finger with one ridge's law as its contact (:mod:`fingerpad.reduced.smooth`)
+    full        the whole cross-section with every ridge (:mod:`fingerpad.runs.full`)
+
+Where each model is good enough: ``docs/ladder.md``.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from fingerpad import startup
+from fingerpad.io.quantities import QUANTITIES, cell
+from fingerpad.io.result import Result
+from fingerpad.io.states import WORDS
+from fingerpad.reduced.answer import STATES, Stopwatch
+from fingerpad.scene import Scene
+from variational.state import RESULTS
+
+
+def started(scene: Scene, folder: Path) -> Result:
+    """Return the full model's full slip from the smooth one's, or along the path with a note why; collective.
+
+    Args:
+        scene: press, charge and slide.
+        folder: of the tables of the ridge and of the run.
+    """
+    from fingerpad.runs import full, start
+    from variational.solvers.continuation import StepFailed
+
+    clock = Stopwatch()
+    try:
+        return start.answer(scene, folder / "ridge_tables", startup.MPI.COMM_WORLD)
+    except StepFailed as error:
+        found = full.run(scene, folder / "full", startup.MPI.COMM_WORLD)
+        notes = (*found.notes, f"{error}; the path was followed instead")
+        return replace(found, cost=replace(found.cost, processor_seconds=clock.seconds()), notes=notes)
+
+
+def table(results: Sequence[Result]) -> str:
+    """Return results of one scene side by side, ± their estimated discretisation errors, and their notes."""
+    rows = [["", *(result.model for result in results)]]
+    for name in STATES:
+        for key in RESULTS:
+            quantity = QUANTITIES[key]
+            unit = f" ({quantity.unit})" if quantity.unit else ""
+            states = [getattr(result, name) for result in results]
+            cells = ["–" if s is None else cell(key, getattr(s, key), getattr(s.error, key, math.nan)) for s in states]
+            rows.append([f"{WORDS[name]}: {quantity.words}{unit}", *cells])
+    rows.append(["processor time (s)", *(f"{result.cost.processor_seconds:.2f}" for result in results)])
+    rows.append(["factorisations", *(str(result.cost.factorisations) for result in results)])
+    rows.append(["unknowns", *(str(result.cost.unknowns) for result in results)])
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
+    notes = [f"{result.model}: {note}" for result in results for note in (*result.notes, result.failure) if note]
+    if any(state.error.known() for result in results for state in result.named.values()):
+        notes.insert(0, "±: estimated discretisation error")
+    return "\n".join(lines + notes)

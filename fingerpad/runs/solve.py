@@ -1,0 +1,148 @@
+"""Run a scene, or many: what ``import fingerpad`` gives for that."""
+
+import os
+import signal
+import tempfile
+import warnings
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fingerpad.installed import needed_by
+from fingerpad.io import terminal
+from fingerpad.io.files import replace_json
+from fingerpad.io.place import Place, Serial
+from fingerpad.io.result import Result
+from fingerpad.model.check import check
+from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.messages import show
+
+if TYPE_CHECKING:
+    from fingerpad.startup import MPI
+    from variational.contact.friction import Friction
+    from variational.materials.material import Material
+    from variational.roughness.closure import Closure
+
+MODELS = ("cylinders", "smooth", "full")
+"""The cheapest first; see :mod:`fingerpad.runs.compare`."""
+
+
+def run(
+    scene: Scene | None = None,
+    *,
+    out: str | Path | None = None,
+    model: str = "full",
+    closure: "Closure | None" = None,
+    materials: "Mapping[str, Material] | None" = None,
+    friction: "Friction | float | None" = None,
+    mesh: str | Path | None = None,
+    comm: "MPI.Comm | None" = None,
+) -> Result:
+    """Return what a model answers to a scene; collective.
+
+    Args:
+        scene: the scene; by default press, charge and slide of the default finger.
+        out: folder for tables, pictures, fields and ``summary.json``; without it nothing is written.
+        model: ``"full"``, every ridge along the whole path (minutes); ``"smooth"``, a smooth finger with the law of
+            one ridge (seconds, half a minute the first time); ``"cylinders"``, a closed form (at once).
+        closure: microscale model in place of the bearing area model, see :mod:`variational.roughness.closure`.
+        materials: materials by layer (``{"dermis": NeoHooke(2.5e3)}``), see :mod:`variational.materials.material`.
+        friction: friction law, see :mod:`variational.contact.friction`.
+        mesh: file of a gmsh mesh in place of the finger's own, see :mod:`geometry.meshfile`.
+        comm: communicator; by default of all ranks.
+
+    Returns:
+        The result. A load that could not be reached is its ``failure``, with a warning; the states before are in it.
+
+    Raises:
+        SceneError: the scene cannot be run, in one sentence.
+        KeyboardInterrupt: Ctrl-C, after the present step; its attribute ``result`` has the steps accepted before.
+        SystemExit: SIGTERM or SIGHUP, likewise.
+    """
+    scene = scene or Scene()
+    if closure is not None or materials or friction is not None or mesh is not None:
+        scene = scene.with_laws(closure=closure, materials=materials, friction=friction, mesh=mesh)
+    if not isinstance(scene, Scene):
+        raise SceneError(f"scene is {show(scene)}; it must be a Scene, and a file is read by Scene.load(path)")
+    result = solved(scene, model, None if out is None else Path(out), comm)
+    if result.interrupted:
+        raise _ended(result)
+    if result.failure and terminal.rank() == 0:
+        warnings.warn(result.failure, stacklevel=2)
+    return result
+
+
+def _ended(result: Result) -> BaseException:
+    """Return what a signal is to a Python program, with the result of the steps before as its attribute ``result``."""
+    number = signal.Signals[result.interrupted]
+    error = KeyboardInterrupt(result.failure) if number == signal.SIGINT else SystemExit(128 + number)
+    error.result = result  # type: ignore[union-attr]
+    return error
+
+
+def solved(
+    scene: Scene, model: str, out: Path | None = None, comm: "MPI.Comm | None" = None, lines: bool = False
+) -> Result:
+    """Return what a model answers to a scene with all its laws; collective; arguments as of :func:`run`.
+
+    Args:
+        scene: the scene.
+        model: one of :data:`MODELS`.
+        out: folder of results.
+        comm: communicator.
+        lines: whether the full model prints its steps.
+    """
+    if model not in MODELS:
+        raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
+    if model == "cylinders":
+        from fingerpad.reduced import cylinders
+
+        found = cylinders.solve(scene)
+        return kept(found, out, Serial()) if terminal.rank() == 0 else found
+    with needed_by(f"the model {model!r}"):
+        return _with_finite_elements(scene, model, out, comm, lines)
+
+
+def _with_finite_elements(scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool) -> Result:
+    import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
+    from fingerpad.startup import MPI
+
+    check(scene)
+    comm = comm or MPI.COMM_WORLD
+    if model == "full":
+        from fingerpad.runs import full
+
+        return full.run(scene, out, comm, lines)
+    from fingerpad.reduced import smooth
+
+    return kept(smooth.solve(scene, tables_in(out), comm), out, comm)
+
+
+def kept(result: Result, out: Path | None, comm: "MPI.Comm | Serial") -> Result:
+    """Return the result of a model without a path, its summary written into a folder if there is one; collective.
+
+    Raises:
+        PlaceError: the folder is in use, holds results of another scene or model, or cannot be written to.
+    """
+    if out is None:
+        return result
+    result = replace(result, folder=out)
+    with Place(out, result.scene, comm, result.model) as place:
+        place.take()
+        if comm.rank == 0:
+            replace_json(out / "summary.json", result.to_dict())
+    return result
+
+
+def tables_in(out: Path | None) -> Path:
+    """Return the folder of the tables of ridges: inside that of the results, or else in the user's cache."""
+    if out is not None:
+        folder = out / "ridge_tables"
+    else:
+        folder = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "fingerpad" / "ridge_tables"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return Path(tempfile.mkdtemp(prefix="fingerpad-tables-"))
+    return folder

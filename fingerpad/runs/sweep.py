@@ -1,0 +1,251 @@
+"""A scene over values of some of its keys: every combination, as one table, kept on disk and taken up again."""
+
+import csv
+import itertools
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fingerpad.io import terminal
+from fingerpad.io.files import replace
+from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
+from fingerpad.io.result import Result
+from fingerpad.io.states import PREFIXES, STATES
+from fingerpad.model.check import check
+from fingerpad.runs.solve import MODELS, solved
+from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.messages import show
+from fingerpad.scene.reading import plain, put
+from variational.state import CONDITIONS, RESULTS
+
+_MOST = 10_000  # points
+_LIMIT = 4 * 3600.0  # s of processor time for one point
+_SHOWN = ("mu_app", "f_t", "contact_length", "f_electrostatic", "ridges_in_contact")
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """Results over a grid of values; a sequence of them, the last axis fastest."""
+
+    axes: dict[str, tuple[Any, ...]]
+    """Values by key, in SI."""
+    results: tuple[Result, ...]
+    folder: Path | None
+    """Of the results, each in a folder of its own, and of ``table.csv``."""
+
+    def __len__(self) -> int:
+        """Return the number of points."""
+        return len(self.results)
+
+    def __iter__(self) -> Iterator[Result]:
+        """Return the results in order."""
+        return iter(self.results)
+
+    def __getitem__(self, k: int) -> Result:
+        """Return a result by its place."""
+        return self.results[k]
+
+    def points(self) -> list[dict[str, Any]]:
+        """Return the values of the axes at each point, in order."""
+        return [dict(zip(self.axes, values, strict=True)) for values in itertools.product(*self.axes.values())]
+
+    def array(self, quantity: str, state: str = "full_slip") -> NDArray[np.float64]:
+        """Return a quantity of a named state over the grid, NaN where it is not known.
+
+        Args:
+            quantity: a name of :class:`variational.state.ContactState`, such as ``"mu_app"``.
+            state: a name of :data:`fingerpad.io.states.STATES`.
+
+        Returns:
+            Shape (values of the first axis, values of the second, …), SI units.
+
+        Raises:
+            ValueError: no such quantity or state.
+        """
+        if state not in STATES:
+            raise ValueError(f"state is {state!r}; it must be one of {', '.join(STATES)}")
+        if quantity not in (*CONDITIONS[2:], *RESULTS):
+            raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join((*CONDITIONS[2:], *RESULTS))}")
+        found = [result.named.get(state) for result in self.results]
+        values = [np.nan if each is None else float(getattr(each, quantity)) for each in found]
+        return np.array(values).reshape([len(values) for values in self.axes.values()])
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Return a flat row for each point: axes, results and errors of the named states, and failure; SI units."""
+        rows = []
+        for point, result in zip(self.points(), self.results, strict=True):
+            values = result.values()
+            names = [f"{PREFIXES[state]}_{key}" for state in STATES for key in _SHOWN]
+            cells = {key: values.get(key) for name in names for key in (name, f"{name}_error") if key in values}
+            rows.append(point | cells | {"failure": result.failure})
+        return rows
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write the rows as a table."""
+        rows = self.rows()
+        columns = list(dict.fromkeys(key for row in rows for key in row))
+        columns.sort(key="failure".__eq__)  # last
+        lines = _Lines()
+        table = csv.DictWriter(lines, columns)
+        table.writeheader()
+        table.writerows(rows)
+        replace(Path(path), "".join(lines))
+
+    def __str__(self) -> str:
+        """Return full slip over the axes as a table with units; ± estimated discretisation errors."""
+        heads = [*(_head(key) for key in self.axes), *(_head(key) for key in _SHOWN)]
+        rows = [heads]
+        for point, result in zip(self.points(), self.results, strict=True):
+            first = [f"{value:g}" if isinstance(value, int | float) else str(value) for value in point.values()]
+            state = result.full_slip
+            if state is None:
+                rows.append([*first, result.failure or "no full slip"])
+                continue
+            cells = [cell(key, getattr(state, key), getattr(state.error, key, np.nan)) for key in _SHOWN]
+            rows.append([*first, *cells])
+        widths = [max(len(row[k]) for row in rows if len(row) == len(heads)) for k in range(len(heads))]
+        lines = ["   ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=False)) for row in rows]
+        return "\n".join(["At full slip", *lines, PER_LENGTH])
+
+
+class _Lines(list[str]):
+    """Takes the lines of a table."""
+
+    def write(self, line: str) -> None:
+        """Add a line."""
+        self.append(line)
+
+
+def _head(key: str) -> str:
+    if key not in QUANTITIES:
+        return key
+    quantity = QUANTITIES[key]
+    unit = f" ({quantity.unit})" if quantity.unit else ""
+    return f"{quantity.words.split()[-1] if key != 'ridges_in_contact' else 'ridges'}{unit}"
+
+
+def sweep(
+    scene: Scene | None = None,
+    out: str | Path = "results/sweep",
+    *,
+    jobs: int = 1,
+    model: str = "full",
+    **axes: Sequence[Any],
+) -> Sweep:
+    """Return what a model answers to a scene over values of some of its keys.
+
+    Each point is run in a process of its own. Its results are kept in ``out``, and the same sweep, or another one that
+    shares points with it, computes only those that are missing. A point that fails has its ``failure`` in the table,
+    and the others go on.
+
+    Args:
+        scene: the scene; by default press, charge and slide of the default finger.
+        out: folder of the results.
+        jobs: points that are run at a time.
+        model: as of :func:`fingerpad.runs.solve.run`.
+        **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``.
+
+    Raises:
+        SceneError: a key or a value that a scene cannot have, no values, a scene with laws of its own, which other
+            processes cannot be given, or more than one rank of MPI.
+    """
+    scene = Scene() if scene is None else scene
+    if terminal.ranks() > 1:
+        raise SceneError("a sweep runs its points in processes of its own; start it without mpirun, and use jobs")
+    if jobs < 1:
+        raise SceneError(f"jobs is {show(jobs)}; it must be at least 1")
+    if model not in MODELS:
+        raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
+    scenes = _scenes(scene, axes)
+    values = {key: tuple(_at(each, key) for each in found) for key, found in _along(scene, axes).items()}
+    folder = Path(out)
+    folder.mkdir(parents=True, exist_ok=True)
+    if model == "cylinders":
+        found = [_closed(each) for each in scenes]
+    else:
+        points = [dict(zip(values, point, strict=True)) for point in itertools.product(*values.values())]
+        found = _in_processes(scenes, points, folder, jobs, model)
+    done = Sweep(values, tuple(found), folder)
+    done.to_csv(folder / "table.csv")
+    return done
+
+
+def _along(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> dict[str, list[Scene]]:
+    """Return the scenes along each axis."""
+    for key, values in axes.items():
+        listed = isinstance(values, Sequence | np.ndarray) and not isinstance(values, str)
+        if not listed or np.ndim(values) != 1 or len(values) == 0:
+            raise SceneError(f"{key} of the sweep is {show(values)}; it must be a list of at least one value")
+    return {key: [_with(scene, {key: value}) for value in values] for key, values in axes.items()}
+
+
+def _scenes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> list[Scene]:
+    """Return the scenes of all points, checked."""
+    if not axes:
+        raise SceneError("the sweep has no axis; give values of at least one key, such as voltage=[0, 100, 200]")
+    if scene.parameters().get("laws"):
+        raise SceneError(
+            "the scene has laws of its own, which the processes of a sweep cannot be given; call run for each point"
+        )
+    _along(scene, axes)
+    count = int(np.prod([len(values) for values in axes.values()]))
+    if count > _MOST:
+        raise SceneError(f"the sweep has {count} points; at most {_MOST} are allowed")
+    return [_with(scene, dict(zip(axes, point, strict=True))) for point in itertools.product(*axes.values())]
+
+
+def _with(scene: Scene, changes: Mapping[str, Any]) -> Scene:
+    """Return the scene with other values by dotted key, as :meth:`Scene.replace` does."""
+    data: dict[str, Any] = {}
+    for key, value in changes.items():
+        table = re.split(r"[.\[]", key, maxsplit=1)[0]
+        if "[" in key and table not in data:  # an entry of a list, of which the others stay
+            data[table] = scene.parameters().get(table)
+        put(data, key, plain(value))
+    return scene.replace(**data)
+
+
+def _at(scene: Scene, key: str) -> Any:
+    """Return the value of a dotted key in SI."""
+    value: Any = scene
+    for part, place in re.findall(r"(\w+)|\[(\d+)\]", key):
+        value = getattr(value, part) if part else value[int(place)]
+    return value
+
+
+def _closed(scene: Scene) -> Result:
+    try:
+        return solved(scene, "cylinders")
+    except SceneError as error:
+        return Result(scene, "cylinders", None, None, None, failure=str(error))
+
+
+def _in_processes(
+    scenes: Sequence[Scene], points: Sequence[Mapping[str, Any]], folder: Path, jobs: int, model: str
+) -> list[Result]:
+    """Return the results of scenes, those that can be run in processes of their own, kept by their parameters."""
+    from fingerpad.runs import batch
+
+    place = folder / model
+    refused, named = {}, {}
+    for scene, point in zip(scenes, points, strict=True):
+        words = ", ".join(f"{key} {show(value)}" for key, value in point.items())
+        try:
+            check(scene)
+            named[f"{words} ({batch.key(scene)})"] = scene
+        except SceneError as error:
+            refused[batch.key(scene)] = Result(scene, model, None, None, None, failure=str(error))
+    found = batch.sweep(named, place, jobs, _LIMIT, model)
+    results = dict(refused)
+    for name, scene in named.items():
+        summary, key = found[name], batch.key(scene)
+        if set(summary) == {"failure"}:
+            results[key] = Result(scene, model, None, None, None, failure=summary["failure"])
+        else:
+            results[key] = Result.load(place / key)
+    return [results[batch.key(scene)] for scene in scenes]

@@ -1,0 +1,19 @@
+"""Scenes: everything a run needs, checked, from Python, TOML or the command line."""
+
+from fingerpad.scene.messages import SceneError
+from fingerpad.scene.parameters import Accuracy, Contact, Load, Numerics, Output
+from fingerpad.scene.scene import Scene, from_data, load, override, start
+
+__all__ = [
+    "Accuracy",
+    "Contact",
+    "Load",
+    "Numerics",
+    "Output",
+    "Scene",
+    "SceneError",
+    "from_data",
+    "load",
+    "override",
+    "start",
+]

@@ -1,0 +1,178 @@
+"""Materials, insulators and roughness of a scene, with units and the ranges that make sense.
+
+A range is wider than anything that was measured by a factor of ten or more on either side; the docstring of each
+parameter has the reason.
+"""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, Field, ValidationError, model_validator
+
+from fingerpad.scene.messages import clip, show
+from fingerpad.scene.table import Finite, Part
+from geometry.bounds import within
+from variational.attraction.insulator import insulator_thickness
+from variational.roughness.bam import BearingArea
+
+Poisson = Annotated[Finite, within(-0.9, 0.4999)]
+Modulus = Annotated[Finite, within(1.0, 1e12, "Pa")]
+Permittivity = Annotated[Finite, within(1.0, 1e7)]
+
+
+class Skin(Part):
+    """Ogden solid (Eqs. 1 and 2)."""
+
+    shear_modulus: Modulus
+    """Initial shear modulus G_0 (Pa): 1 Pa is a slime, 1e12 Pa is diamond."""
+    alpha: Annotated[Finite, within(1e-2, 50.0, sides=2)]
+    """Power of the stretches, of either sign; at 50 a stretch of 2 has 1e15 times the stress, and below 0.01 the law
+    hardly differs from its logarithmic limit at zero, which it does not have."""
+    poisson: Poisson = 0.48
+    """From -0.9 to 0.4999: of a stable solid it is above -1, and beyond a bulk modulus of 5000 G_0 the volume's
+    roundoff decides (only the element "P2-P1" is for so stiff a volume at all)."""
+
+
+class Stiff(Part):
+    """Saint Venant-Kirchhoff solid: linear elastic at finite rotation (*assumption*; the paper: linear elastic)."""
+
+    young: Modulus
+    """Young's modulus (Pa), in the range of the skin's."""
+    poisson: Poisson = 0.3
+
+
+class Materials(Part):
+    """Materials of the layers (Table 2). A table that gives some keys of a layer keeps the others' defaults."""
+
+    subcutis: Skin = Skin(shear_modulus=25e3, alpha=5.0)
+    dermis: Skin = Skin(shear_modulus=2.55e3, alpha=-14.53)
+    viable_epidermis: Skin = Skin(shear_modulus=61.75e3, alpha=-14.53)
+    stratum_corneum: Skin = Skin(shear_modulus=86.76e3, alpha=-14.53)
+    nail: Stiff = Stiff(young=170e6)
+    nail_bed: Stiff = Stiff(young=1e6)
+    exponent: Literal["printed", "abaqus"] = "printed"
+    """Power of the stretches: ``"printed"`` for the paper's -alpha, ``"abaqus"`` for +alpha.
+    *Assumption*: the paper computed with Abaqus but prints -alpha."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _complete(cls, data: Any) -> Any:
+        if not isinstance(data, dict):
+            return data
+        defaults = {name: field.default for name, field in cls.model_fields.items()}
+        return {
+            name: defaults[name].model_dump() | given
+            if isinstance(given, dict) and isinstance(defaults.get(name), BaseModel)
+            else given
+            for name, given in data.items()
+        }
+
+
+class Electric(Part):
+    """Insulators between finger and electrode (Table 3)."""
+
+    eps_sc: Permittivity = 1650.0
+    """Relative permittivity of the stratum corneum, at 3 kHz. From 1, the vacuum's, to 1e7, ten times the skin's at
+    the lowest frequencies."""
+    d_i: Annotated[Finite, within(1e-9, 1e-2, "m")] = 1e-6
+    """Thickness of the screen's insulating layer (m): from a few atoms to a pane of glass of 10 mm."""
+    eps_i: Permittivity = 3.9
+    """Relative permittivity of that layer, in the same range, which has ferroelectrics in it."""
+
+    def h_0(self, d_sc: float) -> float:
+        """Return the effective insulator thickness (m) under stratum corneum of thickness ``d_sc`` (m)."""
+        return insulator_thickness(d_sc, self.eps_sc, self.d_i, self.eps_i)
+
+
+Length = Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)]
+
+
+class Topography(Part):
+    """A measured height map, from which the roughness is taken; see :mod:`variational.roughness.heightfile`."""
+
+    file: str
+    """Of the map: text, NumPy or an instrument's; beside the scene file, or a whole path."""
+    unit: Literal["m", "cm", "mm", "um", "µm", "nm"] | None = None
+    """Of the heights; text and NumPy's files need it, an instrument's have their own."""
+    size: tuple[Length, Length] | None = None
+    """Lengths of the map along x and y; a matrix needs them, or those of a pixel."""
+    pixel: tuple[Length, Length] | None = None
+    """Lengths of a pixel, in place of the map's."""
+    size_unit: Literal["m", "cm", "mm", "um", "µm", "nm"] | None = None
+    """Of these lengths; without it that of the heights."""
+    missing: str | None = None
+    """How missing pixels are marked, beside nan and empty places."""
+
+    def roughness(self) -> dict[str, float]:
+        """Return h_rms and wavelength (m) of the map.
+
+        Raises:
+            ValueError: the file cannot be read, or is no height map.
+        """
+        from variational.roughness.heightfile import is_plain, scan
+        from variational.roughness.spectrum import roughness_table
+
+        if self.unit is None and is_plain(Path(self.file)):
+            raise ValueError(f"topography.unit is missing; {clip(self.file)} holds numbers without a unit")
+        try:
+            found = scan(self.file, self.size, self.unit, self.size_unit, self.missing, self.pixel)
+            return roughness_table(found.map)
+        except OSError as error:
+            raise ValueError(f"topography.file is {show(self.file)}: {error.strerror or error}") from None
+        except (ValueError, ImportError) as error:
+            raise ValueError(f"topography: {error}") from None
+
+
+class Roughness(Part):
+    """Roughness of a ridge (Table 3), see :class:`variational.roughness.bam.BearingArea`."""
+
+    h_rms: Annotated[Finite, within(1e-9, 1e-3, "m")] = 3.1e-6
+    """Root mean square height (m): from a cleaved crystal's to that of ridges themselves."""
+    wavelength: Annotated[Finite, within(1e-8, 1e-2, "m")] = 100e-6
+    """Largest wavelength lambda_0 (m): from a few molecules to the finger itself."""
+    young: Modulus = 1e6
+    """Elastic modulus of the stratum corneum on the microscale (Pa)."""
+    gamma: Annotated[Finite, within(1e-2, 10.0)] = 0.5
+    """Decay of the repulsion over h_rms; Persson's theory has 0.4 to 0.5, a tenth of it to tens of it are allowed."""
+    beta: Annotated[Finite, within(1e-2, 100.0)] = 1.0
+    """Prefactor of the repulsion: 1 in Eq. 9; Eq. 15 takes 3/4. *Assumption*: Eq. 9 is meant. Two powers of ten on
+    either side are allowed."""
+    p_floor: Annotated[Finite, within(1e-3, 1e9, "Pa")] = 1e3
+    """Pressure (Pa) below which the air gap is held (*assumption*): above that of light, below the pressure at zero
+    separation."""
+
+    topography: Annotated[Topography | None, Field(exclude=True)] = None
+    """Measured height map in place of h_rms and wavelength. It is read at once: a scene holds the two numbers alone."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _measured(cls, data: Any) -> Any:
+        if not isinstance(data, dict) or data.get("topography") is None:
+            return data
+        for name in ("h_rms", "wavelength"):
+            if name in data:
+                raise ValueError(f"{name} is {show(data[name])} and topography is given too, which has it; give one")
+        try:
+            found = Topography.model_validate(data["topography"])
+        except ValidationError:
+            return data  # to be refused where it is
+        return {key: value for key, value in data.items() if key != "topography"} | found.roughness()
+
+    def largest_gap(self, h_0: float) -> float:
+        """Return the air gap (m) at which it is held, infinite where the surfaces no longer see each other."""
+        with np.errstate(all="ignore"):
+            return float(self.bearing_area(h_0)(self.p_floor).d_eq)
+
+    def bearing_area(self, h_0: float) -> BearingArea:
+        """Return the closure for an effective insulator thickness ``h_0`` (m)."""
+        return BearingArea(h_0, **self.model_dump())
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Roughness":
+        full = self.bearing_area(1.0).full_pressure
+        if self.p_floor >= full:
+            raise ValueError(
+                f"p_floor is {show(self.p_floor)}; it must be below the pressure at zero separation, {full:.4g} Pa"
+            )
+        return self

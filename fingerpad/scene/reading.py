@@ -1,0 +1,145 @@
+"""From a scene file, or from changes of one, to plain data: read within bounds, whatever is in it."""
+
+import os
+import re
+import stat
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel
+
+from fingerpad.scene.messages import SceneError, clip, key_of, show
+
+_MOST_BYTES = 1_000_000  # of a file; the longest scene that comes along has 1000
+_MOST_DEPTH = 8  # of tables in lists in tables; a scene has 3
+_DEPTH = f"a scene has at most {_MOST_DEPTH} inside one another"
+_MOST_BITS = 1000  # of a whole number; floating point has 1024
+_PATH = 80  # characters of a path in a sentence
+_NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
+_KEY = re.compile(rf"{_NAME}(\.{_NAME})*")
+
+
+def read(path: Path) -> dict[str, Any]:
+    """Return what a TOML file holds; a byte order mark before it is allowed.
+
+    Raises:
+        SceneError: it is no ordinary file, too large, or not TOML.
+    """
+    name = f"scene file {clip(str(path), _PATH)}"
+    try:
+        raw = _bytes(path)
+    except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
+        raise SceneError(f"{name} cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    if len(raw) > _MOST_BYTES:
+        raise SceneError(f"{name} has more than {_MOST_BYTES} bytes; a scene has a few hundred")
+    try:
+        return tomllib.loads(raw.decode("utf-8-sig"))
+    except ValueError as error:  # of the encoding or of TOML
+        raise SceneError(f"{name} is not TOML: {clip(str(error), 150)}") from None
+    except RecursionError:
+        raise SceneError(f"{name} has lists or tables that are nested too deep; {_DEPTH}") from None
+
+
+def _bytes(path: Path) -> bytes:
+    """Return the first bytes of an ordinary file, one more than are allowed."""
+    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)  # a pipe must not make the program wait
+    with os.fdopen(descriptor, "rb") as file:
+        mode = os.fstat(descriptor).st_mode
+        if stat.S_ISDIR(mode):
+            raise OSError("Is a directory")
+        if not stat.S_ISREG(mode):
+            raise OSError("it is not an ordinary file")
+        return file.read(_MOST_BYTES + 1)
+
+
+def plain(value: Any, place: tuple[int | str, ...] = ()) -> Any:
+    """Return data of tables, lists, numbers and texts that JSON can hold.
+
+    Dates become texts, NumPy's numbers and arrays Python's, and a model a table of what it was given.
+
+    Raises:
+        SceneError: data that is nested too deep, or a whole number beyond floating point.
+    """
+    if len(place) > _MOST_DEPTH:
+        raise SceneError(f"{key_of(place[:3])} has lists or tables that are nested too deep; {_DEPTH}")
+    if isinstance(value, np.generic | np.ndarray):
+        value = float(value) if isinstance(value, np.floating) else value.tolist()
+    if isinstance(value, BaseModel):
+        value = {name: inner for name, inner in value if name in value.model_fields_set}
+    if isinstance(value, Mapping):
+        return {_text(str(key)): plain(inner, (*place, _text(str(key)))) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(inner, (*place, k)) for k, inner in enumerate(value)]
+    if value is None or isinstance(value, bool | float):
+        return value
+    if isinstance(value, int):
+        if value.bit_length() > _MOST_BITS:
+            raise SceneError(
+                f"{key_of(place)} has some {int(value.bit_length() * 0.30103)} digits; at most 300 are read"
+            )
+        return value
+    return _text(str(value))
+
+
+def _text(text: str) -> str:
+    """Return a text that can be written as UTF-8."""
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+# -- changes -------------------------------------------------------------------------------------------
+def override(text: str) -> tuple[str, Any]:
+    """Return key and value of ``key=value``, for :func:`fingerpad.scene.load`.
+
+    Args:
+        text: a dotted key and a value as in TOML: a number, true or false, a quoted text, a list or a table. Any other
+            value is a text without quotation marks: ``f_ext=50 N/m``, ``contact.formulation=nitsche``.
+
+    Raises:
+        SceneError: no key, no value, or a value with a bracket or a quotation mark left open.
+    """
+    key, equals, value = (part.strip() for part in text.partition("="))
+    if not (equals and value and _KEY.fullmatch(key)):
+        shown = clip(text.strip()) or "an empty text"
+        raise SceneError(f"{shown} is no change of a scene; it must be key=value, as in mesh.contact=10e-6")
+    try:
+        found = tomllib.loads(f"value = {value}") if value.isprintable() else {}
+    except (ValueError, RecursionError):
+        found = {}
+    if found.keys() == {"value"}:
+        return key, plain(found["value"], (key,))
+    if value[0] in "[{\"'":
+        raise SceneError(f"{clip(key)} is {show(value)}; it must be a value as in TOML, with all brackets and quotes")
+    try:
+        return key, float(value)
+    except ValueError:
+        return key, plain(value, (key,))
+
+
+def put(data: dict[str, Any], key: str, value: Any) -> None:
+    """Put a value at a dotted key (``history[0].f_ext``), with the tables on the way to it; a list keeps its length.
+
+    Raises:
+        SceneError: a table, or an entry of a list, that is not there.
+    """
+    parts = [
+        int(part[1:-1]) if part.startswith("[") else part for part in re.split(r"\.|(?=\[[0-9]{1,6}\](?:\.|$))", key)
+    ]
+    here: Any = data
+    for depth, part in enumerate(parts):
+        name = key_of(parts[:depth])
+        if isinstance(part, int):
+            if not isinstance(here, list):
+                raise SceneError(f"{name} is {show(here)}; it must be a list")
+            if part >= len(here):
+                raise SceneError(f"{key_of(parts[: depth + 1])} is not there; {name} has {len(here)} entries")
+        elif not isinstance(here, dict):
+            raise SceneError(f"{name} is {show(here)}; it must be a table of keys")
+        if depth == len(parts) - 1:
+            here[part] = value
+        elif isinstance(part, int):
+            here = here[part]
+        else:
+            here = here.setdefault(part, [] if isinstance(parts[depth + 1], int) else {})

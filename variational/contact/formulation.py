@@ -1,0 +1,169 @@
+r"""Unilateral contact and friction by projecting trial tractions: what every formulation has in common.
+
+Per reference area of the skin, over the screen y = 0, a formulation gives tractions :math:`\lambda_n, \lambda_t` and
+stiffnesses :math:`\gamma_n, \gamma_t`, and
+
+.. math:: p_n = \langle \lambda_n - \gamma_n y \rangle_+, \qquad
+          t_t = \Pi_{|t| \le t_{max}(p_n)} \left( \lambda_t - \gamma_t (u_x - s) \right)
+
+With the traction itself for :math:`\lambda` these are Signorini's conditions and a law of friction with the limit
+:math:`t_{max}` (:mod:`~variational.contact.friction`; Coulomb's is :math:`\mu_f p_n`), for any positive
+:math:`\gamma` (Alart and Curnier 1991, doi 10.1016/0045-7825(91)90022-X); with zero they are those of springs. The
+virtual work of the contact on the skin is :math:`\int p_n v_y + t_t v_x \,dS`. A point is in contact where the
+augmented gap :math:`\hat g = y - \lambda_n / \gamma_n` is negative.
+
+The history variable of friction is the anchor s, see :mod:`~variational.contact.return_mapping`.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import ufl
+from numpy.typing import NDArray
+
+from variational.coefficients import said
+from variational.contact import return_mapping
+from variational.contact.friction import Friction
+
+if TYPE_CHECKING:
+    from variational.quantities import SurfaceState
+
+Array = NDArray[np.float64]
+
+
+def pressure(gap, gamma_n):
+    """Return the contact pressure p_n >= 0 (Pa of reference area) for an augmented gap (m) and a stiffness (Pa/m)."""
+    return ufl.conditional(ufl.lt(gap, 0.0), -gamma_n * gap, 0.0)
+
+
+@dataclass(frozen=True)
+class Skin:
+    """What a formulation can know of the touching skin; UFL, tractions in Pa of reference area."""
+
+    u: Any
+    """Displacement (m)."""
+    w: Any
+    """Displacement relative to the bone (m), by which forms are differentiated."""
+    y: Any
+    """Current height above the screen (m)."""
+    anchor: Any
+    """Accepted anchor (m); None without friction."""
+    multiplier: Any
+    """Accepted contact pressure (Pa), as corrected since."""
+    elastic: Callable[[], Any]
+    """Gives P N, the traction in the skin."""
+    attraction: Any
+    """Electrostatic traction p_el cof F N."""
+    stiffness: Callable[[], Any]
+    """Gives the constrained modulus of the skin over the facet's length (Pa/m)."""
+    constant: Callable[[float], Any]
+    """Gives a constant that leaves the compiled form as it is when its value changes."""
+
+
+@dataclass(frozen=True)
+class Springs:
+    """Tractions (Pa) and stiffnesses (Pa/m) of which a formulation makes its trial tractions; UFL."""
+
+    lambda_n: Any
+    lambda_t: Any
+    gamma_n: Any
+    gamma_t: Any
+
+
+class Contact:
+    """The projected tractions; UFL.
+
+    Attributes:
+        springs: what the trial tractions are made of.
+        gap: augmented gap (m), negative in contact.
+        p_n: contact pressure (Pa of reference area).
+        t_t: tangential traction on the skin (Pa of reference area).
+        traction: the two as a vector (t_t, p_n).
+        new_anchor: anchor that a step leaves when it is accepted (m).
+    """
+
+    def __init__(self, skin: Skin, springs: Springs, friction: Friction | None, guess, ease=1.0) -> None:
+        """Project the trial tractions.
+
+        Args:
+            skin: what touches.
+            springs: what the trial tractions are made of.
+            friction: its law, with numbers that UFL can read; None without friction.
+            guess: as in :func:`variational.contact.return_mapping.traction`.
+            ease: part of the tangential stiffness that acts.
+        """
+        self.springs = s = springs
+        self.gap = skin.y - s.lambda_n / s.gamma_n
+        self.p_n = pressure(self.gap, s.gamma_n)
+        if friction is None:
+            self.t_t, self.new_anchor = ufl.zero(), skin.u[0]
+        else:
+            limit = _limit(friction, self.p_n)
+            self.t_t = return_mapping.traction(skin.u[0], skin.anchor, limit, ease * s.gamma_t, guess, s.lambda_t)
+            self.new_anchor = return_mapping.new_anchor(skin.u[0], self.t_t, s.gamma_t, s.lambda_t)
+        self.traction = ufl.as_vector([self.t_t, self.p_n])
+
+
+def _limit(friction: Friction, p_n):
+    """Return the limit of friction (Pa) as the weak form has it.
+
+    Raises:
+        ValueError: the law cannot be written in UFL; in one sentence.
+    """
+    try:
+        return ufl.as_ufl(friction.limit(p_n))
+    except Exception as error:  # whatever the user's limit raises
+        raise ValueError(
+            f"the limit of the law {type(friction).__name__}, to be written with arithmetic, or with ufl's functions "
+            f"where p is a UFL expression, cannot be put into the weak form: {said(error)}"
+        ) from error
+
+
+@dataclass(frozen=True)
+class History:
+    """What a step leaves at this rank's Gauss points, shape (facets, points) each."""
+
+    anchor: Array
+    """Anchor of friction (m)."""
+    pressure: Array
+    """Contact pressure (Pa of reference area)."""
+    x: Array
+    """Current abscissa (m)."""
+
+
+class Formulation(ABC):
+    """How contact and friction enter the weak form."""
+
+    tolerance: float = 0.0
+    """Error of the contact's conditions (m) that is left."""
+
+    @abstractmethod
+    def springs(self, skin: Skin) -> Springs:
+        """Return what the trial tractions are made of."""
+
+    def virtual_work(self, skin: Skin, contact: Contact, v):
+        """Return the contact's part of the residual (J/m^2 of reference area) for a test function."""
+        return -ufl.dot(contact.traction, v)
+
+    def opening(self, skin: Skin, contact: Contact):
+        """Return a length (m), smooth within a facet, that is negative where the augmented gap is."""
+        return contact.gap
+
+    def error(self, state: "SurfaceState", history: History, friction: Friction | None) -> float:
+        """Return the largest error (m) at this rank's points that :meth:`corrected` can lower; mostly none."""
+        return 0.0
+
+    def corrected(self, state: "SurfaceState", history: History) -> History:
+        """Return the history with which to solve again where there is an error."""
+        return history
+
+    def stored(self, state: "SurfaceState") -> Array:
+        """Return the energy of the contact's springs (J/m^2 of reference area) at the points; mostly there are none."""
+        return np.zeros_like(state.p_n)
+
+    def slip(self, before: "SurfaceState", after: "SurfaceState") -> Array:
+        """Return how far each of this rank's points slipped over the screen (m) from one state to the next."""
+        return after.x - before.x

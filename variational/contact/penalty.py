@@ -1,0 +1,41 @@
+r"""Contact as springs of the screen, a penalty.
+
+.. math:: \lambda_n = \lambda_t = 0, \qquad \gamma_n = \epsilon_n, \quad \gamma_t = \epsilon_t
+
+in :mod:`~variational.contact.formulation`: :math:`p_n = \epsilon_n \langle -y \rangle_+` (Wriggers, Computational
+Contact Mechanics, 2nd ed., ch. 6). The skin sinks by :math:`p_n / \epsilon_n`, and what sticks yields by
+:math:`t_t / \epsilon_t`; without friction the tangent is symmetric.
+"""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from variational.contact.formulation import Formulation, Skin, Springs
+
+if TYPE_CHECKING:
+    from variational.quantities import SurfaceState
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Penalty(Formulation):
+    """Stiffness of the screen, normal and tangential (Pa/m of reference area)."""
+
+    eps_n: float
+    eps_t: float
+
+    def springs(self, skin: Skin) -> Springs:
+        """Return springs that nothing preloads."""
+        return Springs(0.0, 0.0, skin.constant(self.eps_n), skin.constant(self.eps_t))
+
+    def stored(self, state: "SurfaceState") -> Array:
+        """Return the energy of the springs (J/m^2 of reference area)."""
+        return np.asarray((state.p_n**2 / self.eps_n + state.t_t**2 / self.eps_t) / 2)
+
+    def slip(self, before: "SurfaceState", after: "SurfaceState") -> Array:
+        """Return how far the tangential springs were dragged (m)."""
+        return after.anchor - before.anchor

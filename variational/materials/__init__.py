@@ -1,0 +1,1 @@
+"""Materials: strain energy densities, one a file, and the stresses that follow from them."""

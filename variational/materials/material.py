@@ -1,0 +1,157 @@
+r"""What a solid is in plane strain: a strain energy density, from which stresses and tangents are derived.
+
+.. math:: W(F) = W_{iso}(F) + \frac{K}{2} (J - 1)^2, \qquad P = \frac{\partial W}{\partial F}, \qquad
+          \sigma_{zz} = \frac{\lambda_3}{J} \frac{\partial W}{\partial \lambda_3} \Big|_{\lambda_3 = 1}
+
+The volumetric part is apart because an element may know a better pressure :math:`p = K (J - 1)` than that of the F at
+hand (:mod:`variational.element`); its energy is :math:`p^2 / 2K`. A solid without K has no such part: all of its
+energy is in :math:`W_{iso}`.
+
+Your own solid is one frozen dataclass, here that of :mod:`variational.materials.neo_hooke`::
+
+    @dataclass(frozen=True)
+    class Mine(Material):
+        shear_modulus: float  # Pa
+        bulk: float  # Pa
+
+        def energy(self, F):  # (3, 3)
+            return self.shear_modulus / 2 * (ufl.det(F) ** (-2 / 3) * ufl.inner(F, F) - 3)
+
+Its numbers become fields of the compiled form with one value a layer: layers of one law share a kernel, and other
+numbers do not compile it again.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import ufl
+from ufl.algorithms.apply_algebra_lowering import apply_algebra_lowering
+from ufl.algorithms.apply_derivatives import apply_derivatives
+
+from variational import kinematics
+from variational.coefficients import Law, said
+
+_NATURAL = 1e-8  # of the shear modulus: stress of the unloaded solid that is roundoff
+
+
+class Material(Law):
+    """A solid in plane strain.
+
+    A derived class has ``shear_modulus``, the initial one (Pa), and gives :meth:`energy`. Without a number ``bulk``,
+    the bulk modulus K (Pa) of the volumetric part, it has none and gives :attr:`constrained_modulus`.
+    """
+
+    if TYPE_CHECKING:  # in the class they would be the defaults of fields of these names
+
+        @property
+        def shear_modulus(self) -> Any:
+            """Initial shear modulus G (Pa)."""
+
+        @property
+        def bulk(self) -> Any:
+            """Bulk modulus K (Pa) of the volumetric part, None without one; see :attr:`volumetric`."""
+
+    def energy(self, F):
+        """Return the strain energy density (J/m^3 of reference volume) without the volumetric part; UFL.
+
+        Args:
+            F: deformation gradient, (3, 3); in plane strain its third stretch is one.
+        """
+        raise NotImplementedError
+
+    @property
+    def volumetric(self) -> Any:
+        """Bulk modulus K (Pa) of the volumetric part; None without one."""
+        named = "bulk" in self.__dataclass_fields__ or hasattr(type(self), "bulk")  # type: ignore[attr-defined]
+        return self.bulk if named else None
+
+    @property
+    def constrained_modulus(self) -> float:
+        """Stress over strain where the strain is confined to one direction, K + 4 G / 3 (Pa), unloaded."""
+        if self.volumetric is None:
+            raise ValueError(f"{self} has no bulk modulus; it must have a constrained_modulus of its own")
+        return float(self.volumetric + 4 * self.shear_modulus / 3)
+
+    @property
+    def plane_modulus(self) -> float:
+        r"""Plane strain modulus :math:`E / (1 - \nu^2) = 4 G (M - G) / M` (Pa), M the constrained modulus, unloaded."""
+        M, G = self.constrained_modulus, self.shear_modulus
+        return float(4 * G * (M - G) / M)
+
+    # -- in the plane ----------------------------------------------------------------------------------
+    def distortion(self, H):
+        """Return :meth:`energy` of a displacement gradient H = F - I in the plane, (2, 2)."""
+        return self.energy(_in_space(kinematics.deformation_gradient(H), 1.0))
+
+    def distortion_zz(self, F):
+        """Return the Cauchy stress normal to the plane (Pa) without the volumetric part, of F, (2, 2)."""
+        stretch = ufl.variable(ufl.as_ufl(1.0))
+        return ufl.diff(self.energy(_in_space(F, stretch)), stretch) / ufl.det(F)
+
+    def pressure(self, H):
+        """Return p = K (J - 1) (Pa), positive in tension, of H; zero without a volumetric part."""
+        bulk = self.volumetric
+        return ufl.as_ufl(0.0) if bulk is None else bulk * kinematics.dilation(H)
+
+    def density(self, F, p=None):
+        """Return the whole strain energy density W (J/m^3) of F, (2, 2); by default p is that of F."""
+        H, bulk = kinematics.displacement_gradient(F), self.volumetric
+        if bulk is None:
+            return self.distortion(H)
+        return self.distortion(H) + (self.pressure(H) if p is None else p) ** 2 / (2 * bulk)
+
+    # -- refusals --------------------------------------------------------------------------------------
+    def check(self) -> None:
+        """Refuse what is no solid.
+
+        Raises:
+            ValueError: no energy, or one that is no number or leaves stress in the unloaded solid; numbers that are not
+                finite; moduli that are not positive. In one sentence.
+        """
+        self.refuse_numbers()
+        kind = type(self)
+        names = ("energy", "distortion", "distortion_zz")
+        own = {name for name in names if getattr(kind, name) != getattr(Material, name)}
+        if "energy" not in own and not own >= {"distortion", "distortion_zz"}:
+            raise ValueError(
+                f"{kind.__name__} has no energy; it must have a method energy(F), or distortion(H) and distortion_zz(F)"
+            )
+        if not ("shear_modulus" in self.__dataclass_fields__ or hasattr(kind, "shear_modulus")):  # type: ignore[attr-defined]
+            raise ValueError(f"{kind.__name__} has no shear_modulus; it must have the initial one, in Pa")
+        try:
+            moduli = {"shear_modulus": self.shear_modulus, "bulk": self.volumetric}
+            if moduli["bulk"] is None:
+                moduli["constrained_modulus"] = self.constrained_modulus
+        except ZeroDivisionError:
+            bound = "poisson must be above -1 and below 0.5" if hasattr(self, "poisson") else "they must be finite"
+            raise ValueError(f"{self} has moduli that are divided by zero; {bound}") from None
+        for name, value in moduli.items():
+            if not (name == "bulk" and value is None) and not (np.isfinite(value) and value > 0):
+                raise ValueError(f"{self}: {name} is {value:g} Pa; it must be finite and greater than 0")
+        self._refuse_energy()
+
+    def _refuse_energy(self) -> None:
+        try:
+            left = [abs(s) for s in self._unloaded()]
+        except Exception as error:  # whatever the user's energy raises
+            raise ValueError(
+                f"the energy of {self}, to be written with arithmetic and ufl's functions, cannot be evaluated "
+                f"unloaded: {said(error)}"
+            ) from error
+        if not max(left) <= _NATURAL * float(self.shear_modulus):
+            raise ValueError(
+                f"{self} has a stress of {max(left):.3g} Pa unloaded; it must have none, which an energy of "
+                "the stretches of F / J^(1/3) has not"
+            )
+
+    def _unloaded(self) -> list[float]:
+        """Return the components of the stress (Pa) of the unloaded solid, without the volumetric part."""
+        F = ufl.variable(ufl.Identity(2) + 0 * ufl.Identity(2))
+        P = ufl.diff(self.distortion(kinematics.displacement_gradient(F)), F)
+        parts = [P[0, 0], P[0, 1], P[1, 0], P[1, 1], self.distortion_zz(F)]
+        return [float(apply_derivatives(apply_algebra_lowering(part))) for part in parts]
+
+
+def _in_space(F, stretch):
+    """Return the deformation gradient (3, 3) of one in the plane, (2, 2), and the stretch normal to it."""
+    return ufl.as_matrix([[F[0, 0], F[0, 1], 0], [F[1, 0], F[1, 1], 0], [0, 0, stretch]])

@@ -1,0 +1,160 @@
+"""The two scales meet: a fixed point over the ridges' mean contact pressures.
+
+At given air gaps d the macroscale gives each ridge's mean contact pressure, the closure turns it into a new air gap;
+:mod:`~variational.solvers.secant` iterates until the two agree. A loop starts with the gains it last ended with. Ridges
+that go past their fold on the way are listed in :attr:`CouplingHistory.jumped`. (Nothing is stored in the closure: what
+a jump of the micro layer releases there is not known, and :mod:`~variational.energy` books what the skin releases.)
+
+On leaving contact a ridge has p_c = 0, and its air gap is the closure's at that end: the bearing area model holds
+d_eq at its value at p_floor, some 12 um. It does not keep the gap it was pressed to, and d_eq does not follow
+p_c to infinity. A ridge without contact is attracted across its height where that is larger.
+
+There may be no such state. A ridge about to leave touches with a facet or two, and lets go of them one at a time:
+with one facet less its pressure is higher, its air gap smaller and its attraction stronger, so that the facet comes
+back. Between the loads at which either state is one of equilibrium the loop cycles, however small the step;
+:mod:`~variational.solvers.continuation` leaps over them.
+
+A formulation of contact whose history is corrected after each solve, the augmented Lagrangian, shares the loop: a
+sweep corrects air gaps and multipliers, and the loop ends when both agree. Without a closure, for a path without
+voltage, the multipliers are all there is to correct, and a step is mostly one solve.
+
+The tangent of the macroscale is that of frozen air gaps. When a later sweep of a load that was in equilibrium
+fails, it is because a ridge jumps, and the solver may creep at once.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from mpi4py import MPI
+from numpy.typing import NDArray
+
+from variational.quantities import Observer, SurfaceState
+from variational.roughness.closure import Closure, air_gaps, check
+from variational.solvers.failure import NotConverged
+from variational.solvers.newton import Solver
+from variational.solvers.secant import Secants
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class CouplingHistory:
+    """Sweeps of one loop."""
+
+    changes: list[float] = field(default_factory=list)
+    """Largest |closure(p_c) - d_eq| / d_eq of each sweep."""
+    ridges: list[int] = field(default_factory=list)
+    """Number of the ridge it belongs to."""
+    errors: list[float] = field(default_factory=list)
+    """Largest error of the contact's conditions in each sweep (m), zero where there is nothing to correct."""
+    jumped: set[int] = field(default_factory=set)
+    """Numbers of the ridges that went past a fold: their gain was above one and their air gap changed by far."""
+
+
+class Coupling:
+    """Solves macroscale and closure together.
+
+    Attributes:
+        d_eq: equivalent air gap of each ridge (m); NaN without a closure.
+        history: sweeps of the last solve.
+        gain: d closure(p_c) / d d_eq of each ridge, the last secant of the last solve that moved its air gap;
+            NaN where none did yet. Below one the ridge's loop contracts: its state is stable if that of
+            frozen air gaps is.
+    """
+
+    def __init__(
+        self,
+        solver: Solver,
+        observer: Observer,
+        closure: Closure | None,
+        tolerance: float = 1e-6,
+        cap: int = 30,
+        by_gap: bool = False,
+    ) -> None:
+        """Start from ridges without contact.
+
+        Args:
+            solver: the macroscale.
+            observer: evaluates its surface.
+            closure: the microscale; None where there is never a voltage.
+            tolerance: relative error of d_eq, r / (1 - gain), at which the loop ends; gains count up to 0.99.
+            cap: most sweeps.
+            by_gap: take the length below d_eq, not the length under pressure, as L_R of Eq. 4.
+
+        Raises:
+            ValueError: what is no closure; in one sentence.
+        """
+        if closure is not None:
+            check(closure)
+        self.solver, self.observer, self.closure = solver, observer, closure
+        self.tolerance, self.cap, self.by_gap = tolerance, cap, by_gap
+        self.history = CouplingHistory()
+        ridges = len(observer.surface.names)
+        self.d_eq = np.full(ridges, np.nan) if closure is None else air_gaps(closure, np.zeros(ridges))
+        self.gain = np.full_like(self.d_eq, np.nan)
+
+    def set_air_gaps(self, d_eq: Array) -> None:
+        """Impose air gaps (m), shape (ridges,)."""
+        self.d_eq = d_eq
+        if self.closure is not None:
+            self.solver.problem.set_air_gaps(d_eq)
+
+    def _sweep(self, creep: bool) -> tuple[Array, SurfaceState]:
+        """Solve at the current air gaps; return what the closure makes of the pressures (m), and the surface."""
+        self.solver.solve(creep)
+        with self.solver.timings.phase("coupling"):
+            state = self.observer.state()
+            if self.closure is None:
+                return self.d_eq, state
+            d_eq = air_gaps(self.closure, self.observer.ridge_loads(state, self.by_gap).p_c)
+        if not np.isfinite(d_eq).all():
+            ridge = self.observer.surface.names[int(np.argmin(np.isfinite(d_eq)))]
+            raise NotConverged(f"NOT_A_NUMBER in the air gap of ridge {ridge}", False)
+        return d_eq, state
+
+    def solve(self, creep: bool = False) -> None:
+        """Find the state in which air gaps and pressures agree, and the contact's conditions hold.
+
+        Args:
+            creep: see :meth:`variational.solvers.newton.Solver.solve`.
+
+        Raises:
+            ValueError: the closure returns another shape than the pressures'.
+            NotConverged: the macroscale's, ``COUPLING_CAP`` with the ridge that moved most or the contact's error, or
+                ``NOT_A_NUMBER`` with the ridge of which the closure made one.
+        """
+        self.history = CouplingHistory()
+        self.set_air_gaps(self.d_eq)
+        problem = self.solver.problem
+        formulation = problem.interface.formulation
+        charged = self.closure is not None and float(problem.voltage.value) != 0.0
+        contact_history = problem.history
+        secants, names = Secants(self.d_eq, self.gain), self.observer.surface.names
+        for sweep in range(self.cap):
+            d = self.d_eq
+            found, state = self._sweep(creep or sweep > 0)
+            r = found - d if charged else np.zeros_like(d)  # without attraction the air gaps do not act
+            error = formulation.error(state, contact_history, problem.interface.friction)
+            self.history.errors.append(problem.mesh.comm.allreduce(error, op=MPI.MAX))
+            change = np.abs(r) / d if charged else np.zeros_like(d)
+            worst = int(np.argmax(change))
+            self.history.changes.append(float(change[worst]))
+            self.history.ridges.append(names[worst])
+            secants.see(d, r)
+            self.history.jumped = {names[k] for k in np.flatnonzero(secants.jumped())}
+            scales = not charged or secants.settled(self.tolerance)
+            contact = self.history.errors[-1] <= formulation.tolerance
+            if scales and contact:
+                if charged:
+                    self.gain = secants.gain
+                else:
+                    self.set_air_gaps(found)
+                return
+            if not contact:
+                contact_history = formulation.corrected(state, contact_history)
+                problem.correct_history(contact_history)
+            if not scales:
+                self.set_air_gaps(secants.step())
+        ridge, error = self.history.ridges[-1], self.history.errors[-1]
+        where = f"a contact error of {error:.2g} m" if scales else f"ridge {ridge}"
+        raise NotConverged(f"COUPLING_CAP at {where}", False, cycling=not scales)

@@ -1,0 +1,199 @@
+r"""Whether the state reached is one the skin would stay in.
+
+Let the touching skin be overdamped and everything else follow at once: :math:`\eta M \dot e = -K e` for a small
+disturbance e, K the tangent with the prescribed rows left out, M the mass of the touching skin per unit density. The
+eigenvalues of :math:`K e = \lambda M e` (Pa/m) decide: the state is stable if all have a positive real part. Those of
+
+.. math:: (K + \eta M)^{-1} \eta M \, e = g \, e, \qquad \lambda = \eta (1/g - 1)
+
+are the growth of e over an implicit Euler step; stable ones lie in (0, 1), so unstable ones are at the ends of the
+spectrum, above 1 (:math:`\lambda` in :math:`(-\eta, 0)`) or below 0 (beyond :math:`-\eta`), where a Krylov space finds
+them first: Arnoldi's method in the inner product of M, one factorisation, some tens of back-substitutions (Saad 2011,
+doi 10.1137/1.9781611970739, ch. 6 to 8). The power iteration would take more of them and miss what lies beyond
+:math:`-2 \eta`. Where K is symmetric its negative pivots can be counted instead (Sylvester's law of inertia), which
+needs no iteration and gives no rate.
+
+Three things it does not say. K is that of frozen air gaps; how these react is the gain of the loop over the scales
+(:mod:`~variational.solvers.coupling`), below one where it is stable. Points on the friction cone are taken for slipping
+on in their direction, the softer choice. And a disturbance is infinitely small.
+
+Of half a body that is its own mirror image, the disturbances that keep the symmetry and those that turn it round are
+examined one after the other: the tangent of the whole does not couple the two.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import ufl
+from dolfinx import fem
+from numpy.typing import NDArray
+from petsc4py import PETSc
+
+from variational import jit
+from variational.problem import SLIPS
+from variational.solvers.failure import NotConverged, linear_failure
+from variational.solvers.newton import Solver
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.int64]
+_ETA = 2e8  # Pa/m, of the order of the softest disturbances of a fingerpad
+_MOST = 50  # vectors
+_ROUGH = 0.1  # residual of a Ritz pair over its own growth above which it says nothing
+_SETTLED = 1e-6  # residual of the Ritz pair over the largest growth
+_EMPTY = 1e-12  # of a vector's norm, below which the space is exhausted
+
+
+@dataclass(frozen=True)
+class Stability:
+    """Verdict on a state at frozen air gaps."""
+
+    lambda_min: float
+    """Least real part of the eigenvalues found (Pa/m): the rate at which the slowest disturbance dies times eta."""
+    settled: bool
+    """Whether its residual fell below the tolerance; if not, ``lambda_min`` is an upper bound where K is symmetric."""
+
+    @property
+    def stable(self) -> bool:
+        """Whether every disturbance dies out."""
+        return self.lambda_min > 0
+
+
+class StabilityCheck:
+    """Examines the solver's present state; leaves solver and problem as they were."""
+
+    def __init__(self, solver: Solver) -> None:
+        """Compile the skin's mass."""
+        problem = solver.problem
+        self.solver = solver
+        u, v = ufl.TrialFunction(problem.V), ufl.TestFunction(problem.V)
+        self._mass = fem.form(ufl.dot(u, v) * problem.surface.measure, jit_options=jit.OPTIONS)
+
+    def _tangent(self, eta: float, rows: Rows) -> PETSc.Mat:
+        problem, A = self.solver.problem, self.solver.layout.create_matrix()
+        guess = float(problem.guess.value)
+        problem.guess.value, problem.eta.value = SLIPS, eta
+        try:
+            self.solver.assemble_tangent(A)
+        finally:
+            problem.guess.value, problem.eta.value = guess, 0.0
+        A.zeroRowsColumns(rows, diag=self.solver.stiffness)
+        return A
+
+    def _mass_matrix(self, rows: Rows) -> PETSc.Mat:
+        A = self.solver.layout.create_matrix()
+        self.solver.layout.add_to_matrix(A, self._mass, (0, 0))
+        A.assemble()
+        A.zeroRowsColumns(rows, diag=0.0)
+        return A
+
+    def negative_pivots(self) -> int:
+        """Count the negative eigenvalues of a symmetric tangent, by LDL^T of MUMPS; collective.
+
+        Raises:
+            ValueError: the tangent is not symmetric, as where points slip.
+            NotConverged: the factorisation failed.
+        """
+        K = self._tangent(0.0, self.solver.prescribed_rows())
+        if not K.isSymmetric(1e-9 * K.norm(PETSc.NormType.INFINITY)):
+            raise ValueError("the tangent is not symmetric: its inertia says nothing of stability")
+        K.setOption(PETSc.Mat.Option.SYMMETRIC, True)
+        ksp = self._factorise(K, PETSc.PC.Type.CHOLESKY)
+        negative, _, _ = ksp.getPC().getFactorMatrix().getInertia()
+        for used in (ksp, K):
+            used.destroy()
+        return int(negative)
+
+    def _factorise(self, A: PETSc.Mat, kind: str) -> PETSc.KSP:
+        ksp = PETSc.KSP().create(self.solver.layout.comm)
+        ksp.setOperators(A)
+        ksp.setType(PETSc.KSP.Type.PREONLY)
+        pc = ksp.getPC()
+        pc.setType(kind)
+        pc.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
+        pc.setFactorSetUpSolverType()
+        if kind == PETSc.PC.Type.CHOLESKY:  # for the count of pivots: all on one rank in the last front, no null ones
+            pc.getFactorMatrix().setMumpsIcntl(13, 1)
+            pc.getFactorMatrix().setMumpsIcntl(24, 1)
+        ksp.setUp()
+        self.solver.counts.factorisations += 1
+        if pc.getFailedReason():
+            reason, irrecoverable = linear_failure(pc)
+            raise NotConverged(reason, False, irrecoverable)
+        return ksp
+
+    def check(self, eta: float = _ETA) -> Stability:
+        """Find the eigenvalue with the least real part; collective.
+
+        Args:
+            eta: shift (Pa/m): what is of its size or below settles fast.
+
+        Raises:
+            NotConverged: the factorisation failed.
+        """
+        kinds = [self.solver.prescribed_rows(), self.solver.antisymmetric_rows()]
+        with self.solver.timings.phase("stability"):
+            found = [self._least(rows, eta) for rows in kinds if rows is not None]
+        return min(found, key=lambda stability: stability.lambda_min)
+
+    def _least(self, rows: Rows, eta: float) -> Stability:
+        """Examine the disturbances that are zero in the rows given."""
+        K, M = self._tangent(eta, rows), self._mass_matrix(rows)
+        ksp = self._factorise(K, PETSc.PC.Type.LU)
+        result = self._arnoldi(ksp, M, rows, eta)
+        for used in (ksp, K, M):
+            used.destroy()
+        return result
+
+    def _start(self, rows: Rows) -> PETSc.Vec:
+        """Return a disturbance without symmetry that depends on position alone, not on the partition."""
+        problem, layout = self.solver.problem, self.solver.layout
+        x = problem.V.tabulate_dof_coordinates()[:, :2] / 1e-3
+        phases = np.stack([x @ [7.13, 3.77], x @ [4.31, 9.19]], axis=1)
+        nodal = sum(np.sin(k * phases + k**2) for k in (1, 3, 8, 21, 55))
+        start = layout.create_vector()
+        layout.from_nodes(np.asarray(nodal).ravel(), np.array([0.3, 1.0]), start)
+        start.array_w[rows - start.getOwnershipRange()[0]] = 0.0
+        return start
+
+    def _arnoldi(self, ksp: PETSc.KSP, M: PETSc.Mat, rows: Rows, eta: float) -> Stability:
+        w = self._start(rows)
+        Mw = w.duplicate()
+        M.mult(w, Mw)
+        ksp.solve(Mw, w)  # into the range of the operator: what does not move the skin is left out
+        M.mult(w, Mw)
+        basis, masses = [], []
+        H = np.zeros((_MOST + 1, _MOST))
+        norm = np.sqrt(w.dot(Mw))
+        best = Stability(np.inf, False)
+        for k in range(_MOST):
+            basis.append(w / norm)
+            masses.append(Mw / norm)
+            ksp.solve(eta * masses[-1], w)
+            before = np.sqrt(max(self._norm2(M, w, Mw), 0.0))
+            for _ in range(2):  # twice is enough
+                for i, mass in enumerate(masses):
+                    h = w.dot(mass)
+                    H[i, k] += h
+                    w.axpy(-h, basis[i])
+            norm = np.sqrt(max(self._norm2(M, w, Mw), 0.0))
+            H[k + 1, k] = norm
+            best = self._judge(H[: k + 2, : k + 1], eta)
+            if best.settled or norm <= _EMPTY * before:
+                break
+        return best
+
+    @staticmethod
+    def _norm2(M: PETSc.Mat, w: PETSc.Vec, Mw: PETSc.Vec) -> float:
+        M.mult(w, Mw)
+        return float(w.dot(Mw))
+
+    @staticmethod
+    def _judge(H: Array, eta: float) -> Stability:
+        """Return the least eigenvalue that the Hessenberg matrix, shape (k + 1, k), knows of."""
+        growth, vectors = np.linalg.eig(H[:-1])
+        residuals = H[-1, -1] * np.abs(vectors[-1])
+        accuracy = _SETTLED * np.abs(growth).max()
+        rates = np.real(eta * (1 / growth - 1))
+        rates[residuals > _ROUGH * np.abs(growth)] = np.inf  # growths next to zero of either sign
+        least = int(np.argmin(rates))
+        return Stability(float(rates[least]), bool(np.isfinite(rates[least]) and residuals[least] <= accuracy))

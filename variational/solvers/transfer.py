@@ -1,0 +1,235 @@
+r"""An accepted state carried from one mesh of a body to another, as the guess from which it is solved again.
+
+On another mesh of the same body an equilibrium is found from one known already, instead of along the whole path of the
+loads. What is carried is the displacement, the bone's translation, the ridges' air gaps, and the history of contact
+and friction. The carried fields are no equilibrium; what is solved for from them is.
+
+**Displacement.** The old mesh is gathered on every rank (it is two-dimensional: some MB). A node of the new one takes
+the value of the old polynomial in the triangle that it is inside of or, beyond a polygon that cuts off a curved
+boundary, least outside of in barycentric coordinates. Facets of another length cut a curved ridge elsewhere, by
+:math:`h^2 \kappa / 8`, half a micron where springs of the screen bear the contact over a tenth of that. Skin that is
+too low comes out of the screen in one step of Newton's method, since all of it is in contact; skin that is too high is
+not, and comes back point by point. So a node on a ridge is put down to where the old mesh has the skin at that place of
+the ridge's chord, and not up.
+
+**History.** What friction keeps is the elastic slip :math:`s - u_x = t_t / \gamma_t` at Gauss points of the skin
+(:mod:`~variational.contact.return_mapping`). It is interpolated linearly along each ridge, over the place on the
+ridge's chord, so is the contact pressure, and :math:`s = u_x + (s - u_x)` is made anew with the new :math:`u_x`.
+
+**Full slip.** There the traction is the limit of friction, :math:`\mp t_{max}(p_n)`, wherever there is pressure. The
+state depends on the path only by where it is, since the screen looks the same everywhere: :math:`u + \delta e_x` is as
+good a solution as u. So the body is moved on by :math:`\delta` and the anchors are not. Every point is then far beyond
+its cone, none can stick while Newton's method moves the skin by less than :math:`\delta`, and what is solved for is the
+state of full slip itself, of which the old mesh's history is no part. In a state with sticking points the history does
+remain the old mesh's, interpolated, with the error that its path made.
+"""
+
+from dataclasses import dataclass, replace
+
+import basix
+import numpy as np
+from mpi4py import MPI
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from variational import compat
+from variational.contact.formulation import History
+from variational.problem import Problem
+from variational.quantities import SurfaceState
+from variational.solvers.coupling import Coupling
+from variational.solvers.newton import Control
+
+Array = NDArray[np.float64]
+_CANDIDATES = 32  # triangles about a point, by their centroids; sizes of neighbours differ by far less
+_OUTSIDE = 1.0  # altitudes of a triangle that a point of the same body may be outside of it
+
+
+@dataclass(frozen=True)
+class SkinState:
+    """History of one ridge's skin, sorted along its chord; shape (points,) each."""
+
+    origin: Array
+    """A point of the chord (m), shape (2,)."""
+    chord: Array
+    """Its direction, shape (2,)."""
+    along: Array
+    """Place on the chord (m)."""
+    elastic_slip: Array
+    """s - u_x (m)."""
+    pressure: Array
+    """Contact pressure (Pa of reference area)."""
+    position: Array | None
+    """Current place (m), by facet, shape (facets, points on each, 2); None of another model, whose skin is not this
+    body's."""
+
+
+@dataclass(frozen=True)
+class StateSnapshot:
+    """An accepted state, the same on every rank and free of its mesh."""
+
+    corners: Array
+    """Vertices of all triangles (m), shape (cells, 3, 2)."""
+    u: Array
+    """Displacement at their nodes (m), shape (cells, nodes, 2)."""
+    skin: dict[int, SkinState]
+    """By the ridge's number."""
+    d_eq: dict[int, float]
+    """Equivalent air gap (m) by the ridge's number."""
+    gain: dict[int, float]
+    """See :attr:`variational.solvers.coupling.Coupling.gain`, by the ridge's number."""
+    bone: Array
+    """The bone's translation (m), shape (2,)."""
+    control: Control
+    voltage: float
+
+
+def carry(coupling: Coupling, state: SurfaceState) -> StateSnapshot:
+    """Take the accepted state of a coupling; collective.
+
+    Args:
+        coupling: whose fields and controls are those of the state.
+        state: its surface.
+
+    Raises:
+        ValueError: the element has a pressure of its own, which is not carried.
+    """
+    problem, solver = coupling.solver.problem, coupling.solver
+    _refuse_pressure(problem)
+    mesh, surface = problem.mesh, problem.surface
+    cells = np.arange(mesh.topology.index_map(2).size_local)
+    corners = mesh.geometry.x[compat.cell_geometry(mesh)[cells]][:, :, :2]
+    u = problem.displacement()[problem.V.dofmap.list[cells]]
+    here = np.stack([*_reference(problem, state), state.anchor - _u_x(problem), state.p_n, state.x, state.y])
+    points, ridge = _all(mesh.comm, here, 1), _all(mesh.comm, surface.ridge, 0)
+    skin = {name: _ridge(points[:, ridge == k].reshape(6, -1), here.shape[2]) for k, name in enumerate(surface.names)}
+    return StateSnapshot(
+        _all(mesh.comm, corners, 0),
+        _all(mesh.comm, u, 0),
+        skin,
+        {name: float(d) for name, d in zip(surface.names, coupling.d_eq, strict=True)},
+        {name: float(g) for name, g in zip(surface.names, coupling.gain, strict=True)},
+        solver.bone,
+        replace(solver.control),
+        float(problem.voltage.value),
+    )
+
+
+def give(carried: StateSnapshot, coupling: Coupling, slide: float = 0.0) -> None:
+    """Give a coupling on another mesh of the same body the fields, history and controls of a state; collective.
+
+    Args:
+        carried: the state.
+        coupling: on the other mesh.
+        slide: how far the body is moved on sideways without its anchors (m), for a state of full slip: against the
+            friction on the skin, and farther than the skin will move when the state is solved for.
+
+    Raises:
+        ValueError: another body, other ridges, or an element with a pressure of its own; on every rank.
+    """
+    problem, solver = coupling.solver.problem, coupling.solver
+    _refuse_pressure(problem)
+    names = problem.surface.names
+    if names != list(carried.d_eq):
+        raise ValueError(
+            f"the state has ridges {min(carried.d_eq)} to {max(carried.d_eq)} that can touch and the mesh "
+            f"{min(names)} to {max(names)}; they must be the same"
+        )
+    nodes = problem.V.tabulate_dof_coordinates()[:, :2]
+    u, outside = interpolate(carried, nodes)
+    farthest = float(np.max(problem.mesh.comm.allgather(outside)))
+    if farthest > _OUTSIDE:
+        raise ValueError(f"a node lies {farthest:.3g} triangles outside the state's mesh; it is of another body")
+    for k, name in enumerate(names):
+        skin, on_ridge = carried.skin[name], problem.surface.nodes(problem.V, k)
+        if skin.position is not None:
+            there = place(skin, skin.position, nodes[on_ridge]) - nodes[on_ridge]
+            lower = there[:, 1] < u[on_ridge, 1]
+            u[on_ridge[lower]] = there[lower]
+    shift = np.array([slide, 0.0])
+    solver.set_displacement(u + shift, carried.bone + shift)
+    solver.control = replace(carried.control, x=carried.control.x + slide)
+    problem.voltage.value = carried.voltage
+    coupling.set_air_gaps(np.array([carried.d_eq[name] for name in names]))
+    coupling.gain = np.array([carried.gain[name] for name in names])
+
+    state = coupling.observer.state()
+    elastic_slip, pressure = np.zeros_like(state.x), np.zeros_like(state.x)
+    reference = np.stack(_reference(problem, state), axis=-1)
+    for k, name in enumerate(names):
+        mine, ridge = problem.surface.ridge == k, carried.skin[name]
+        along = (reference[mine] - ridge.origin) @ ridge.chord
+        elastic_slip[mine] = np.interp(along, ridge.along, ridge.elastic_slip)
+        pressure[mine] = np.interp(along, ridge.along, ridge.pressure)
+    problem.set_history(History(_u_x(problem) - slide + elastic_slip, pressure, state.x - slide))
+
+
+def interpolate(carried: StateSnapshot, points: Array) -> tuple[Array, float]:
+    """Return the displacement (m) at reference points (m), shape (n, 2) both, and how far one is outside at most.
+
+    The distance is in altitudes of the triangle that the value is taken from, zero if every point is inside.
+    """
+    if len(points) == 0:
+        return np.zeros((0, 2)), 0.0
+    a, b, c = np.moveaxis(carried.corners, 1, 0)
+    tree = cKDTree((a + b + c) / 3)
+    near = tree.query(points, min(_CANDIDATES, len(a)))[1].reshape(len(points), -1)
+    edges = np.stack([b - a, c - a], axis=-1)
+    to_reference = np.linalg.inv(edges)
+    local = np.einsum("nkij,nkj->nki", to_reference[near], points[:, None] - a[near])
+    least = np.minimum(local.min(axis=2), 1 - local.sum(axis=2))
+    best = least.argmax(axis=1)
+    row = np.arange(len(points))
+    cell, X = near[row, best], local[row, best]
+    degree = {3: 1, 6: 2, 10: 3}[carried.u.shape[1]]
+    element = basix.create_element(
+        basix.ElementFamily.P, basix.CellType.triangle, degree, basix.LagrangeVariant.gll_warped
+    )
+    basis = np.asarray(element.tabulate(0, X))[0, :, :, 0]
+    return np.einsum("nk,nki->ni", basis, carried.u[cell]), float(max(0.0, -least[row, best].min()))
+
+
+def place(ridge: SkinState, position: Array, nodes: Array) -> Array:
+    """Return where (m) the skin of a ridge is, of its state's ``position``, at reference points on it (m).
+
+    Both have the shape (n, 2).
+    """
+    n = position.shape[1]
+    gauss = (1 + np.polynomial.legendre.leggauss(n)[0]) / 2
+    points, along = ridge.along.reshape(-1, n), (nodes - ridge.origin) @ ridge.chord
+    length = (points[:, -1] - points[:, 0]) / (gauss[-1] - gauss[0])
+    start = points[:, 0] - gauss[0] * length
+    facet = np.clip(np.searchsorted(start, along, side="right") - 1, 0, len(start) - 1)
+    powers = np.vander((along - start[facet]) / length[facet], n)
+    return np.einsum("nk,nki->ni", powers @ np.linalg.inv(np.vander(gauss, n)), position[facet])
+
+
+def _refuse_pressure(problem: Problem) -> None:
+    if problem.pressure is not None:
+        raise ValueError("the element has a pressure of its own, which cannot be carried to another mesh; use P2")
+
+
+def _u_x(problem: Problem) -> Array:
+    """Return the sideways displacement (m) at this rank's Gauss points, shape (facets, points)."""
+    return problem.surface.evaluate(problem.surface.compile([problem.u[0]]))[0]
+
+
+def _reference(problem: Problem, state: SurfaceState) -> tuple[Array, Array]:
+    """Return the reference positions (m) of this rank's Gauss points, shape (facets, points) each."""
+    u_x, u_y = problem.surface.evaluate(problem.surface.compile([problem.u[0], problem.u[1]]))
+    return state.x - u_x, state.y - u_y
+
+
+def _all(comm: MPI.Comm, values: NDArray, axis: int) -> NDArray:
+    return np.concatenate(comm.allgather(values), axis=axis)
+
+
+def _ridge(points: Array, on_facet: int) -> SkinState:
+    """Sort the points of a ridge along its chord; rows x, y, elastic slip, pressure, and current x and y."""
+    xy = points[:2]
+    origin = xy.mean(axis=1)
+    # A ridge is wider than high: the chord is its points' first principal direction.
+    chord = np.linalg.svd(xy - origin[:, None], full_matrices=False)[0][:, 0]
+    along = chord @ (xy - origin[:, None])
+    order = np.argsort(along)
+    position = points[4:, order].T.reshape(-1, on_facet, 2)
+    return SkinState(origin, chord, along[order], points[2, order], points[3, order], position)
