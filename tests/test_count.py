@@ -56,13 +56,13 @@ def test_triangles_of_larger_meshes(size, triangles):
     assert triangles / 1.5 < found < 1.5 * triangles
 
 
-@pytest.mark.parametrize(("unknowns", "memory"), [(27258, 0.354), (73208, 0.561), (186302, 1.171), (873366, 5.729)])
-def test_memory_of_runs(monkeypatch, unknowns, memory):
+@pytest.mark.parametrize(("unknowns", "gigabytes"), [(27258, 0.354), (73208, 0.561), (186302, 1.171), (873366, 5.729)])
+def test_memory_of_runs(monkeypatch, unknowns, gigabytes):
     """Measured, in GB, of runs with quadratic elements; the fit is within a fifth."""
     monkeypatch.setattr(memory.count, "triangles", lambda *arguments: unknowns / 4)
     found = memory.estimate(from_data({}))
     assert found.unknowns == unknowns
-    assert found.memory / 1e9 == pytest.approx(memory, rel=0.2)
+    assert found.memory / 1e9 == pytest.approx(gigabytes, rel=0.2)
 
 
 def test_two_million_unknowns_are_allowed(monkeypatch):

@@ -97,7 +97,7 @@ def wheel(tmp_path_factory) -> zipfile.ZipFile:
 def test_wheel_holds_the_library(wheel):
     """Each module of it and the marks of its types, and nothing of tests, benchmarks and demos."""
     modules = {file.relative_to(ROOT) for top in LIBRARY for file in (ROOT / top).rglob("*.py")}
-    marks = {file.parent / "py.typed" for file in modules}
+    marks = {Path(top) / "py.typed" for top in LIBRARY}
     listed = {Path(name) for name in wheel.namelist() if ".dist-info/" not in name}
     assert listed == modules | marks
 
