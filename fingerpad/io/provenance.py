@@ -24,7 +24,7 @@ from petsc4py import PETSc
 from fingerpad.io.petsc_options import in_use
 from variational import jit
 
-_ROOT = Path(__file__).resolve().parents[1]
+_ROOT = Path(__file__).resolve().parents[2]
 _PACKAGES = ("geometry", "variational", "fingerpad")
 # Threads and kernels of the linear algebra, MPI's and PETSc's settings, compilers of the forms, what is loaded.
 _VARIABLES = re.compile(
