@@ -126,7 +126,7 @@ class _Finger:
         """Bring a pressed finger to full slip, in one step."""
         mine, other = self.solver, pressed.solver
         mine.x.array_w[:] = other.x.array_r
-        mine.to_fields(mine.x)
+        mine.equations.to_fields(mine.x)
         mine.control, mine.reaction = replace(other.control), other.reaction.copy()
         h = pressed.problem.history
         self.problem.set_history(History(h.anchor - _BEHIND, h.pressure, h.x))

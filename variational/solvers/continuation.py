@@ -1,8 +1,8 @@
 """From load to load: adaptive steps with cutback, first touch, snap-off, and accepted states.
 
 A step that fails is halved. Where the loop over the scales cycles there may be no equilibrium in a range of loads (see
-:mod:`~variational.solvers.coupling`), which halved steps only creep up to; so a longer step over that range is tried
-first.
+:mod:`~variational.solvers.coupling`), which halved steps approach and never cross; so a longer step over that range is
+tried first.
 
 History (friction anchors, contact multipliers, air gaps, displacement) is accepted in :meth:`Continuation._accept`
 and nowhere else; a rejected attempt restores the last accepted state.
@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from variational.contact.formulation import History
 from variational.solvers.coupling import Coupling
+from variational.solvers.equations import Control
 from variational.solvers.failure import NotConverged
-from variational.solvers.newton import Control
 
 Array = NDArray[np.float64]
 
@@ -44,7 +44,7 @@ _FORCE, _VOLTAGE, _SINK, _SLIDE = 0.067, 0.25, 40e-6, 60e-6
 _SMALLEST = 1e-3  # step below which a load is given up, over the largest
 _MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on when the bone moves
 _LEAP = 1.5  # step tried where the loop over the scales cycles, over the one that led there
-_WAYS = "at once", "settled", "bit by bit", "creeping"  # to an equilibrium from a state from elsewhere
+_WAYS = "at once", "settled", "bit by bit", "pseudo-transient"  # to an equilibrium from a state from elsewhere
 _SMALLEST_BIT = 1 / 8  # of the forces that such a state is out of balance by
 _FEW = 6  # factorisations; a step that took no more lets the next one grow
 _MANY_STEPS, _FEW_STEPS = 20, 100  # most steps of a load: so many for each of its largest steps, and so many more
@@ -134,7 +134,7 @@ class Continuation:
     def _restore(self) -> None:
         a = self._now
         self.solver.x.array_w[:] = a.x
-        self.solver.to_fields(self.solver.x)
+        self.solver.equations.to_fields(self.solver.x)
         self.coupling.set_air_gaps(a.d_eq.copy())
         self.problem.set_history(a.history)
         self.solver.control = replace(a.control)
@@ -226,9 +226,9 @@ class Continuation:
             while True:
                 # One or two failures may be a step too large. More in a row, or one in each of several steps, are a
                 # jump, which no step is small enough for.
-                creep = len(attempt.cutbacks) > 1 or cut >= _CUT
+                pseudo_transient = len(attempt.cutbacks) > 1 or cut >= _CUT
                 try:
-                    self._try(at(part + step), attempt, creep)
+                    self._try(at(part + step), attempt, pseudo_transient)
                     break
                 except NotConverged as failure:
                     self._restore()
@@ -284,7 +284,7 @@ class Continuation:
                 if way == "bit by bit":
                     self._let_go(0.5)
                 load = replace(self._now.control), self._now.voltage
-                self._try(load, attempt, creep=way == "creeping", on_cone=False)
+                self._try(load, attempt, pseudo_transient=way == "pseudo-transient", on_cone=False)
                 self._accept()
                 return attempt
             except NotConverged as failure:
@@ -303,21 +303,21 @@ class Continuation:
         Raises:
             NotConverged: not even the smallest bit could be.
         """
-        solver = self.solver
+        solver, equations = self.solver, self.solver.equations
         solver.new_load(replace(self._now.control), self._now.voltage, on_cone=False)
-        solver.hold(skin)
+        equations.hold(solver.x, skin)
         try:
-            while solver.held > 0:
-                before, held = solver.x.array_r.copy(), solver.held
-                solver.held = max(held - bit, 0.0)
+            while equations.load_part > 0:
+                before, held = solver.x.array_r.copy(), equations.load_part
+                equations.load_part = max(held - bit, 0.0)
                 try:
                     solver.solve()
                 except NotConverged:
-                    solver.x.array_w[:], solver.held, bit = before, held, bit / 2
+                    solver.x.array_w[:], equations.load_part, bit = before, held, bit / 2
                     if bit < _SMALLEST_BIT:
                         raise
         finally:
-            solver.release()
+            equations.release()
 
     def probe(self, control: Control) -> tuple[Array, bool] | None:
         """Look where the accepted state would lead, and stay in it.
@@ -331,7 +331,7 @@ class Continuation:
         """
         guess, gain = self.problem.guess.value.copy(), self.coupling.gain.copy()
         try:
-            self._try((control, self._now.voltage), Attempt(), creep=False)
+            self._try((control, self._now.voltage), Attempt(), pseudo_transient=False)
             return self.solver.reaction.copy(), self.observer.slip(self.observer.state())[1]
         except NotConverged:
             return None
@@ -340,13 +340,13 @@ class Continuation:
             self.problem.guess.value, self.coupling.gain = guess, gain
 
     # -- one step --------------------------------------------------------------------------------------
-    def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool, on_cone: bool = True) -> None:
+    def _try(self, load: tuple[Control, float], attempt: Attempt, pseudo_transient: bool, on_cone: bool = True) -> None:
         counts = self.solver.counts
         newton, factorisations, shifted = counts.newton, counts.factorisations, counts.pseudo_transient
         moves = load[0].x != self._now.control.x
         self.solver.new_load(*load, slipping=moves and self.slip[0] > _MANY, on_cone=on_cone)
         try:
-            self.coupling.solve(creep)
+            self.coupling.solve(pseudo_transient)
         finally:
             attempt.newton += counts.newton - newton
             attempt.factorisations += counts.factorisations - factorisations
