@@ -103,7 +103,7 @@ def test_normal_contact_returns_on_its_own_mesh(bodies, reached):
     normal = reached[COARSE][0]
     path = prepare(bodies[COARSE])
     give(normal, path.coupling)
-    path.adopt("normal contact")
+    path.re_equilibrate("normal contact")
     np.testing.assert_allclose(path.solver.bone, normal.bone, atol=1e-11)
 
 
@@ -115,7 +115,7 @@ def test_full_slip_from_a_coarse_mesh_is_that_of_the_path(bodies, reached):
     """
     path = prepare(bodies[FINE])
     give(reached[COARSE][1], path.coupling, SLIDE)
-    path.adopt("full slip")
+    path.re_equilibrate("full slip")
     f_t, length = -path.solver.reaction[0], path.observer.ridge_loads(path.surface_state).length[0]
     assert path.slip == (1.0, True)
     assert f_t == pytest.approx(reached[FINE][2], rel=2e-6)
@@ -127,7 +127,7 @@ def test_full_slip_stays_when_it_slides_on(bodies, reached):
     """Adopted full slip is steady over a further 0.2 mm. Tolerance: 1e-6, the run's own criterion."""
     path = prepare(bodies[FINE])
     give(reached[COARSE][1], path.coupling, SLIDE)
-    path.adopt("full slip")
+    path.re_equilibrate("full slip")
     before = path.solver.reaction[0]
     path.run(Target("slide", bone_x=path.solver.control.x + SLIDE))
     assert path.slip == (1.0, True)
@@ -202,7 +202,7 @@ def test_a_state_not_found_at_once_is_found(bodies, reached, monkeypatch, failur
     monkeypatch.setattr(path.coupling, "solve", fails)
     monkeypatch.setattr(solver.equations, "hold", noted)
     monkeypatch.setattr(solver, "new_load", loaded)
-    attempt = path.adopt("full slip")
+    attempt = path.re_equilibrate("full slip")
     assert attempt.cutbacks == failures * ["DIVERGED_LOCAL_MIN"]
     assert attempt.pseudo_transient == 0
     assert [pseudo_transient for pseudo_transient, *_ in calls] == [False, False, False, True][: failures + 1]
@@ -234,7 +234,7 @@ def test_bits_are_halved_down_to_an_eighth(bodies, reached, monkeypatch, largest
 
     monkeypatch.setattr(solver, "solve", solve)
     with end:
-        path._let_go(0.5)
+        path._relax(0.5)
     assert held == tried
     assert solver.equations.load_part == 0
 
@@ -264,7 +264,7 @@ def test_bits_are_let_go_where_the_body_cannot_be_settled(bodies, reached, monke
     monkeypatch.setattr(path.coupling, "solve", fails_once)
     monkeypatch.setattr(solver.equations, "hold", noted)
     monkeypatch.setattr(solver, "solve", not_with_skin_held)
-    attempt = path.adopt("full slip")
+    attempt = path.re_equilibrate("full slip")
     assert len(attempt.cutbacks) == 2
     np.testing.assert_array_equal(started, [put_in, put_in])
     assert calls == [False, False]
@@ -284,7 +284,7 @@ def test_state_of_another_model_is_not_settled(bodies, reached, monkeypatch):
     monkeypatch.setattr(path.coupling, "solve", fails)
     monkeypatch.setattr(path.solver.equations, "hold", lambda x, skin=False: pytest.fail("held"))
     with pytest.raises(StepFailed, match="LOCAL_MIN"):
-        path.adopt("full slip", same_body=False)
+        path.re_equilibrate("full slip", same_body=False)
     assert calls == [False, True]
 
 
@@ -293,7 +293,7 @@ def test_failure_names_the_state(bodies, reached):
     path = prepare(bodies[FINE])
     give(replace(reached[COARSE][1], voltage=float("nan")), path.coupling, SLIDE)
     with pytest.raises(StepFailed, match="full slip.*found no equilibrium"):
-        path.adopt("full slip")
+        path.re_equilibrate("full slip")
 
 
 def test_another_body_is_refused(reached):

@@ -181,7 +181,7 @@ class Simulation:
         if squeezed is not None:
             squeeze(self.solver, *squeezed)
         self._load = name
-        self.continuation.adopt(name, same_body=squeezed is None)
+        self.continuation.re_equilibrate(name, same_body=squeezed is None)
         # What was dissipated on the way is not known.
         self.energy = EnergyBook(self.problem, *self._state(), copies=self._copies)
         loads = self.ridge_loads()

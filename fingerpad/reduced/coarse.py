@@ -130,7 +130,7 @@ class _Finger:
         mine.control, mine.reaction = replace(other.control), other.reaction.copy()
         h = pressed.problem.history
         self.problem.set_history(History(h.anchor - _BEHIND, h.pressure, h.x))
-        self.walk.adopt("full slip")
+        self.walk.re_equilibrate("full slip")
 
     def touched(self) -> set[int]:
         """Return the numbers of the ridges that the screen reaches, the central one among them."""
