@@ -30,9 +30,11 @@ from geometry import strip, tags
 from geometry.mesh import TaggedMesh, load
 from geometry.parameters import Fingertip, MeshSize
 from variational import compat, jit
+from variational.contact.formulation import SurfaceState
 from variational.kinematics import deformation_gradient
-from variational.problem import Interface, Ogden, Problem
-from variational.quantities import Observer, SurfaceState
+from variational.materials.ogden import Ogden
+from variational.problem import Interface, Problem
+from variational.quantities import Observer
 from variational.roughness.bam import BearingArea
 from variational.solvers.cell import carried
 from variational.solvers.continuation import Attempt, Continuation, StepFailed, Target

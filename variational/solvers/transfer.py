@@ -33,9 +33,8 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from variational import compat
-from variational.contact.formulation import History
+from variational.contact.formulation import History, SurfaceState
 from variational.problem import Problem
-from variational.quantities import SurfaceState
 from variational.solvers.coupling import Coupling
 from variational.solvers.newton import Control
 
