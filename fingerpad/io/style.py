@@ -1,7 +1,6 @@
 """How every picture looks: one palette, one set of fonts and sizes, told apart with any colour vision.
 
-Categories have the colours of Okabe and Ito (2008), magnitudes viridis, a voltage its own sequential ramp. Importing
-this module changes nothing; :func:`look` holds inside a ``with`` block only.
+Categories have Okabe and Ito's colours, magnitudes viridis, voltages a ramp of their own. Importing changes nothing.
 """
 
 from collections.abc import Iterator
@@ -21,7 +20,7 @@ STATE = {"uncharged": SKY, "charged": BLUE, "full_slip": VERMILION}
 """Colour of a state by its name in :mod:`fingerpad.io.states`."""
 PRESSURE, ATTRACTION, SHEAR, GAP = BLACK, PURPLE, ORANGE, GREEN
 MAGNITUDE = "viridis"
-WIDTH = 9.0  # in: a page's width; at 900 px the smallest letters are 12 px high
+WIDTH = 9.0  # in, of a page
 _LOOK = {
     "font.size": 10.5,
     "axes.titlesize": 10.5,
