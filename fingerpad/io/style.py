@@ -17,7 +17,6 @@ BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#999999"
 CATEGORIES = (BLUE, VERMILION, GREEN, PURPLE, SKY, ORANGE, BLACK)
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 STATE = {"uncharged": SKY, "charged": BLUE, "full_slip": VERMILION}
-"""Colour of a state by its name in :mod:`fingerpad.io.states`."""
 PRESSURE, ATTRACTION, SHEAR, GAP = BLACK, PURPLE, ORANGE, GREEN
 MAGNITUDE = "viridis"
 WIDTH = 9.0  # in, of a page
