@@ -227,7 +227,7 @@ class Report:
         unknowns = int(more.pop("unknowns", self._simulation.unknowns))
         words = {name: more.pop(name, "") for name in ("failure", "interrupted")}
         notes = tuple(more.pop("notes", ()))
-        drawing = self._drawing()
+        drawing = self._drawing(named)
         if drawing is not None and self._folder is not None:
             drawing.write(self._folder)
         self.seconds += time.perf_counter() - start
@@ -253,13 +253,13 @@ class Report:
         self._writer.summary(found.to_dict())
         return found
 
-    def _drawing(self) -> Drawing | None:
+    def _drawing(self, named: Mapping[str, ContactState]) -> Drawing | None:
         """Return what the pictures are drawn from, on rank 0."""
         assert self._simulation is not None
         if not self.states or self.comm.rank != 0:
             return None
         size = None if self.scene.accuracy is None else self._simulation.scene.mesh.contact
-        whole = Drawing(coefficient(self.scene), self.states, self._profiles, self._ends, self._finer, size)
+        whole = Drawing(coefficient(self.scene), self.states, self._profiles, self._ends, self._finer, size, named)
         shown = whole.steps_along()
         return replace(whole, profiles={step: p for step, p in self._profiles.items() if step in shown})
 
