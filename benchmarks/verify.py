@@ -51,7 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--small", action="store_true", help="coarse meshes, as in the tests")
     parser.add_argument("--docs", type=Path, default=_ROOT / "docs", help="folder of the page")
     args = parser.parse_args(arguments)
-    jit.sweep(MPI.COMM_WORLD)
+    jit.delete_unfinished(MPI.COMM_WORLD)
     results = _run_all(args.only, args.small)
     if not args.small and len(results) == len(AREAS):
         page.write(results, args.docs)

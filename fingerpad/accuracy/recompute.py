@@ -1,4 +1,4 @@
-"""States of a path that can be solved again: kept on the way, carried to another mesh, solved for there."""
+"""States of a path that can be solved again: kept on the way, restored on another mesh, solved for there."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -16,7 +16,7 @@ from fingerpad.model.steps import Step
 from fingerpad.scene import Scene
 from geometry.parameters import MeshSize
 from variational.receptors import Receptors
-from variational.solvers.transfer import StateSnapshot, carry
+from variational.solvers.transfer import StateSnapshot, take_snapshot
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
@@ -31,7 +31,7 @@ def words(name: str) -> str:
 class State:
     """A state that can be solved again, the same on every rank."""
 
-    carried: StateSnapshot
+    snapshot: StateSnapshot
     direction: int
     """The way the bone slides at full slip, zero in normal contact."""
     state: ContactState
@@ -83,7 +83,7 @@ class StateRecorder:
         """Find the Merkel sites of the ridges that can touch."""
         self._simulation = simulation
         self._start = time.process_time()
-        ridges, profiles = simulation.problem.surface.names, simulation.profiles
+        ridges, profiles = simulation.problem.surface.ridge_numbers, simulation.profiles
         sites = profiles.merkel_sites()[[profiles.ridges.index(j) for j in ridges]]
         self._sites = Receptors(simulation.problem, sites)
         self._begun: State | None = None  # the last full slip, held or not
@@ -109,9 +109,9 @@ class StateRecorder:
         loads = s.ridge_loads()
         lengths = np.zeros(s.scene.geometry.ridge_count)
         lengths[np.array(s.ridges) + len(lengths) // 2] = loads.length
-        sed = {j: float(density) for j, density in zip(s.problem.surface.names, self._sites.sed(), strict=True)}
+        sed = {j: float(density) for j, density in zip(s.problem.surface.ridge_numbers, self._sites.sed(), strict=True)}
         present = s.present(loads).state
-        return State(carry(s.coupling, s.continuation.surface_state), direction, present, lengths, sed)
+        return State(take_snapshot(s.coupling, s.continuation.surface_state), direction, present, lengths, sed)
 
     def solve(self) -> Solve:
         """Return what was kept."""
@@ -136,12 +136,12 @@ def solve_again(
         look: returns what is to be shown of the state that a simulation is in, for :attr:`Solve.views`.
 
     Raises:
-        StepFailed: see :meth:`fingerpad.model.simulation.Simulation.adopt`.
+        StepFailed: see :meth:`fingerpad.model.simulation.Simulation.re_equilibrate`.
     """
     simulation = Simulation(scene, needed, comm, lambda step, done: None, lambda: None)
     keeper = StateRecorder(simulation)
     for name, state in states.items():
-        simulation.adopt(state.carried, words(name), state.direction)
+        simulation.re_equilibrate(state.snapshot, words(name), state.direction)
         keeper.keep(name)
         if look is not None:
             keeper.views[name] = look(simulation)

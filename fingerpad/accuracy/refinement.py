@@ -1,7 +1,7 @@
 r"""Results with their discretisation error, and refined until that is within what a scene asks for.
 
 The whole path of the loads is run once, on the mesh that the scene gives (a coarse one where it asks for an accuracy
-and says nothing else). Two of its states are then carried to other meshes and solved for again
+and says nothing else). Two of its states are then restored on other meshes and solved for again
 (:mod:`variational.solvers.transfer`): normal contact, the last state before the bone moves, and full slip. Turning one
 knob at a time gives each its share of the error (:mod:`fingerpad.richardson`):
 
@@ -141,7 +141,7 @@ class Refinement:
     def _stiffen(self) -> None:
         """Solve again over a screen of twice the stiffness."""
         scene = self.scene.model_copy(update={"mesh": self.base.mesh, "contact": stiffened(self.scene.contact)})
-        states = {name: replace(s, carried=over_stiffer(s.carried)) for name, s in self.base.states.items()}
+        states = {name: replace(s, snapshot=over_stiffer(s.snapshot)) for name, s in self.base.states.items()}
         try:
             found = self._again(scene, states)
         except (StepFailed, GeometryError) as error:

@@ -124,8 +124,8 @@ class Report:
         for name, found in (("ridges", self._viewer.ridges(step)), ("receptors", receptors)):
             for each in found:
                 self._writer.row(name, each | size)
-        for sweep, change in enumerate(step.attempt.changes):
-            self._writer.row("coupling", {"step": state.step, "sweep": sweep + 1, "change": change})
+        for iteration, change in enumerate(step.attempt.changes):
+            self._writer.row("coupling", {"step": state.step, "iteration": iteration + 1, "change": change})
         self.console.step(state, done)
         if self.comm.rank == 0:
             self._log(step, state)
@@ -133,7 +133,7 @@ class Report:
 
     def _log(self, step: Step, state: ContactState) -> None:
         assert self._simulation is not None
-        self.log.info("step %s sweeps %s", json.dumps(state.row()), step.attempt.changes)
+        self.log.info("step %s coupling iterations %s", json.dumps(state.row()), step.attempt.changes)
         for cut in step.attempt.cutbacks:
             self.log.warning("step %d cut: %s", state.step, cut)
         notes = [f"ridge {j} {note}" for j, note in zip(self._simulation.ridges, step.notes, strict=True) if note]

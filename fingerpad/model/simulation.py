@@ -26,7 +26,7 @@ from variational.quantities import RidgeLoads
 from variational.solvers.continuation import Attempt, StepFailed, Target
 from variational.solvers.failure import NotConverged
 from variational.solvers.stability import StabilityCheck
-from variational.solvers.transfer import StateSnapshot, give
+from variational.solvers.transfer import StateSnapshot, restore
 from variational.state import ContactState, RidgeStates, StepRecord
 
 Array = NDArray[np.float64]
@@ -90,7 +90,7 @@ class Simulation:
         )
         self.problem, self.solver, self.observer = made.problem, made.solver, made.observer
         self.coupling, self.continuation = made.coupling, made.continuation
-        self.ridges = symmetry.names(made.surface.names) if half else made.surface.names
+        self.ridges = symmetry.names(made.surface.ridge_numbers) if half else made.surface.ridge_numbers
         shortest = float(np.min(comm.allgather(made.surface.length.min(initial=np.inf))))
         self._contact_size = scene.mesh.contact if scene.laws.mesh is None else shortest
         self.energy = EnergyBook(self.problem, *self._state(), copies=self._copies)
@@ -152,11 +152,11 @@ class Simulation:
             "contact_length": float(loads.length.sum()),
         }
 
-    def adopt(self, carried: StateSnapshot, name: str, direction: int = 0) -> None:
+    def re_equilibrate(self, snapshot: StateSnapshot, name: str, direction: int = 0) -> None:
         """Solve again for a state that was reached on another mesh of the same finger.
 
         Args:
-            carried: the state.
+            snapshot: the state.
             name: what it is called in a failure.
             direction: 1 or -1 for a state of full slip, the way the bone slides; zero for another.
 
@@ -165,14 +165,14 @@ class Simulation:
                 expected to touch), or full slip is no longer full or not steady.
         """
         try:
-            self._adopt(carried, name, direction)
+            self._re_equilibrate(snapshot, name, direction)
         except (RestartRequired, FingerExceeded) as error:
             raise StepFailed(
                 f"{name}, solved again with a contact size of {self.scene.mesh.contact:g} m: {error}"
             ) from error
 
-    def _adopt(self, carried: StateSnapshot, name: str, direction: int) -> None:
-        give(carried, self.coupling, direction * SLIDE_ON)
+    def _re_equilibrate(self, snapshot: StateSnapshot, name: str, direction: int) -> None:
+        restore(snapshot, self.coupling, direction * SLIDE_ON)
         self._load = name
         self.continuation.re_equilibrate(name)
         # What was dissipated on the way is not known.
@@ -320,7 +320,7 @@ class Simulation:
             released_error=energy.released_error,
             newton_iterations=attempt.newton,
             factorisations=attempt.factorisations,
-            sweeps=attempt.sweeps,
+            coupling_iterations=attempt.coupling_iterations,
             cutbacks=len(attempt.cutbacks),
             jump=attempt.jump,
         )

@@ -123,7 +123,7 @@ def _run(
         report.say(note)
     ended: dict[str, Any] = {}
     again = False
-    jit.sweep(comm)
+    jit.delete_unfinished(comm)
     try:
         with Interrupt(comm) as interrupt:
             keeper: StateRecorder | None = None

@@ -101,8 +101,8 @@ class Contact(Part):
     :mod:`variational.contact.formulation`."""
     eps_n: Annotated[Finite, within(1e7, 1e17, "Pa/m")] = 1.5e12
     """Normal stiffness of the penalty and the augmented Lagrangian (Pa/m of reference area). *Assumption*: penetration
-    stays below a tenth of d_eq. The augmented Lagrangian's default is ten times as stiff, for fewer sweeps. With 1e7
-    the finger sinks in by millimetres; with 1e17 roundoff of a length of 1 mm makes 20 kPa."""
+    stays below a tenth of d_eq. The augmented Lagrangian's default is ten times as stiff, to take fewer iterations.
+    With 1e7 the finger sinks in by millimetres; with 1e17 roundoff of a length of 1 mm makes 20 kPa."""
     eps_t: Annotated[Finite, within(1e6, 1e17, "Pa/m")] = 5e10
     """Tangential stiffness of the two (Pa/m of reference area) (*assumption*); the augmented Lagrangian's likewise."""
     tolerance: Annotated[Finite, within(1e-12, 1e-6, "m")] = 5e-9
@@ -184,7 +184,7 @@ class Numerics(Part):
     its gain g times as much over 1 - g, and the attraction is off by up to twice that: by less than 1e-2 with 1e-3
     up to a gain of 0.8."""
     coupling_cap: Annotated[int, Field(strict=True, ge=1, le=1000)] = 30
-    """Most sweeps of that loop; one that needs a thousand does not converge."""
+    """Most iterations of that loop; one that needs a thousand does not converge."""
     step_scale: Annotated[Finite, within(1e-3, 10.0)] = 1.0
     """Factor on the largest steps of force, voltage and displacement: a thousandth makes thousands of steps of each
     load, and of ten times the largest steps few are accepted."""

@@ -79,15 +79,6 @@ class Scene(Part):
         except ValidationError as error:
             raise SceneError(first_error(error, Scene)) from None
 
-    @model_validator(mode="after")
-    def _can_be_carried(self) -> "Scene":
-        if self.accuracy is not None and self.numerics.element == "P2-P1":
-            raise ValueError(
-                "accuracy is given and numerics.element is 'P2-P1', whose pressure cannot be carried to another mesh; "
-                "take 'P2'"
-            )
-        return self
-
     output: Output = Output()
 
     @model_validator(mode="after")
