@@ -100,7 +100,7 @@ class Continuation:
     def __init__(
         self,
         coupling: Coupling,
-        on_accept: Callable[[Target, float, Attempt], None] = lambda target, part, attempt: None,
+        on_accept: Callable[[Target, float, Attempt], bool | None] = lambda target, part, attempt: None,
         touch_depth: float = 5e-6,
         step_scale: float = 1.0,
     ) -> None:
@@ -108,7 +108,8 @@ class Continuation:
 
         Args:
             coupling: solves at fixed loads.
-            on_accept: called with the target, the part of it reached and how, after each accepted step.
+            on_accept: called with the target, the part of it reached and how, after each accepted step; returns True
+                to stop there.
             touch_depth: how far the bone is lowered by displacement before force takes over (m).
             step_scale: factor on the largest steps of force, voltage and displacement.
         """
@@ -151,25 +152,32 @@ class Continuation:
 
     # -- targets ---------------------------------------------------------------------------------------
     def run(self, target: Target) -> None:
-        """Reach a target.
+        """Reach a target, or stop on the way where ``on_accept`` returns True.
 
         Raises:
             StepFailed: the load reached and why the next step was not.
         """
         if target.f_ext is not None and self._now.control.y is not None:
-            self._touch(target)
+            if not self._touch(target):
+                return
         self._reach(target)
 
-    def _touch(self, target: Target) -> None:
-        """Lower the bone by displacement until the screen bears it: without contact, force control is singular."""
+    def _touch(self, target: Target) -> bool:
+        """Lower the bone by displacement until the screen bears it: without contact, force control is singular.
+
+        Returns:
+            Whether the screen bears it; False where ``on_accept`` stopped the path.
+        """
         start = self._now.control.y or 0.0
         depth = self.touch_depth
         while self.solver.reaction[1] <= 0 or self.steps == 0:
-            self._reach(Target("touch", bone_height=start - depth))
+            if not self._reach(Target("touch", bone_height=start - depth)):
+                return False
             depth += self.touch_depth
         self.solver.control.y = None
         self.solver.control.force = float(self.solver.reaction[1])
         self._now = self._snapshot()
+        return True
 
     def _loads(self, target: Target) -> Callable[[float], tuple[Control, float]]:
         """Return control and voltage as functions of the part of the target reached."""
@@ -211,7 +219,8 @@ class Continuation:
             steps.append((_SLIDE, abs(target.bone_x - a.control.x)))
         return float(min([1.0, *(self.step_scale * most / whole for most, whole in steps if whole > 0)]))
 
-    def _reach(self, target: Target) -> None:
+    def _reach(self, target: Target) -> bool:
+        """Reach a target; return False where ``on_accept`` stopped the path before."""
         at, largest = self._loads(target), self._largest_step(target)
         part, step, uncut, cut = 0.0, largest, 0, 0
         first, most = self.steps, _FEW_STEPS + int(np.ceil(_MANY_STEPS / largest))
@@ -241,13 +250,15 @@ class Continuation:
                         raise StepFailed(self._describe(target, part, failure)) from failure
             self._accept()
             part += step
-            self.on_accept(target, part, attempt)
+            if self.on_accept(target, part, attempt):
+                return False
             if target.until_full_slip and self.slip[1]:
-                return
+                return True
             uncut, cut = (0, cut + 1) if attempt.cutbacks else (uncut + 1, 0)
             step = within
             if attempt.factorisations <= _FEW or uncut >= _UNCUT:
                 step, uncut = min(2 * step, largest), 0
+        return True
 
     def _describe(self, target: Target, part: float, failure: NotConverged) -> str:
         c = self._now.control
