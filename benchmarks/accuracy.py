@@ -103,8 +103,8 @@ def judged(summary: Mapping[str, Any], ends: Mapping[str, Limit]) -> list[Judged
 
 
 def spent(summary: Mapping[str, Any]) -> tuple[float, float]:
-    """Return factorisations times unknowns, and processor time (s), of all solves and of starts that were lost."""
-    a, lost = summary["accuracy"], summary.get("failed_starts", [])
+    """Return factorisations times unknowns, and processor time (s), of all solves and of the runs before a restart."""
+    a, lost = summary["accuracy"], summary.get("restarts", [])
     work = a["unknowns_times_factorisations"] + sum(start["unknowns"] * start["factorisations"] for start in lost)
     return work, a["processor_seconds"] + sum(start["processor_seconds"] for start in lost)
 

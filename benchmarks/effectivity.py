@@ -57,7 +57,7 @@ def shares(found: Sequence[ArrayLike], name: str) -> list[float]:
     """
     knob, estimates = MeshParameter(), []
     for coarse, fine in itertools.pairwise(found):
-        knob.see({name: coarse}, {name: fine})
+        knob.record({name: coarse}, {name: fine})
         estimates.append(knob.share(name))
     return estimates
 

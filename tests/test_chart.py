@@ -112,7 +112,7 @@ def test_accuracy_asked_for_costs_all_that_was_solved(tmp_path):
     folder.mkdir(parents=True)
     spent = {"unknowns_times_factorisations": 700, "processor_seconds": 6.0}
     said = {"accuracy": spent | {"quantities": {"slip_f_t": {"value": 1.1}}}}
-    lost = {"failed_starts": [{"unknowns": 10, "factorisations": 20, "processor_seconds": 1.5}]}
+    lost = {"restarts": [{"unknowns": 10, "factorisations": 20, "processor_seconds": 1.5}]}
     (folder / "summary.json").write_text(json.dumps(said | lost), encoding="utf-8")
     reference = dict.fromkeys(QUANTITIES, Limit(1.0, 0.001, None))
     (found,) = points.collect(tmp_path / "traces", tmp_path, reference)

@@ -14,10 +14,10 @@ from fingerpad.accuracy.recompute import StateRecorder
 from fingerpad.io import console, drawing, writing
 from fingerpad.io.states import RESULTS, named
 from fingerpad.io.views import Profile
-from fingerpad.model import report
+from fingerpad.model import full_slip, report
+from fingerpad.model.balance import force_error
 from fingerpad.model.options import plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.steps import force_error
 from fingerpad.scene import from_data
 from tests import test_demo
 from tests.runs import run
@@ -135,7 +135,7 @@ TURN = {"name": "turn", "bone_x": 0.258e-3}  # after 0.26 mm: too little for a s
 def test_errors_are_estimated_of_the_headline(more, load):
     """The states kept for it are the last full slip that was held and normal contact, not those of another load."""
     scene = from_data(LEAN | {"history": [PRESS, SLIDE, *more]})
-    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: keeper.see(step), lambda: None)
+    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: keeper.record(step), lambda: None)
     keeper = StateRecorder(simulation)
     simulation.run()
     found, kept = named(simulation.states), keeper.solve().states
@@ -155,7 +155,7 @@ def test_probe_of_full_slip_leaves_no_trace(monkeypatch):
         simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
         simulation.run()
         rows += [state.row() for state in simulation.states]
-        monkeypatch.setattr(Simulation, "_holds", lambda self: False)
+        monkeypatch.setattr(full_slip.FullSlip, "_holds", lambda self: False)
     assert probed[-1]["slip_held"] and not plain[-1]["slip_held"]
     left = {"slip_held": None}
     assert [row | left for row in probed] == [row | left for row in plain]
