@@ -24,13 +24,14 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from fingerpad.cli.arguments import positive
-from fingerpad.io.files import replace, replace_json
+from fingerpad.io.files import replace
 from fingerpad.runs.batch import Summary, sweep
 from fingerpad.scene import Scene
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS, RESULTS = ROOT / "docs", ROOT / "results"
 PACKAGES = ("geometry", "variational", "fingerpad")
+_LINE = 400  # characters of a record that is kept on one line
 
 # Okabe and Ito's colours, told apart by colour-blind readers.
 BLACK, BLUE, VERMILION, GREEN = "#000000", "#0072B2", "#D55E00", "#009E73"
@@ -131,8 +132,19 @@ class Kept:
 
 
 def keep(name: str, numbers: Any, by: Made, docs: Path = DOCS) -> None:
-    """Write numbers to ``docs/NAME.json``; values that are not finite become null."""
-    replace_json(docs / f"{name}.json", {"made": asdict(by), "numbers": numbers})
+    """Write numbers to ``docs/NAME.json``, short records a line each; values that are not finite become null."""
+    finite = json.loads(json.dumps({"made": asdict(by), "numbers": numbers}), parse_constant=lambda _: None)
+    replace(docs / f"{name}.json", _text(finite) + "\n")
+
+
+def _text(data: Any, indent: str = "") -> str:
+    line = json.dumps(data, ensure_ascii=False)
+    if not data or not isinstance(data, list | dict) or len(line) <= _LINE:
+        return line
+    inner, (left, right) = indent + " ", "{}" if isinstance(data, dict) else "[]"
+    named = data.items() if isinstance(data, dict) else [(None, value) for value in data]
+    parts = [("" if k is None else f"{json.dumps(k, ensure_ascii=False)}: ") + _text(v, inner) for k, v in named]
+    return f"{left}\n{inner}" + f",\n{inner}".join(parts) + f"\n{indent}{right}"
 
 
 def kept(name: str, docs: Path = DOCS) -> Kept:

@@ -12,7 +12,9 @@ from pathlib import Path
 from benchmarks.harness import DOCS
 
 # Each has a function draw(docs), which writes the page's files into a folder and returns the path of the page.
-PAGES: dict[str, str] = {}
+PAGES = {
+    "stability": "benchmarks.stability.page",
+}
 
 
 def main(given: Sequence[str] | None = None) -> int:
