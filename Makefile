@@ -41,7 +41,7 @@ verify:
 	$(run) python3 benchmarks/verify.py
 
 paper:
-	$(run) python3 benchmarks/reproduce.py
+	$(run) python3 -m benchmarks.paper
 
 chart:
 	$(run) python3 benchmarks/errors.py

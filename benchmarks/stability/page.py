@@ -27,20 +27,22 @@ NAMES = {"converged": "converged", "continuation": "through continuation", "fail
 CLOSURE = BearingArea(h_0=0.514e-6, p_floor=1.0)
 _LOOP_POINTS = [(p, u) for u in (50.0, 100.0, 150.0, 200.0) for p in (500.0, 2e3, 5e3, 20e3)]
 _HOW = """One ridge of the layered finger is pressed by a force, charged and dragged until it slips everywhere; three
-ridges for the snap-off. The lateral faces move sideways with the bone and freely up and down, as if the neighbours were equal.
-A force of 4.4 N/m a ridge then gives the finger's contact length and friction. Errors are relative to a run with a
-contact size of 1.25 µm, P2 elements, the default penalty and the same physical parameters. Each run has a process of
-its own and a limit of processor time. {solves} solves, references included, took {minutes:.0f} minutes of one core.
+ridges for the snap-off. The lateral faces move sideways with the bone and freely up and down, as if the neighbours
+were equal. A force of 4.4 N/m a ridge then gives the finger's contact length and friction. Errors are relative to a
+run with a contact size of 1.25 µm, P2 elements, the default penalty and the same physical parameters. Each run has a
+process of its own and a limit of processor time. {solves} solves, references included, took {minutes:.0f} minutes of
+one core.
 
-{symbols}. *Through continuation*: a step succeeded only by pseudo-transient continuation. Iterations are Newton's over
-the whole history. *Load* is the one in which a run ended. The other numbers are of the last accepted state."""
+{symbols}. *Through continuation*: a step succeeded only by pseudo-transient continuation. Iterations are Newton's
+over the whole history. *Load* is the one in which a run ended. The other numbers are of the last accepted state."""
 _DEFAULT = """Newton's method alone reaches full slip at the default. The skin penetrates the screen by less than a
-tenth of the air gap (150 nm), and the contact length is right to one per cent. A ten times softer penalty exceeds that depth,
-and its contact length is six per cent too long. A ten times stiffer one costs no more, but its contact length is worse
-on facets of the same size. P1 elements are too stiff. The last row shows what the reference owes to its penalty."""
+tenth of the air gap (150 nm), and the contact length is right to one per cent. A ten times softer penalty exceeds
+that depth, and its contact length is six per cent too long. A ten times stiffer one costs no more, but its contact
+length is worse on facets of the same size. P1 elements are too stiff. The last row shows what the reference owes to
+its penalty."""
 _LOOP = """The loop over the scales is repeated here for one uniform ridge, started 1 % off its solution. Keyed on the
-external pressure, with pressure and attraction one sweep out of phase, it diverges where its gain exceeds 1/2. Keyed on
-the contact pressure, as the program does, it converges everywhere in contact (here without its secant steps)."""
+external pressure, with pressure and attraction one sweep out of phase, it diverges where its gain exceeds 1/2. Keyed
+on the contact pressure, as the program does, it converges everywhere in contact (here without its secant steps)."""
 
 
 def percent(value: float | None) -> str | None:
