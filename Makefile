@@ -38,7 +38,7 @@ pages:
 	$(run) python3 -m benchmarks.pages
 
 verify:
-	$(run) python3 benchmarks/verify.py
+	$(run) python3 -m benchmarks.verification
 
 paper:
 	$(run) python3 -m benchmarks.paper

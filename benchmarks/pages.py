@@ -15,6 +15,7 @@ from benchmarks.harness import DOCS
 PAGES = {
     "paper": "benchmarks.paper.page",
     "stability": "benchmarks.stability.page",
+    "verification": "benchmarks.verification.page",
 }
 
 
