@@ -141,9 +141,11 @@ def _text(data: Any, indent: str = "") -> str:
     line = json.dumps(data, ensure_ascii=False)
     if not data or not isinstance(data, list | dict) or len(line) <= _LINE:
         return line
-    inner, (left, right) = indent + " ", "{}" if isinstance(data, dict) else "[]"
-    named = data.items() if isinstance(data, dict) else [(None, value) for value in data]
-    parts = [("" if k is None else f"{json.dumps(k, ensure_ascii=False)}: ") + _text(v, inner) for k, v in named]
+    inner = indent + " "
+    if isinstance(data, list):
+        left, right, parts = "[", "]", [_text(value, inner) for value in data]
+    else:
+        left, right, parts = "{", "}", [f'"{key}": {_text(value, inner)}' for key, value in data.items()]
     return f"{left}\n{inner}" + f",\n{inner}".join(parts) + f"\n{indent}{right}"
 
 
@@ -177,11 +179,12 @@ def _same(a: Any, b: Any, relative: float) -> bool:
 
 
 def _leaves(data: Any, place: str = "") -> Iterator[tuple[str, Any]]:
-    pairs = data.items() if isinstance(data, Mapping) else enumerate(data) if isinstance(data, list) else None
-    if pairs is None:
+    if isinstance(data, list):
+        data = dict(enumerate(data))
+    if not isinstance(data, Mapping):
         yield place, data
         return
-    for key, value in pairs:
+    for key, value in data.items():
         yield from _leaves(value, f"{place}/{key}")
 
 

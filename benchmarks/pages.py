@@ -14,6 +14,7 @@ from benchmarks.harness import DOCS
 # Each has a function draw(docs), which writes the page's files into a folder and returns the path of the page.
 PAGES = {
     "paper": "benchmarks.paper.page",
+    "peers": "benchmarks.peers.page",
     "stability": "benchmarks.stability.page",
     "verification": "benchmarks.verification.page",
 }

@@ -125,11 +125,11 @@ def statements(grid: Grid, rises: Mapping[str, float]) -> list[Statement]:
 
 
 def _column(grid: Grid, voltage: float) -> int:
-    return list(grid["voltage"]).index(voltage)
+    return int(np.flatnonzero(grid["voltage"] == voltage)[0])
 
 
 def _row(grid: Grid, force: float) -> int:
-    return list(grid["f_ext"]).index(force)
+    return int(np.flatnonzero(grid["f_ext"] == force)[0])
 
 
 def _gain(grid: Grid, name: str, voltage: float) -> Array:

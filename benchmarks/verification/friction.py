@@ -145,8 +145,8 @@ def partial_slip(small: bool) -> Outcome:
         quantity = f"shear borne left of a place over Q, most off, at Q / mu P = {state.part:.3f}"
         rows.append(Row(quantity, state.cumulated, 0.0, tolerance, why, mesh, absolute=True))
 
-    x, unit = np.linspace(-1.2, 1.2, 961), MU_F * 2 * FORCE / (np.pi * HALF_WIDTH)
-    known = {f"Cattaneo, Q / μP = {s.part:.2f}": (x, shear(x * HALF_WIDTH, s.part) / unit) for s in states}
+    along, unit = np.linspace(-1.2, 1.2, 961), MU_F * 2 * FORCE / (np.pi * HALF_WIDTH)
+    known = {f"Cattaneo, Q / μP = {s.part:.2f}": (along, shear(along * HALF_WIDTH, s.part) / unit) for s in states}
     found = {f"Q / μP = {s.part:.2f}": (s.x / HALF_WIDTH, s.t / unit) for s in states}
     return Outcome(tuple(rows), Curves("x / a (–)", "t / (μ p_0) (–)", known, found))
 

@@ -130,12 +130,10 @@ def inflation(small: bool) -> Outcome:
         "incompressible, closed form": (x, [pressure_of_incompressible(k) / 1e3 for k in x]),
         "ν = 0.48, by shooting": (x, [exact_tube(0.48, k).pressure / 1e3 for k in x]),
     }
-    computed = {
-        f"ν = {nu:g}": tuple(
-            zip(*((k, p / 1e3) for (given, k), (_, p) in pressures.items() if given == nu), strict=True)
-        )
-        for nu in (0.48, 0.49999)
-    }
+    computed: dict[str, tuple[Array, Array]] = {}
+    for nu in (0.48, 0.49999):
+        k, p = np.array([(k, p / 1e3) for (given, k), (_, p) in pressures.items() if given == nu]).T
+        computed[f"ν = {nu:g}"] = (k, p)
     return Outcome(tuple(rows), Curves("a / A (–)", "inner pressure (kPa)", known, computed))
 
 
