@@ -90,9 +90,8 @@ def table(small: bool) -> Outcome:
     p, known, computed = np.linspace(9, 55, 100), {}, {}
     for voltage in VOLTAGES:
         known[f"{voltage:g} V, scalar equation"] = (p, [scalar(kpa * 1e3, voltage)[2] for kpa in p])
-        points = [(kpa, mu) for (kpa, u), (_, _, mu) in found.items() if u == voltage]
-        pressures, mu_app = np.array(points, dtype=float).reshape(-1, 2).T
-        computed[f"{voltage:g} V"] = (pressures, mu_app)
+        points = {kpa: mu for (kpa, u), (_, _, mu) in found.items() if u == voltage}
+        computed[f"{voltage:g} V"] = (list(points), list(points.values()))
     curves = Curves("external pressure (kPa)", "apparent friction coefficient (–)", known, computed)
     return Outcome((worst(gaps), worst(frictions)), curves)
 
