@@ -18,12 +18,10 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-from matplotlib.axis import Axis
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from fingerpad.cli.arguments import positive
+from fingerpad.io import style
 from fingerpad.io.files import replace
 from fingerpad.runs.batch import Summary, sweep
 from fingerpad.scene import Scene
@@ -32,11 +30,9 @@ ROOT = Path(__file__).resolve().parents[1]
 DOCS, RESULTS = ROOT / "docs", ROOT / "results"
 PACKAGES = ("geometry", "variational", "fingerpad")
 _LINE = 400  # characters of a record that is kept on one line
-
-# Okabe and Ito's colours, told apart by colour-blind readers.
-BLACK, BLUE, VERMILION, GREEN = "#000000", "#0072B2", "#D55E00", "#009E73"
-ORANGE, SKY, PURPLE, GREY = "#E69F00", "#56B4E9", "#CC79A7", "#999999"
-_STYLE = {"font.size": 10, "axes.titlesize": 10, "legend.fontsize": 8, "lines.linewidth": 1.4, "savefig.dpi": 130}
+# Names of the palette for the studies.
+BLACK, BLUE, GREEN, GREY = style.BLACK, style.BLUE, style.GREEN, style.GREY
+ORANGE, PURPLE, SKY, VERMILION = style.ORANGE, style.PURPLE, style.SKY, style.VERMILION
 
 
 # -- runs ----------------------------------------------------------------------------------------------------
@@ -239,18 +235,8 @@ def picture(path: Path, size: tuple[float, float], paint: Callable[[Figure], Non
         caption: one sentence that says what the picture shows.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    with matplotlib.rc_context(_STYLE):
-        figure = Figure(figsize=size, layout="constrained")
+    with style.look():
+        figure = style.figure(size[1], size[0])
         paint(figure)
         figure.savefig(path)
     return f"![{caption}]({path.name})\n\n*{caption}*"
-
-
-def voltage_colour(voltage: float, largest: float = 200.0) -> tuple[float, ...]:
-    """Return the colour of a voltage (V) on the one ramp of all pictures: dark at 0 V, light at the largest."""
-    return tuple(matplotlib.colormaps["viridis"](0.9 * voltage / largest))
-
-
-def counts(axis: Axis) -> None:
-    """Give an axis of counts ticks at integers."""
-    axis.set_major_locator(MaxNLocator(integer=True))

@@ -4,7 +4,6 @@ import math
 import shutil
 
 import pytest
-from matplotlib.figure import Figure
 
 from benchmarks import harness, pages
 from benchmarks.harness import DOCS, Made
@@ -71,20 +70,6 @@ def test_runs_of_another_program_have_no_commit():
 def test_table():
     rows = [["a|b", 1.23456], [None, 3]]
     assert harness.table(["x", "y"], rows) == "| x | y |\n|---|---|\n| a\\|b | 1.235 |\n| – | 3 |"
-
-
-def test_voltages_are_a_ramp():
-    """The brighter, the higher the voltage."""
-    light = [sum(harness.voltage_colour(u)[:3]) for u in (0.0, 50.0, 100.0, 150.0, 200.0)]
-    assert light == sorted(light)
-
-
-def test_counts_have_integer_ticks():
-    figure = Figure()
-    ax = figure.subplots()
-    ax.plot([0, 1], [0, 3])
-    harness.counts(ax.yaxis)
-    assert all(float(tick).is_integer() for tick in ax.get_yticks())
 
 
 def test_commands_share_their_options():

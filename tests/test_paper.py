@@ -9,14 +9,15 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from benchmarks.harness import DOCS, Made, keep, kept, voltage_colour
+from benchmarks.harness import DOCS, Made, keep, kept
 from benchmarks.paper import __main__ as command
-from benchmarks.paper import friction, micro, page, scenes, section, sed, tables
+from benchmarks.paper import friction, micro, page, scenes, section, sed
 from benchmarks.paper.statement import HOLDS, IN_PART, NOT, Statement, verdict
 from benchmarks.runs import Run
 from benchmarks.traces import FORCES, VOLTAGES
+from fingerpad.io import style
 from fingerpad.runs.batch import key
-from fingerpad.scene import Scene, from_data
+from fingerpad.scene import Scene
 from geometry import tags
 
 MU_0 = 0.25
@@ -81,7 +82,7 @@ def test_markers_of_the_reductions_are_of_their_voltage(grid):
     markers = {line.get_color(): line for line in figure.axes[1].lines if line.get_linestyle() == "None"}
     for k, voltage in enumerate(VOLTAGES):
         stress = 1e-3 * grid["slip_f_t"][:, k] / grid["slip_contact_length"][:, k]
-        assert markers[voltage_colour(voltage)].get_xdata() == pytest.approx(stress, rel=1e-12)
+        assert markers[style.voltage(voltage)].get_xdata() == pytest.approx(stress, rel=1e-12)
 
 
 def test_waves_are_counted_by_voltage(grid):
@@ -258,7 +259,7 @@ def test_missing_runs_are_named(tmp_path, capsys):
     assert "missing: Fig. 2, run" in capsys.readouterr().out
 
 
-# -- scenes, tables, page ------------------------------------------------------------------------------
+# -- scenes, page - ------------------------------------------------------------------------------
 def test_sine_is_a_valid_scene():
     """From 0 V over the peak and back to 0 V, each reached before the finger slides on to full slip, ever farther."""
     loads = scenes.sine(10e-6).loads()[1:]
@@ -266,18 +267,6 @@ def test_sine_is_a_valid_scene():
     assert voltages == pytest.approx([scenes.PEAK * np.sin(np.pi * k / 12) for k in range(1, 13)], abs=1e-9)
     assert np.all(np.diff([load.bone_x for load in loads]) > 0)
     assert [load.until_full_slip for load in loads] == [True] + [False, True] * 12
-
-
-def test_every_parameter_has_a_source():
-    """What is called an assumption in its docstring is called one in the table."""
-    scene = from_data({})
-    for name in ("geometry", "materials", "electric", "roughness"):
-        for key_, _, source, told in tables.rows(getattr(scene, name), name):
-            assert told
-            if "*assumption*" in told.lower() and key_ not in ("roughness.beta", "materials.exponent"):
-                assert source == "*assumption*", key_
-    keys = {key_ for name in ("geometry", "roughness") for key_, *_ in tables.rows(getattr(scene, name), name)}
-    assert keys >= tables.ASSUMED
 
 
 def numbers_with(*statements, size=10e-6):

@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from benchmarks.harness import GREY, voltage_colour
 from benchmarks.paper.scenes import MAP, TRANSITION, WIDTH
 from benchmarks.paper.statement import Statement, verdict
 from benchmarks.runs import Run
+from fingerpad.io import style
 
 Array = NDArray[np.float64]
 Grid = Mapping[str, Array]
@@ -89,7 +89,7 @@ def paint(figure: Figure, grid: Grid, measured: Measured | None = None) -> None:
     left, right = figure.subplots(1, 2)
     found = reduction(grid)
     for k, voltage in enumerate(grid["voltage"]):
-        look = {"color": voltage_colour(voltage), "marker": "o", "ms": 4}
+        look = {"color": style.voltage(voltage), "marker": "o", "ms": 4}
         left.plot(grid["f_ext"], grid["slip_f_t"][:, k] / grid["f_ext"], label=f"{voltage:g} V", **look)
         right.plot(found.stress[:, k] / 1e3, 100 * found.lost[:, k], ls="none", **look)
     if measured is not None:
@@ -97,10 +97,10 @@ def paint(figure: Figure, grid: Grid, measured: Measured | None = None) -> None:
             mine = measured.voltage == voltage
             force, friction = measured.force[mine] / WIDTH, measured.friction[mine] / WIDTH
             label = f"{measured.label}, {voltage:g} V"
-            left.plot(force, friction / force, "*", ms=9, color=voltage_colour(voltage), mec="black", label=label)
+            left.plot(force, friction / force, "*", ms=9, color=style.voltage(voltage), mec="black", label=label)
     x = np.array([0, found.stress.max()])
     fit = f"fit through the origin, R² = {found.r_squared:.2f}"
-    right.plot(x / 1e3, 100 * found.slope * x, color=GREY, lw=2, zorder=0, label=fit)
+    right.plot(x / 1e3, 100 * found.slope * x, color=style.GREY, lw=2, zorder=0, label=fit)
     left.set(xlabel="external force $f_{ext}$ (N/m)", ylabel="apparent friction coefficient µ_app (–)", ylim=(0, None))
     left.set_title("A  Friction at full slip")
     right.set(xlabel="mean shear stress $f_T / L_R$ (kPa)", ylabel="contact length lost by sliding (%)")

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from benchmarks.harness import BLUE, GREY, PURPLE, VERMILION
 from benchmarks.paper.statement import Statement, verdict
 from benchmarks.runs import Run
+from fingerpad.io.style import ATTRACTION, GREY, PRESSURE, SHEAR
 
 STATES = {"normal": "normal contact", "partial": "partial slip", "slip": "full slip"}
 _UM = 1e-6
@@ -39,7 +39,7 @@ def gather(run: Run) -> dict[str, Any]:
 def paint(figure: Figure, section: Mapping[str, Any]) -> None:
     """Draw pressure, attraction and shear along the skin from normal contact to full slip."""
     axes = figure.subplots(len(STATES), 1, sharex=True, sharey=True)
-    looks = {"p": ("contact pressure", BLUE), "p_el": ("attraction", VERMILION), "t": ("shear", PURPLE)}
+    looks = {"p": ("contact pressure", PRESSURE), "p_el": ("attraction", ATTRACTION), "t": ("shear", SHEAR)}
     for ax, (state, title) in zip(axes, STATES.items(), strict=True):
         a = section[state]
         for name, (words, colour) in looks.items():

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from benchmarks.harness import BLACK, VERMILION, counts
 from benchmarks.paper.statement import Statement, verdict
 from benchmarks.runs import Array, Run
+from fingerpad.io.style import BLACK, VERMILION, count
 from geometry import tags
 
 
@@ -155,7 +155,7 @@ def paint(figure: Figure, sites: Mapping[str, Any]) -> None:
     values.legend()
     change.bar(ridge, 100 * (friction / voltage - 1), color=BLACK, width=0.5)
     change.set(xlabel="ridge (0 is at the centre)", ylabel="difference (%)")
-    counts(change.xaxis)
+    count(change.xaxis)
 
 
 def claim_statement(sites: Mapping[str, Any]) -> Statement:

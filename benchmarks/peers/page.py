@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from benchmarks.harness import BLUE, GREEN, ORANGE, VERMILION, kept, page, picture, table
+from benchmarks.harness import kept, page, picture, table
 from benchmarks.peers import profile
 from benchmarks.peers.cases import PEERS, VARIANTS, cases
 from benchmarks.peers.exchange import Answer, Ridge, State, read_answer
+from fingerpad.io.style import BLUE, GREEN, ORANGE, VERMILION
 
 FORCE, SHAPE = 5e-4, 1e-2  # bars: relative differences of forces, and of half-width and peak pressure
 _BARS = (FORCE, FORCE, SHAPE, SHAPE)
