@@ -31,9 +31,10 @@ from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from variational import compat, jit
 from variational.body import Body
+from variational.contact.formulation import SurfaceState
 from variational.kinematics import deformation_gradient
-from variational.problem import Interface, Ogden
-from variational.quantities import SurfaceState
+from variational.materials.ogden import Ogden
+from variational.problem import Interface
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Attempt, Continuation, StepFailed, Target
 from variational.solvers.coupling import Coupling
