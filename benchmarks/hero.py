@@ -33,7 +33,7 @@ def main(folder: str) -> None:
         xy, outlines = _MM * (a["x"] + a["u"]), []
         for tag in tags.LAYERS.values():
             edges = interfaces(a["triangles"][a["tag"] == tag], a["tag"][a["tag"] == tag])[1]
-            outlines += [{"layer": int(tag), "points": _thinned(xy[loop])} for loop in _loops(edges)]
+            outlines += [{"layer": int(tag), "points": _rows(_thinned(xy[loop]))} for loop in _loops(edges)]
     with np.load(Path(folder) / "surface_slide.npz") as a:
         ridge = {name: a[f"end_{name}"][a["end_ridge"] == RIDGE] for name in ("x", "y", "p", "p_el", "d_eq")}
     compared = json.loads((DOCS / "ladder.json").read_text(encoding="utf-8"))  # full runs, contact size 10 µm
@@ -42,9 +42,14 @@ def main(folder: str) -> None:
         str(f): [[u, compared[f"{f} N/m, {u} V"]["3"]["summary"]["slip_mu_app"]] for u in range(0, 201, 50)]
         for f in FORCES
     }
-    along = {name: values.tolist() for name, values in ridge.items()}
+    along = {name: _rows([float(f"{v:.6g}") for v in values]) for name, values in ridge.items()}
     keep("hero", {"finger": outlines, "ridge": along, "friction": friction}, made([summary]))
     draw(DOCS)
+
+
+def _rows(values: list[Any]) -> list[list[Any]]:
+    """Return a list in short rows, each a line of the file."""
+    return [values[k : k + 20] for k in range(0, len(values), 20)]
 
 
 def _loops(edges: Any) -> list[list[int]]:
@@ -77,7 +82,7 @@ def _thinned(points: Array) -> list[list[float]]:
 def draw(docs: Path) -> Path:
     """Draw docs/hero.png from docs/hero.json; return its path."""
     numbers = kept("hero", docs).numbers
-    ridge = {name: np.array(values, dtype=float) for name, values in numbers["ridge"].items()}
+    ridge = {name: np.concatenate(values) for name, values in numbers["ridge"].items()}
     with style.look():
         figure = style.figure(3.5)
         whole, near, friction = figure.subplots(1, 3, width_ratios=[1.55, 1, 1.05])
@@ -97,7 +102,7 @@ def draw(docs: Path) -> Path:
 def _draw_finger(ax: Axes, outlines: list[dict[str, Any]]) -> None:
     ax.set_title("A fingertip slides on a touchscreen", weight="bold")
     for outline in outlines:
-        ax.add_patch(Polygon(outline["points"], fc=LAYER_COLOURS[outline["layer"]], ec="black", lw=0.4))
+        ax.add_patch(Polygon(np.concatenate(outline["points"]), fc=LAYER_COLOURS[outline["layer"]], ec="black", lw=0.4))
     ax.axhspan(-1.6, 0, color="0.35", lw=0)
     ax.text(-3.6, -0.85, "touchscreen", color="white", ha="center", va="center", fontsize=9)
     ax.text(1.5, 7.5, "bone", ha="center", va="center")
