@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from benchmarks.paper.style import VOLTAGE, draw
 from matplotlib.figure import Figure
 
 from benchmarks import arguments
 from benchmarks.paper.scenes import grid
-from benchmarks.paper.style import VOLTAGE, draw
 from benchmarks.rung import ask, kept
 from benchmarks.traces import FORCES, VOLTAGES
 from fingerpad.io.files import replace, replace_json

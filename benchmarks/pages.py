@@ -13,6 +13,7 @@ from benchmarks.harness import DOCS
 
 # Each has a function draw(docs), which writes the page's files into a folder and returns the path of the page.
 PAGES = {
+    "hero": "benchmarks.hero",
     "paper": "benchmarks.paper.page",
     "peers": "benchmarks.peers.page",
     "stability": "benchmarks.stability.page",
