@@ -40,3 +40,29 @@ def alike(text: str, other: str, relative: float, last_digit: float = 1.5) -> bo
         if float(b) != pytest.approx(float(a), rel=relative, abs=last_digit * 10.0**-digits):
             return False
     return True
+
+
+_ABBREVIATED = re.compile(r"\b(Eqs?|Figs?|ch|sec|vol|e\.g|i\.e|approx|min)\.\s")
+_END = re.compile(r"(?<=[.!?])[*_)\"”]*\s+(?=[^a-z])")
+
+
+def sentences(page: str) -> tuple[list[str], list[str]]:
+    """Return the sentences of a page's text, and those of its tables; without code, formulas, headings and pictures."""
+    page = re.sub(r"^```.*?^```$|\$\$.*?\$\$", "", page, flags=re.DOTALL | re.MULTILINE)
+    page = re.sub(r"^    (?![-*]).*$|^#.*$|^!\[.*$|^\|[-|: ]+$", "", page, flags=re.MULTILINE)
+    page = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", re.sub(r"`[^`\n]*`", "code", page))
+    rows = [line for line in page.splitlines() if line.startswith("|")]
+    text = "\n".join("" if line.startswith("|") else line for line in page.splitlines())
+    blocks = re.split(r"\n\s*\n|\n(?=\s*(?:[-*]|\d+\.)\s)", text)
+    cells = [cell for row in rows for cell in row.strip("|").split("|")]
+    return _sentences(blocks), _sentences(cells)
+
+
+def _sentences(texts: list[str]) -> list[str]:
+    plain = (_ABBREVIATED.sub(r"\1 ", " ".join(text.split())) for text in texts)
+    return [sentence for text in plain for sentence in _END.split(text) if words(sentence)]
+
+
+def words(sentence: str) -> int:
+    """Return the number of words and numbers of a sentence."""
+    return sum(any(c.isalnum() for c in word) for word in sentence.split())

@@ -26,7 +26,7 @@ default: the name of a load and the file of a height map, both in optional table
 - Numbers are in SI units. A number with a unit can be given as text: `"10 um"`, `"50 N/m"`.
 - Forces are per metre of finger out of the plane of the cross-section (N/m).
 - A value outside its range is refused with the key, the value, the range and, where likely, the unit that was meant.
-- *Assumption* marks choices that the paper leaves open. [assumptions.md](assumptions.md) tells their effect.
+- *Assumption* marks choices that the paper leaves open. [assumptions.md](assumptions.md) gives their effect.
 
 This page is written by `fingerpad params --markdown` from the program's own definitions; a test compares the two."""
 
