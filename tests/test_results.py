@@ -22,7 +22,8 @@ from fingerpad.scene import from_data
 from tests import test_demo
 from tests.runs import run
 from variational.contact.friction import CONE_ROUNDOFF
-from variational.solvers.newton import PREFIX, Solver
+from variational.solvers.iteration import PREFIX
+from variational.solvers.newton import Solver
 
 MU_0 = 0.25
 SMALL = {

@@ -174,7 +174,7 @@ class Simulation:
     def _adopt(self, carried: StateSnapshot, name: str, direction: int) -> None:
         give(carried, self.coupling, direction * SLIDE_ON)
         self._load = name
-        self.continuation.adopt(name)
+        self.continuation.re_equilibrate(name)
         # What was dissipated on the way is not known.
         self.energy = EnergyBook(self.problem, *self._state(), copies=self._copies)
         loads = self.ridge_loads()
