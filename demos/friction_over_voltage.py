@@ -1,10 +1,10 @@
 # %% [markdown]
 # # Friction over voltage
 #
-# At 75 N/m, a voltage of 200 V doubles the friction of the default finger. The attraction per area across a gap d and an
-# insulator of effective thickness h_0 is $p_{el} = \varepsilon_0 U^2 / 2 (h_0 + d)^2$. Coulomb's friction follows the
-# contact force, $f_T = \mu_0 (f_{ext} + f_{el})$. So $\mu_{app} = \mu_0 (1 + f_{el} / f_{ext})$ grows with the square of
-# the voltage at first, and faster later, since the attraction also narrows the gap.
+# At 75 N/m, a voltage of 200 V doubles the friction of the default finger. The attraction per area across a gap d and
+# an insulator of effective thickness h_0 is $p_{el} = \varepsilon_0 U^2 / 2 (h_0 + d)^2$. Coulomb's friction follows
+# the contact force, $f_T = \mu_0 (f_{ext} + f_{el})$. So $\mu_{app} = \mu_0 (1 + f_{el} / f_{ext})$ grows with the
+# square of the voltage at first, and faster later, since the attraction also narrows the gap.
 #
 # The model "cylinders" treats every ridge in contact as the same charged cylinder. This closed form computes hundreds
 # of scenes in a second.
