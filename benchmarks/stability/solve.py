@@ -8,7 +8,7 @@ The bone's rim is the strip's flat top. The lateral faces are carried by the nei
 bone and freely up and down. A free stump of soft dermis under a stiff epidermis tips over before it slips; faces glued
 to the bone would hold the epidermis up, which is 24 times stiffer than the dermis that should. Carried ridges
 behave like one of many equal ones, and 4.4 N/m on each give the finger's contact length and friction. Only where a
-trailing ridge is to snap off, or dermis to bulge, have they to be free. """
+trailing ridge is to snap off, or dermis to bulge, have they to be free."""
 
 import json
 import sys
