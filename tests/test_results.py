@@ -1,7 +1,6 @@
 """What a run says of itself: of which state, under which loads, on which mesh, and nothing of a state it rejects."""
 
 import csv
-import json
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -19,13 +18,13 @@ from fingerpad.model.options import plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.model.steps import force_error
 from fingerpad.scene import from_data
-from tests.runs import run
+from tests.runs import SMALL_FINGER, run
 from variational.contact.friction import CONE_ROUNDOFF
 from variational.solvers.newton import PREFIX, Solver
 
 MU_0 = 0.25
 SMALL = {
-    "geometry": {"ridge_count": 9},
+    "geometry": SMALL_FINGER,
     "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
 }
 LEAN = SMALL | {"output": {"errors": False, "receptors": False}}
