@@ -26,7 +26,8 @@ from geometry.mesh import load
 from variational.body import Body
 from variational.contact.penalty import Penalty
 from variational.element import ELEMENTS
-from variational.problem import Interface, Ogden
+from variational.materials.ogden import Ogden
+from variational.problem import Interface
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import StepFailed, Target
 

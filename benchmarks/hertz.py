@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, NU, RADIUS, SPAN, YOUNG
 from benchmarks.verification.over_screen import formulations, over_screen
 from geometry.bodies import pad
-from variational.problem import Interface, SaintVenant
+from variational.materials.saint_venant import SaintVenant
+from variational.problem import Interface
 from variational.solvers.continuation import Target
 
 Array = NDArray[np.float64]

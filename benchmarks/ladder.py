@@ -1,10 +1,10 @@
 """Where each rung of the ladder is good enough: the cheaper ones beside the full runs, over forces and voltages.
 
-environment/run python3 benchmarks/ladder.py [--jobs 2] [--only 1 2 start]
+environment/run python3 benchmarks/ladder.py [--jobs 2] [--only 1 2]
 
 The full runs are those of ``benchmarks/traces.py``, contact size 10 um; those that are not there are not run. What the
 rungs say is kept in docs/ladder.json, from which page and picture are drawn; started again, only what is missing of
-rung 2 and of rung 3 started from it, or was answered by older tables, is computed, and full runs that are gone keep the
+rung 2, or was answered by older tables, is computed, and full runs that are gone keep the
 numbers they had.
 """
 
@@ -36,9 +36,6 @@ NAMES = {
     "normal_contact_length": f"contact length, {WORDS['charged']}",
     "normal_f_electrostatic": f"attraction, {WORDS['charged']}",
 }
-START = "start"  # rung 3 from rung 2, in ladder.json
-_KINDS = {"2": "rung 2", START: "rung 3 from rung 2"}
-_STARTS = [(f, u) for f in (10.0, 25.0, 75.0, 120.0) for u in (0.0, 100.0, 200.0)]  # N/m, V
 RUNGS = {1: "charged cylinders, fitted length", 2: "smooth finger with ridge law"}
 _HEADER = """# A ladder of models
 
@@ -63,16 +60,7 @@ with the ridge's tables of facets of `mesh.contact` and of half of it; where the
 error is more than half of the answer, the mesh is refused. Rung 3 solves its states again on other meshes.
 
     environment/run python3 -m fingerpad compare scene.toml --model cylinders smooth full
-
-With `--from-smooth` rung 3's full slip is solved for from rung 2's (`fingerpad/runs/start.py`), without its path, and
-checked; where that does not succeed, the path is followed and a note says so.
 """  # noqa: E501
-
-_STARTED = """## Rung 3 from rung 2
-
-Full slip, solved for from rung 2's state without its path, against the full run's, which followed it. Cost: all
-factorisations × unknowns of rungs 2 and 3, over those of the full run.
-"""
 
 
 def name(f_ext: float, voltage: float) -> str:
@@ -93,35 +81,27 @@ def collect(known: dict[str, Any], out: Path, rungs: Sequence[str], jobs: int, f
     tables = out.parent / "ridge_tables"
     tables.mkdir(parents=True, exist_ok=True)
 
-    def done(asked: tuple[str, str], end: End, left: int) -> None:
-        key, kind = asked
-        known[key][kind] = {"failure": f"{end.reason}: {end.message}"} if end.reason else json.loads(end.stdout)
+    def done(key: str, end: End, left: int) -> None:
+        known[key]["2"] = {"failure": f"{end.reason}: {end.message}"} if end.reason else json.loads(end.stdout)
         replace_json(file, known)
-        words = known[key][kind].get("failure", "done")
-        bar.console.print(f"{key}, {_KINDS[kind]}: {words}", highlight=False, markup=False, soft_wrap=True)
+        words = known[key]["2"].get("failure", "done")
+        bar.console.print(f"{key}, rung 2: {words}", highlight=False, markup=False, soft_wrap=True)
         bar.advance(task)
 
-    wanted = {"2": list(scenes), START: [name(*pair) for pair in _STARTS]}
-    missing = [
-        (key, kind)
-        for kind in _KINDS
-        for key in wanted[kind]
-        if kind in rungs and key in scenes and not _present(known[key], kind)
-    ]
+    missing = [key for key in scenes if not _present(known[key])] if "2" in rungs else []
     with progress() as bar:
         task = bar.add_task("answers", total=len(missing))
-        job = Pool[tuple[str, str], End](lambda asked: ask(asked[1], scenes[asked[0]], tables), jobs)
-        job.run(missing, done)
+        Pool[str, End](lambda key: ask(scenes[key], tables), jobs).run(missing, done)
     replace_json(file, known)
     return known
 
 
-def _present(found: dict[str, Any], kind: str) -> bool:
-    """Return whether a scene has an answer by the present tables."""
-    return bool(found.get(kind, {}).get("more", {}).get("table_version") == ridge_cell.VERSION)
+def _present(found: dict[str, Any]) -> bool:
+    """Return whether a scene has rung 2's answer by the present tables."""
+    return bool(found.get("2", {}).get("more", {}).get("table_version") == ridge_cell.VERSION)
 
 
-def error(found: dict[str, Any], rung: int | str, key: str) -> float | None:
+def error(found: dict[str, Any], rung: int, key: str) -> float | None:
     """Return a rung's relative error against the full model, None where either is not known."""
     own, full = (found.get(str(k), {}).get("summary", {}).get(key) for k in (rung, 3))
     return None if own is None or not full else own / full - 1
@@ -148,28 +128,6 @@ def _takes(known: dict[str, Any], rung: int) -> str:
     return words if not unknowns else f"{words}, {factorisations:.0f} factorisations, {unknowns:.0f} unknowns"
 
 
-def _starts(known: dict[str, Any]) -> str:
-    """Return the section of rung 3 started from rung 2."""
-    lines = [
-        _STARTED,
-        "| scene | f_T (%) | contact length (%) | ridges | ridges of the path | cost |",
-        "|---" * 6 + "|",
-    ]
-    for pair in _STARTS:
-        found = known.get(name(*pair), {})
-        own, full = found.get(START, {}), found.get("3")
-        if "summary" not in own or full is None:
-            lines.append(f"| {name(*pair)} | {own.get('failure', 'not run')} |" + " |" * 4)
-            continue
-        cost, more, path = own["cost"], own["more"], full["cost"]
-        spent = cost["factorisations"] * cost["unknowns"] + more["rung_2_factorisations"] * more["rung_2_unknowns"]
-        cells = [f"{1e2 * (error(found, START, key) or 0.0):+.2g}" for key in ("slip_f_t", "slip_contact_length")]
-        cells += [str(each["summary"]["slip_ridges_in_contact"]) for each in (own, full)]
-        cells.append(f"{spent / (path['factorisations'] * path['unknowns']):.2f}")
-        lines.append(f"| {name(*pair)} | " + " | ".join(cells) + " |")
-    return "\n".join(lines)
-
-
 def page(known: dict[str, Any]) -> str:
     """Return the page."""
     parts = [_HEADER.format(one=_takes(known, 1), two=_takes(known, 2), three=_takes(known, 3))]
@@ -182,7 +140,7 @@ def page(known: dict[str, Any]) -> str:
         parts.append(
             f"## Rung {rung}: {RUNGS[rung]}\n\nErrors in % against the full model, {len(done)} of {len(known)} scenes."
         )
-        old = sum(not _present(found, "2") for found in done)
+        old = sum(not _present(found) for found in done)
         if rung == 2 and old:
             parts.append(
                 f"{old} of them are by older tables, in which a ridge's forces fall over 0.5 µm of height when it lets "
@@ -192,7 +150,6 @@ def page(known: dict[str, Any]) -> str:
             parts.append(f"No answer: {'; '.join(lost)}.")
         for key, words in NAMES.items():
             parts += [f"### {words}", _table(known, rung, key)]
-    parts.append(_starts(known))
     return "\n\n".join(part.strip() for part in parts) + "\n"
 
 
@@ -220,9 +177,7 @@ def paint(figure: Figure, known: dict[str, Any]) -> None:
 def main(given: Sequence[str] | None = None) -> int:
     """Compare the rungs and write page and picture."""
     parser = arguments.parser(__doc__)
-    parser.add_argument(
-        "--only", nargs="*", choices=("1", "2", START), default=["1", "2", START], help="rungs to compute"
-    )
+    parser.add_argument("--only", nargs="*", choices=("1", "2"), default=["1", "2"], help="rungs to compute")
     args = parser.parse_args(given)
     file = args.docs / "ladder.json"
     known = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}

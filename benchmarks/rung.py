@@ -1,6 +1,6 @@
-"""Rung 2's answer to one scene, or rung 3's from it, in a process of its own, as JSON on standard output.
+"""Rung 2's answer to one scene, in a process of its own, as JSON on standard output.
 
-python3 -m benchmarks.rung KIND SCENE.json TABLES LIMIT    KIND: 2 or start
+python3 -m benchmarks.rung SCENE.json TABLES LIMIT
 """
 
 import json
@@ -17,7 +17,7 @@ from fingerpad.runs.processes import End, limit_processor_time, run
 from fingerpad.scene import Scene, from_data
 from variational.state import RESULTS
 
-LIMIT = 900.0  # s of processor time; mostly it takes half a minute, a start another one
+LIMIT = 900.0  # s of processor time; mostly it takes half a minute
 
 
 def kept(result: Result) -> dict[str, Any]:
@@ -25,29 +25,27 @@ def kept(result: Result) -> dict[str, Any]:
     keys = [f"{PREFIXES[name]}_{key}" for name in STATES for key in RESULTS]
     values = result.values()
     summary = {"full_slip": result.full_slip is not None} | {k: values[k] for k in keys if values[k] is not None}
-    cost, more = result.cost, result.record if result.model != "full" or "table_version" in result.record else {}
+    cost, more = result.cost, result.record if result.model != "full" else {}
     spent = {"seconds": cost.processor_seconds, "factorisations": cost.factorisations, "unknowns": cost.unknowns}
     return {"summary": summary, "cost": spent, "more": more}
 
 
-def ask(kind: str, scene: Scene, folder: Path) -> End:
+def ask(scene: Scene, folder: Path) -> End:
     """Start the process for a scene, its file in a folder of tables, and wait for it."""
     file = folder / f"{key(scene)}.json"
     file.write_text(json.dumps(scene.parameters()), encoding="utf-8")
-    return run("benchmarks.rung", [kind, str(file), str(folder), str(LIMIT)], LIMIT)
+    return run("benchmarks.rung", [str(file), str(folder), str(LIMIT)], LIMIT)
 
 
 def _main(arguments: Sequence[str]) -> None:
-    limit_processor_time(float(arguments[3]))
+    limit_processor_time(float(arguments[2]))
     from fingerpad import startup
 
     startup.start()
     from fingerpad.reduced import smooth
-    from fingerpad.runs import start
 
-    scene, folder = from_data(json.loads(Path(arguments[1]).read_text(encoding="utf-8"))), Path(arguments[2])
-    answer = smooth.solve if arguments[0] == "2" else start.answer
-    print(json.dumps(kept(answer(scene, folder, startup.MPI.COMM_WORLD))))
+    scene, folder = from_data(json.loads(Path(arguments[0]).read_text(encoding="utf-8"))), Path(arguments[1])
+    print(json.dumps(kept(smooth.solve(scene, folder, startup.MPI.COMM_WORLD))))
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.cli.arguments import positive
 from fingerpad.io.files import replace
-from fingerpad.io.pictures import BLUE, GREEN, ORANGE, VERMILION
+from fingerpad.io.style import BLUE, GREEN, ORANGE, VERMILION
 from variational.roughness.selfaffine import SelfAffine
 from variational.roughness.spectrum import PowerSpectrum, power_spectrum, roughness_table
 from variational.roughness.topography import Distribution, HeightMap, Trend, distribution, polynomials

@@ -25,7 +25,7 @@ from fingerpad.runs.batch import key
 from fingerpad.scene import SceneError, from_data
 from tests.runs import SMALL_FINGER, run
 from variational.solvers.continuation import StepFailed
-from variational.solvers.newton import Control
+from variational.solvers.equations import Control
 from variational.solvers.transfer import StateSnapshot
 from variational.state import ContactState
 

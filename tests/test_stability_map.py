@@ -20,7 +20,7 @@ from geometry import strip
 from geometry.mesh import load
 from geometry.parameters import Fingertip
 from variational.roughness.bam import BearingArea
-from variational.solvers.newton import Control
+from variational.solvers.equations import Control
 
 # A press of half an newton a metre on facets of 60 um: two seconds a run.
 TINY = Case(contact_size=60e-6, force=0.5, voltage=50.0, element="P1", slide=0.0)

@@ -131,7 +131,7 @@ def half(tmp_path_factory):
     folder, check = tmp_path_factory.mktemp("half"), StabilityCheck.check
 
     def unstable(self):
-        return Stability(-1.0, True) if self.solver.antisymmetric_rows() is not None else check(self)
+        return Stability(-1.0, True) if self.solver.equations.antisymmetric_rows() is not None else check(self)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(StabilityCheck, "check", unstable)

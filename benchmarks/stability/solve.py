@@ -30,15 +30,17 @@ from geometry import strip, tags
 from geometry.mesh import TaggedMesh, load
 from geometry.parameters import Fingertip, MeshSize
 from variational import compat, jit
+from variational.contact.formulation import SurfaceState
 from variational.kinematics import deformation_gradient
-from variational.problem import Interface, Ogden, Problem
-from variational.quantities import Observer, SurfaceState
+from variational.materials.ogden import Ogden
+from variational.problem import Interface, Problem
+from variational.quantities import Observer
 from variational.roughness.bam import BearingArea
-from variational.solvers.cell import carried
 from variational.solvers.continuation import Attempt, Continuation, StepFailed, Target
 from variational.solvers.coupling import Coupling
+from variational.solvers.equations import Control, Equations
 from variational.solvers.failure import NotConverged
-from variational.solvers.newton import Control, Solver
+from variational.solvers.newton import Solver
 from variational.surface import Surface
 
 _H_0 = 0.514e-6  # m
@@ -49,7 +51,7 @@ _ALPHA = -14.53
 class PlainCoupling(Coupling):
     """Sweeps without pseudo-transient continuation."""
 
-    def _sweep(self, creep: bool) -> tuple[NDArray[np.float64], SurfaceState]:
+    def _sweep(self, pseudo_transient: bool) -> tuple[NDArray[np.float64], SurfaceState]:
         return super()._sweep(False)
 
 
@@ -67,9 +69,9 @@ class Recorder(Continuation):
         cells = self.problem.cell_tags.find(tag)
         return float(compat.evaluate_on_cells(self._jacobian, self.problem.mesh, cells).min())
 
-    def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool, on_cone: bool = True) -> None:
+    def _try(self, load: tuple[Control, float], attempt: Attempt, pseudo_transient: bool, on_cone: bool = True) -> None:
         try:
-            super()._try(load, attempt, creep, on_cone)
+            super()._try(load, attempt, pseudo_transient, on_cone)
         except NotConverged as failure:
             if failure.inverted:
                 layers = {name: tag for name, tag in tags.LAYERS.items() if tag in strip.LAYERS}
@@ -95,9 +97,7 @@ def make_solver(case: Case, body: TaggedMesh, problem: Problem) -> Solver:
     """Return the solver with the lateral faces of a case."""
     rim, sides = (body.facet_tags.find(tag) for tag in (tags.BONE_RIM, tags.SIDES))
     scale = case.force * case.ridges
-    if case.sides == "free":
-        return Solver(problem, rim, scale)
-    return carried(problem, rim, sides, scale)
+    return Solver(Equations(problem, rim, moving_sides=None if case.sides == "free" else sides), scale)
 
 
 def targets(case: Case) -> list[Target]:

@@ -27,7 +27,7 @@ from benchmarks.verification.case import Case, Outcome, Row
 from geometry import tags
 from geometry.bodies import cooks_membrane
 from variational.element import ELEMENTS
-from variational.problem import Ogden
+from variational.materials.ogden import Ogden
 
 YOUNG, TRACTION = 240.565e6, 6.25e6  # Pa
 GAP, CORNER = 10e-3, (48e-3, 60e-3)  # m
@@ -60,8 +60,8 @@ class Membrane:
         """Return the corner's rise (mm) by the tangent at rest."""
         solver, layout = self.solver, self.solver.layout
         A, x = layout.create_matrix(), layout.create_vector()
-        solver.assemble_tangent(A)
-        A.zeroRows(solver.prescribed_rows(), diag=YOUNG)
+        solver.equations.assemble_tangent(A)
+        A.zeroRows(solver.equations.prescribed_rows(), diag=YOUNG)
         ksp = PETSc.KSP().create(layout.comm)
         ksp.setOperators(A)
         ksp.setType(PETSc.KSP.Type.PREONLY)
