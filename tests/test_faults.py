@@ -34,10 +34,11 @@ def one_start(monkeypatch):
 
 @pytest.fixture
 def scene():
-    """A finger pressed in two steps and charged in four."""
+    """A finger of nine ridges pressed in two steps and charged in four; without errors, that no fault is put into."""
 
     def make_scene(**numerics):
-        return from_data({"mesh": MESH, "history": HISTORY, "numerics": numerics})
+        parts = {"geometry": {"ridge_count": 9}, "output": {"errors": False}}
+        return from_data({"mesh": MESH, "history": HISTORY, "numerics": numerics, **parts})
 
     return make_scene
 
