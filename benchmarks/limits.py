@@ -1,15 +1,13 @@
-"""What scenes tend to: states of a coarse path solved again on meshes with all sizes halved together.
+"""Limits of scenes under refinement: states of a coarse path, solved again on meshes with all sizes halved.
 
-python3 -m benchmarks.limits SCENE.json LEVELS LIMIT [uncharged]
+python3 -m benchmarks.limits SCENE.json LEVELS LIMIT [uncharged]     one scene, as :func:`ask` starts it; prints JSON
 
-One scene, as :func:`ask` starts it; JSON on standard output.
-
-The path is run on the coarse mesh that an ``[accuracy]`` starts from. Its states (normal contact, full slip, and
-uncharged contact where it is asked for) are solved again on each of :func:`meshes`, by halves since a state put onto
-elements a quarter of its own is far from equilibrium, and from the first of these on the scene's own. Full slip knows
-no path, so that it is that of the whole run there; normal contact keeps the friction history of the path, which the
-comparison of the scene's own mesh with a whole run on it tells the worth of (``docs/errors.md``). Where a state is not
-found on a mesh after the third, the limit is that of the meshes before, with the larger bar that they have.
+The path is followed on the coarse mesh that an ``[accuracy]`` starts from. Its states are solved again on each of
+:func:`meshes`: by halves, since a state put onto elements a quarter of its own is far from equilibrium. From the first
+of these meshes the states are also solved again on the scene's own mesh. Full slip does not depend on the load path, so
+that it is that of a whole run. Normal contact keeps the friction history of the coarse path; the comparison of the own
+mesh with a whole run on it shows by how much (``docs/errors.md``). Where a state is not found on a mesh after the
+third, the limit is that of the meshes before, with their larger bar.
 """
 
 import json
@@ -41,19 +39,25 @@ _LIMIT = 14400.0  # s of processor time for one scene
 
 
 def meshes(mesh: MeshSize, levels: int) -> list[MeshSize]:
-    """Return meshes of one family, each with half the sizes of the one before, that touch where a given one can."""
+    """Return meshes of one family, each with half the sizes of the one before, with the touching ridges of ``mesh``."""
     first = mesh.model_copy(update=_FIRST)
     return [first.model_copy(update={s: getattr(first, s) / 2**n for s in _HALVED}) for n in range(levels)]
 
 
 def kept(scene: Scene, levels: int, folder: Path) -> dict[str, Any] | None:
-    """Return what was solved of a scene, None if nothing was."""
+    """Return the kept output of :func:`ask`, None if there is none."""
     file = folder / f"{key(scene)}-{levels}.json"
     return dict(json.loads(file.read_text(encoding="utf-8"))) if file.exists() else None
 
 
 def ask(scene: Scene, levels: int, folder: Path, uncharged: bool) -> dict[str, Any]:
-    """Solve a scene in a process of its own, if need be with its uncharged contact, and keep what it says.
+    """Solve a scene in a process of its own and keep its output.
+
+    Args:
+        scene: press, charge and slide.
+        levels: number of meshes.
+        folder: of the results.
+        uncharged: whether uncharged normal contact is solved again, too.
 
     Returns:
         ``path``, ``own`` (the scene's mesh) and ``levels``, each a mesh, its cost and its values; or ``failure``.
@@ -72,7 +76,7 @@ def ask(scene: Scene, levels: int, folder: Path, uncharged: bool) -> dict[str, A
 def ask_all(
     scenes: Mapping[str, Scene], levels: int, folder: Path, jobs: int, uncharged: bool = True
 ) -> dict[str, dict[str, Any]]:
-    """Solve what has not been solved of scenes by name, with a progress bar; see :func:`ask`."""
+    """Solve the scenes, by name, that are not kept yet, with a progress bar; see :func:`ask`."""
     found = {name: kept(scene, levels, folder) for name, scene in scenes.items()}
     missing = [name for name, known in found.items() if known is None]
 
@@ -89,7 +93,7 @@ def ask_all(
 
 
 def limits(found: Mapping[str, Any]) -> dict[str, Limit]:
-    """Return what the quantities tend to as the meshes are refined; of at least three of them."""
+    """Return the limits of the quantities under refinement; of at least three meshes."""
     levels = [level["values"] for level in found["levels"]]
     return {name: limit([values[name] for values in levels]) for name in levels[-1]}
 
@@ -102,8 +106,8 @@ def _path(scene: Scene, uncharged: bool, comm: MPI.Comm) -> Solve:
         keeper.see(step)
 
     def on_load() -> None:
-        if "press" not in keeper.states and uncharged:
-            keeper.keep("press")
+        if "uncharged" not in keeper.states and uncharged:
+            keeper.keep("uncharged")
 
     for contact in _STARTS:
         sizes = start({}) | {"receptor": 2 * _FIRST["receptor"], "contact": contact}
@@ -133,7 +137,7 @@ def _solve(scene: Scene, levels: int, uncharged: bool) -> dict[str, Any]:
         print(mesh, solves[-1].unknowns, solves[-1].factorisations, file=sys.stderr)
     own = solve_again(scene, plan(scene), solves[1].states, comm)
 
-    def told(solve: Solve) -> dict[str, Any]:
+    def summary(solve: Solve) -> dict[str, Any]:
         ridges = {
             f"{PREFIXES.get(name, name)}_ridges_in_contact": s.state.ridges_in_contact
             for name, s in solve.states.items()
@@ -146,7 +150,7 @@ def _solve(scene: Scene, levels: int, uncharged: bool) -> dict[str, Any]:
             "values": solve.values() | ridges,
         }
 
-    return {"path": told(path), "own": told(own), "levels": [told(solve) for solve in solves[1:]]}
+    return {"path": summary(path), "own": summary(own), "levels": [summary(solve) for solve in solves[1:]]}
 
 
 def _main(arguments: Sequence[str]) -> None:

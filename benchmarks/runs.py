@@ -81,6 +81,10 @@ class Run:
         rows: list[Any] = [SimpleNamespace(bone_x=x, ridges_in_contact=n) for x, n in zip(*columns, strict=True)]
         return self._row("normal", lambda: len(states.before_sliding(rows)) - 1)
 
+    def row(self, prefix: str) -> int:
+        """Return the row of a state by its prefix in flat tables: ``uncharged``, ``normal`` or ``slip``."""
+        return int({"uncharged": self.pressed, "normal": self.normal, "slip": self.slip}[prefix])
+
     @property
     def slip(self) -> int:
         """Row of full slip, see :mod:`fingerpad.io.states`."""
