@@ -15,7 +15,8 @@ from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, NU, RADIU
 from benchmarks.verification.over_screen import formulations, over_screen
 from fingerpad.richardson import MeshParameter
 from geometry.bodies import pad
-from variational.problem import Interface, SaintVenant
+from variational.materials.saint_venant import SaintVenant
+from variational.problem import Interface
 from variational.solvers.continuation import Target
 
 HALF_WIDTHS = tuple(part * HALF_WIDTH for part in (0.817, 0.893, 0.961, 1.049, 1.137))

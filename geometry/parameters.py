@@ -114,7 +114,7 @@ class MeshSize(BaseModel):
     longer graded."""
     touching_half_arc: Annotated[Finite, within(1e-6, 0.2, "m")] | None = None
     """Arc length on either side of the centre within which ridges can touch; a run that finds contact at
-    its end says so and begins again with more. Without it the run asks a coarse finger
+    its end says so and begins again with more. Without it a rule of thumb gives it
     (:mod:`fingerpad.model.touching`); a finger is meshed with a number only. 1 µm is ridge 0 alone, 0.2 m goes round
     any finger."""
     touching_fraction: Annotated[Finite, within(1e-3, 1)] = 0.4

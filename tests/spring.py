@@ -14,7 +14,8 @@ from geometry.bodies import block
 from geometry.mesh import load
 from variational.body import Body
 from variational.contact.penalty import Penalty
-from variational.problem import Interface, SaintVenant
+from variational.materials.saint_venant import SaintVenant
+from variational.problem import Interface
 from variational.solvers.newton import Control, Solver
 
 WIDTH, HEIGHT, GAP = 0.125e-3, 0.5e-3, 6e-6

@@ -537,7 +537,6 @@ def test_compare_prints_keys_and_notes(capsys):
     ("argv", "message"),
     [
         (["--ridges", "3"], "one of --contact-length and --ridges is given without the other"),
-        (["--model", "smooth", "--from-smooth"], "--from-smooth is given without the model full"),
         (["--model", "smooth", "--ridges", "3"], "--ridges is given without the model cylinders"),
     ],
 )

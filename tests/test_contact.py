@@ -14,7 +14,8 @@ from variational.body import Body
 from variational.contact import formulation
 from variational.contact.formulation import History
 from variational.contact.penalty import Penalty
-from variational.problem import Interface, Ogden
+from variational.materials.ogden import Ogden
+from variational.problem import Interface
 from variational.quantities import Observer
 from variational.roughness.bam import BearingArea
 from variational.solvers.newton import Control, Solver

@@ -19,8 +19,10 @@ from variational.cellwise import Cellwise
 from variational.contact.penalty import Penalty
 from variational.element import ELEMENTS
 from variational.materials import stress
+from variational.materials.ogden import Ogden
+from variational.materials.saint_venant import SaintVenant
 from variational.pressure import LayerwisePressure
-from variational.problem import Interface, Ogden, Problem, SaintVenant
+from variational.problem import Interface, Problem
 from variational.quantities import Observer
 from variational.solvers.newton import Control, Solver
 from variational.surface import Surface

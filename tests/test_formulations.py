@@ -13,7 +13,8 @@ from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.formulation import History
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
-from variational.problem import Interface, Ogden
+from variational.materials.ogden import Ogden
+from variational.problem import Interface
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Continuation, StepFailed, Target
 from variational.solvers.failure import NotConverged

@@ -10,10 +10,9 @@ from benchmarks import ladder as page
 from fingerpad.io.result import Result
 from fingerpad.io.states import PREFIXES
 from fingerpad.reduced import cylinders, ridge_cell
-from fingerpad.runs import compare, full, start
+from fingerpad.runs import compare
 from fingerpad.runs.processes import End
 from fingerpad.scene import SceneError, from_data
-from variational.solvers.continuation import StepFailed
 from variational.state import RESULTS
 
 
@@ -154,19 +153,6 @@ def test_closed_form_has_no_discretisation_error(default):
     assert any("no discretisation error" in note for note in default.notes)
 
 
-def test_full_model_without_a_start_follows_the_path(monkeypatch, tmp_path):
-    """The smooth model's state does not serve: the answer is the path's, and a note says why."""
-
-    def lost(*_):
-        raise StepFailed("full slip was not found")
-
-    monkeypatch.setattr(start, "answer", lost)
-    monkeypatch.setattr(full, "run", lambda *_: Result.from_dict(keep(tmp_path)))
-    answer = compare.started(scene(), tmp_path)
-    assert answer.full_slip.contact_length == 1.6e-3
-    assert answer.notes == ("full slip was not found; the path was followed instead",)
-
-
 # -- the benchmark -----------------------------------------------------------------------------------------
 MORE = {"table_version": ridge_cell.VERSION}
 
@@ -175,8 +161,7 @@ def test_answers_are_kept_and_failures_asked_again(monkeypatch, tmp_path):
     """Of two scenes one fails: it says how, has no error, and is the only one that is run again."""
     asked = []
 
-    def ask(kind, scene, tables):
-        assert kind == "2"
+    def ask(scene, tables):
         asked.append(scene.voltage)
         if scene.voltage:
             return End(1, "TIME_LIMIT", "not done", "")
@@ -197,8 +182,8 @@ def test_answers_are_kept_and_failures_asked_again(monkeypatch, tmp_path):
 
 # -- the page ----------------------------------------------------------------------------------------------
 def test_lengths_in_the_program_are_the_runs():
-    """Those that rung 1 interpolates are the full runs' of docs/compare.json, to the four digits they are kept with."""
-    known = json.loads((Path(page.__file__).parents[1] / "docs" / "compare.json").read_text(encoding="utf-8"))
+    """Those that rung 1 interpolates are the full runs' of docs/ladder.json, to the four digits they are kept with."""
+    known = json.loads((Path(page.__file__).parents[1] / "docs" / "ladder.json").read_text(encoding="utf-8"))
     for state in ("charged", "full_slip"):
         for k, f in enumerate(cylinders._FORCES):
             run = known[page.name(f, 0.0)]["3"]["summary"]
@@ -212,20 +197,3 @@ def test_errors_are_against_the_full_model():
     assert page.error(found, 1, "slip_mu_app") == pytest.approx(0.25, rel=1e-12)
     assert page.error(found, 2, "slip_mu_app") is None
     assert page.error({"1": found["1"]}, 1, "slip_mu_app") is None
-
-
-def test_page_compares_a_start_with_the_path():
-    """A hundredth more friction with a ridge less, at a quarter of the cost: 10 x 10 and 5 x 30 over 10 x 100."""
-    own = {"slip_f_t": 1.01, "slip_contact_length": 0.99, "slip_ridges_in_contact": 15}
-    full = {"slip_f_t": 1.0, "slip_contact_length": 1.0, "slip_ridges_in_contact": 16}
-    started = {
-        "summary": own,
-        "cost": {"factorisations": 10, "unknowns": 10},
-        "more": MORE | {"rung_2_factorisations": 5, "rung_2_unknowns": 30},
-    }
-    path = {"summary": full, "cost": {"factorisations": 10, "unknowns": 100, "seconds": 1.0}}
-    known = {"75 N/m, 200 V": {page.START: started, "3": path}, "10 N/m, 0 V": {page.START: {"failure": "lost"}}}
-    text = page.page(known)
-    assert "| 75 N/m, 200 V | +1 | -1 | 15 | 16 | 0.25 |" in text
-    assert "| 10 N/m, 0 V | lost |" in text
-    assert "| 25 N/m, 0 V | not run |" in text

@@ -20,8 +20,9 @@ from tests.runs import run
 from variational.body import Body
 from variational.contact.penalty import Penalty
 from variational.energy import EnergyBook
+from variational.materials.ogden import Ogden
 from variational.output import Snapshot
-from variational.problem import Interface, Ogden
+from variational.problem import Interface
 from variational.quantities import RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Target

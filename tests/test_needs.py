@@ -22,7 +22,8 @@ from variational.body import Body
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
-from variational.problem import Interface, Ogden
+from variational.materials.ogden import Ogden
+from variational.problem import Interface
 from variational.quantities import RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Target

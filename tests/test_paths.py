@@ -15,7 +15,8 @@ from tests.test_contact import MU_F, make
 from variational.body import Body
 from variational.contact.penalty import Penalty
 from variational.energy import Balance, EnergyBook
-from variational.problem import Interface, SaintVenant
+from variational.materials.saint_venant import SaintVenant
+from variational.problem import Interface
 from variational.quantities import Observer, RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Attempt, Continuation, Target

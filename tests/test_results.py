@@ -44,18 +44,18 @@ def titles(monkeypatch) -> dict[str, str]:
     """Titles of the pictures that would be drawn, by file; of the surface's panels, by state."""
     found: dict[str, str] = {}
 
-    def finger(path, snapshot, sites, title):
+    def finger(path, snapshot, sites, title, ridges, highest):
         found[Path(path).stem] = title
 
     def surface(path, states, title):
         found[Path(path).stem] = title
-        found.update({state.title: drawing.pictures._surface_title("A", state) for state in states})
+        found.update({state.title: drawing.skin_picture._surface_title("A", state) for state in states})
 
-    def history(path, rows, title, mu_0):
+    def history(path, rows, title, mu_0, named):
         found[Path(path).stem] = title
 
-    for function in (finger, surface, history):
-        monkeypatch.setattr(drawing.pictures, function.__name__, function)
+    for module, function in (("finger", finger), ("skin", surface), ("history", history)):
+        monkeypatch.setattr(getattr(drawing, f"{module}_picture"), function.__name__, function)
     return found
 
 
@@ -79,6 +79,15 @@ def test_charged_while_it_slides(tmp_path, titles):
     assert "$U$ = 100 V, bone at $x$ = 0.6 mm" in titles["finger_charge_while_sliding"]
     assert "$U$ = 0 V" in titles["Charged normal contact"] and "$U$ = 100 V" in titles["Full slip"]
     assert "$f_{ext}$ = 1 N/m, $U$ = 0 to 100 V" in titles["history"] and "$U$ = 0 to 100 V" in titles["surface"]
+
+
+def test_skin_is_drawn_without_sliding(tmp_path, titles):
+    """A run that only presses has the skin at the end of its load, and no history of sliding."""
+    run(from_data(LEAN | {"history": [PRESS]}), tmp_path, MPI.COMM_WORLD)
+    assert {"surface", "surface_press", "finger_press"} <= set(titles) and "history" not in titles
+    assert "$f_{ext}$ = 1 N/m, $U$ = 0 V" in titles["After press"]
+    with np.load(tmp_path / "surface_press.npz") as arrays:
+        assert set(arrays["end_ridge"][arrays["end_p"] > 0]) == {0.0}, "the ridge at the centre alone touches"
 
 
 HEIGHT = {"name": "press", "bone_height": -20e-6}
@@ -270,7 +279,7 @@ def test_profile_is_sorted_along_each_ridge():
     """Two ridges, the second one's facets first: a line each, with a break between."""
     profile = Profile(ridge=np.array([1, 0]), values=np.ones((7, 2, 2)), d_eq=np.array([1e-6, 2e-6]))
     profile.values[0] = [[3e-3, 2e-3], [1e-3, 0.0]]
-    state = SimpleNamespace(f_ext=1.0, voltage=0.0, bone_x=0.0, contact_length=1e-3)
+    state = SimpleNamespace(f_ext=1.0, voltage=0.0, bone_x=0.0, contact_length=1e-3, ridges=None)
     found = drawing._along(profile, "full slip", state, "")
     assert found.x[[0, 1, 3, 4]] == pytest.approx([0.0, 1e-3, 2e-3, 3e-3]) and np.isnan(found.x[[2, 5]]).all()
     assert found.d_eq[[0, 3]] == pytest.approx([1e-6, 2e-6])

@@ -271,23 +271,6 @@ def test_bits_are_let_go_where_the_body_cannot_be_settled(bodies, reached, monke
     assert -solver.reaction[0] == pytest.approx(reached[FINE][2], rel=2e-6)
 
 
-def test_state_of_another_model_is_not_settled(bodies, reached, monkeypatch):
-    """Its skin is where this body's is not; pseudo-transient continuation alone is tried."""
-    path = prepare(bodies[FINE])
-    give(reached[COARSE][1], path.coupling, SLIDE)
-    calls = []
-
-    def fails(creep):
-        calls.append(creep)
-        raise NotConverged("DIVERGED_LOCAL_MIN", False)
-
-    monkeypatch.setattr(path.coupling, "solve", fails)
-    monkeypatch.setattr(path.solver, "hold", lambda skin=False: pytest.fail("held"))
-    with pytest.raises(StepFailed, match="LOCAL_MIN"):
-        path.adopt("full slip", same_body=False)
-    assert calls == [False, True]
-
-
 def test_failure_names_the_state(bodies, reached):
     """A voltage at which nothing was solved: the ridge cannot be had from there, and the sentence says which."""
     path = prepare(bodies[FINE])

@@ -10,7 +10,7 @@ from matplotlib.tri import Triangulation
 from benchmarks.paper.statement import Statement, verdict
 from benchmarks.paper.style import BLUE, GREEN, PURPLE, VERMILION
 from benchmarks.runs import Array, Run
-from fingerpad.io.pictures import interfaces
+from fingerpad.io.finger_picture import interfaces
 from geometry import tags
 
 _MM, _UM, _KPA = 1e-3, 1e-6, 1e3

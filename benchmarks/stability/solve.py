@@ -8,7 +8,7 @@ The bone's rim is the strip's flat top. The lateral faces are carried by the nei
 bone and freely up and down. A free stump of soft dermis under a stiff epidermis tips over before it slips; faces glued
 to the bone would hold the epidermis up, which is 24 times stiffer than the dermis that should. Carried ridges
 behave like one of many equal ones, and 4.4 N/m on each give the finger's contact length and friction. Only where a
-trailing ridge is to snap off, or dermis to bulge, have they to be free. """
+trailing ridge is to snap off, or dermis to bulge, have they to be free."""
 
 import json
 import sys
@@ -30,9 +30,11 @@ from geometry import strip, tags
 from geometry.mesh import TaggedMesh, load
 from geometry.parameters import Fingertip, MeshSize
 from variational import compat, jit
+from variational.contact.formulation import SurfaceState
 from variational.kinematics import deformation_gradient
-from variational.problem import Interface, Ogden, Problem
-from variational.quantities import Observer, SurfaceState
+from variational.materials.ogden import Ogden
+from variational.problem import Interface, Problem
+from variational.quantities import Observer
 from variational.roughness.bam import BearingArea
 from variational.solvers.cell import carried
 from variational.solvers.continuation import Attempt, Continuation, StepFailed, Target

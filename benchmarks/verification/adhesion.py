@@ -28,7 +28,8 @@ from geometry.bodies import block, pad
 from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.attraction.insulator import VACUUM_PERMITTIVITY
 from variational.contact.penalty import Penalty
-from variational.problem import Interface, SaintVenant
+from variational.materials.saint_venant import SaintVenant
+from variational.problem import Interface
 from variational.solvers.continuation import Target
 from variational.solvers.stability import StabilityCheck
 

@@ -27,7 +27,7 @@ from benchmarks.verification.case import Case, Outcome, Row
 from geometry import tags
 from geometry.bodies import cooks_membrane
 from variational.element import ELEMENTS
-from variational.problem import Ogden
+from variational.materials.ogden import Ogden
 
 YOUNG, TRACTION = 240.565e6, 6.25e6  # Pa
 GAP, CORNER = 10e-3, (48e-3, 60e-3)  # m

@@ -26,7 +26,8 @@ from geometry import tags
 from geometry.bodies import block
 from variational import compat, jit, kinematics
 from variational.materials import stress
-from variational.problem import Ogden, Problem
+from variational.materials.ogden import Ogden
+from variational.problem import Problem
 
 Array = NDArray[np.float64]
 SIZE = 1e-3  # m: width, height and distance from the screen

@@ -18,7 +18,8 @@ from geometry.mesh import load
 from variational.body import Body
 from variational.contact.penalty import Penalty
 from variational.energy import Balance, EnergyBook
-from variational.problem import Interface, Ogden
+from variational.materials.ogden import Ogden
+from variational.problem import Interface
 from variational.quantities import Observer
 from variational.solvers.newton import Control, Solver
 

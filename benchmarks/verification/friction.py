@@ -31,7 +31,9 @@ from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.formulation import Formulation
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
-from variational.problem import Interface, Ogden, SaintVenant
+from variational.materials.ogden import Ogden
+from variational.materials.saint_venant import SaintVenant
+from variational.problem import Interface
 from variational.solvers.continuation import Continuation, Target
 
 _H_0 = 0.514e-6

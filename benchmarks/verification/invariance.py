@@ -26,7 +26,9 @@ from geometry import tags
 from geometry.bodies import block
 from variational.element import ELEMENTS
 from variational.materials import saint_venant
-from variational.problem import Ogden, Problem, SaintVenant
+from variational.materials.ogden import Ogden
+from variational.materials.saint_venant import SaintVenant
+from variational.problem import Problem
 from variational.solvers.newton import Solver
 
 Array = NDArray[np.float64]

@@ -35,7 +35,8 @@ from benchmarks.verification.over_screen import Array, formulations, over_screen
 from geometry.bodies import block, foot, pad
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.penalty import Penalty
-from variational.problem import Interface, SaintVenant
+from variational.materials.saint_venant import SaintVenant
+from variational.problem import Interface
 from variational.solvers.continuation import Target
 
 YOUNG, NU, RADIUS, HALF_WIDTH = 1e6, 0.3, 1.0, 0.5e-3

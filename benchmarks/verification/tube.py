@@ -18,7 +18,8 @@ from benchmarks.verification.case import Case, Outcome, Row, worst
 from benchmarks.verification.shooting import ALPHA, AXIS, SHEAR, A, B, Exact, exact_tube, pressure_of_incompressible
 from geometry import tags
 from geometry.bodies import quarter_tube
-from variational.problem import Ogden, Problem
+from variational.materials.ogden import Ogden
+from variational.problem import Problem
 
 Array = NDArray[np.float64]
 WIDENED = (1.05, 1.1, 1.2, 1.3)  # a / A

@@ -65,7 +65,7 @@ def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
     found, touching = estimate(scene, needed), by_rule(scene)
     ridges = touching_ridges(touching.geometry, touching.mesh)
     given = scene.mesh.touching_half_arc is not None
-    how = "as mesh.touching_half_arc gives" if given else "by a rule of thumb; a run asks a coarse finger first"
+    how = "as mesh.touching_half_arc gives" if given else "by a rule of thumb; a run takes more where they come near"
     yield f"some {_about(found.triangles)} triangles of element {scene.numerics.element}"
     yield f"some {_about(found.unknowns)} unknowns, within a factor of 1.5"
     yield f"{len(ridges)} of {scene.geometry.ridge_count} ridges can touch, {how}"

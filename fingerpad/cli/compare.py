@@ -29,13 +29,10 @@ def main(argv: Sequence[str]) -> int:
         default=list(MODELS),
         help="models to compare (default: all; full takes minutes)",
     )
-    parser.add_argument("--from-smooth", action="store_true", help="start the full slip of full from that of smooth")
     parser.add_argument("--contact-length", type=positive(float), metavar="M", help="cylinders: the length in contact")
     parser.add_argument("--ridges", type=positive(int), metavar="N", help="cylinders: on so many ridges")
     parser.add_argument("--run", type=path, metavar="DIR", help="cylinders: contact lengths of this full run")
     args, petsc = parser.read_with_petsc(argv)
-    if args.from_smooth and "full" not in args.model:
-        raise SceneError("--from-smooth is given without the model full, which it starts; add --model full")
     given = [name for name in ("contact_length", "ridges", "run") if getattr(args, name) is not None]
     if given and "cylinders" not in args.model:
         raise SceneError(f"--{given[0].replace('_', '-')} is given without the model cylinders, which reads it; add it")
@@ -50,8 +47,6 @@ def main(argv: Sequence[str]) -> int:
     def answer(model: str) -> Result:
         if model == "cylinders":
             return cylinders.solve(scene, footprint)
-        if model == "full" and args.from_smooth:
-            return compare.started(scene, args.out)
         return solved(scene, model, args.out / "full" if model == "full" else args.out, lines=True)
 
     def answer_or_refusal(model: str) -> Result:

@@ -183,7 +183,7 @@ class Result:
             with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
                 steps = tuple(ContactState.from_row(row) for row in csv.DictReader(file))
             mu_0 = None if "laws" in found.record.get("parameters", {}) else coefficient(found.scene)
-            drawing = Drawing(mu_0, steps, {}, {}, {}, None)
+            drawing = Drawing(mu_0, steps, {}, {}, {}, None, found.named)
             return replace(found, steps=steps, loads=tuple(_loads(steps, summary)), drawing=drawing)
         except (OSError, ValueError, KeyError) as error:
             if isinstance(error, SceneError):

@@ -1,11 +1,11 @@
 """What a scene needs of the model, decided from the scene alone.
 
 What cannot change any number asked for is left out, and each omission comes with its reason. Nothing here is an
-approximation but what the finite elements make of it: the numbers stay those of the whole model. Ridges that cannot
-touch are another matter: a solve decides (:mod:`fingerpad.model.touching`).
+approximation but what the finite elements make of it: the numbers stay those of the whole model. Ridges that are not
+expected to touch are another matter (:mod:`fingerpad.model.touching`).
 """
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 
 from fingerpad.scene import Scene
 
@@ -38,22 +38,12 @@ class ModelOptions:
     """Discretisation errors, from states solved again on other meshes."""
     omitted: tuple[Omission, ...]
 
-    def table(self) -> list[dict[str, str]]:
-        """Return the omissions, ready for JSON."""
-        return [asdict(omission) for omission in self.omitted]
-
     def with_both_halves(self) -> "ModelOptions":
         """Return the plan for the whole finger."""
         return replace(self, both_halves=True, omitted=tuple(o for o in self.omitted if o != _HALF))
 
-    def with_ridges(self, last: int, reason: str) -> "ModelOptions":
-        """Return the plan with ridges -last to last alone on the mesh as such, whatever ridges it had before."""
-        others = (o for o in self.omitted if not o.what.startswith(_RIDGES))
-        return replace(self, omitted=(*others, Omission(f"{_RIDGES} ±{last}", reason)))
-
 
 _FILE = "the mesh is of a file"
-_RIDGES = "contact of the ridges beyond"
 _HALF = Omission(
     "the half at x < 0, but in tables and pictures (displacement.bp, stress.bp and sed.bp hold the other)",
     "no load moves the bone sideways, and the finger is its own mirror image",

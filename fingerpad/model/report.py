@@ -4,7 +4,7 @@ import json
 import logging
 import time
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -20,8 +20,10 @@ from fingerpad.io.views import Profile, View
 from fingerpad.io.writing import Writer
 from fingerpad.model.balance import broken
 from fingerpad.model.contact_zone import RestartRequired
+from fingerpad.model.options import Omission
 from fingerpad.model.simulation import Simulation
 from fingerpad.model.steps import Checked, Step, force_error
+from fingerpad.model.touching import left_out
 from fingerpad.model.viewer import Viewer
 from fingerpad.scene import Scene
 from fingerpad.scene.laws import coefficient, used
@@ -73,7 +75,7 @@ class Report:
         self._simulation = simulation
         self._setup += time.perf_counter() - self._begun
         self._viewer = Viewer(simulation)
-        for omission in simulation.plan.omitted:
+        for omission in self._omitted(simulation):
             self.say(f"{omission}")
             self.log.info("%s", omission)
         self.say(f"{simulation.unknowns} unknowns, {len(simulation.ridges)} ridges that can touch")
@@ -225,7 +227,7 @@ class Report:
         unknowns = int(more.pop("unknowns", self._simulation.unknowns))
         words = {name: more.pop(name, "") for name in ("failure", "interrupted")}
         notes = tuple(more.pop("notes", ()))
-        drawing = self._drawing()
+        drawing = self._drawing(named)
         if drawing is not None and self._folder is not None:
             drawing.write(self._folder)
         self.seconds += time.perf_counter() - start
@@ -251,13 +253,13 @@ class Report:
         self._writer.summary(found.to_dict())
         return found
 
-    def _drawing(self) -> Drawing | None:
+    def _drawing(self, named: Mapping[str, ContactState]) -> Drawing | None:
         """Return what the pictures are drawn from, on rank 0."""
         assert self._simulation is not None
         if not self.states or self.comm.rank != 0:
             return None
         size = None if self.scene.accuracy is None else self._simulation.scene.mesh.contact
-        whole = Drawing(coefficient(self.scene), self.states, self._profiles, self._ends, self._finer, size)
+        whole = Drawing(coefficient(self.scene), self.states, self._profiles, self._ends, self._finer, size, named)
         shown = whole.steps_along()
         return replace(whole, profiles={step: p for step, p in self._profiles.items() if step in shown})
 
@@ -303,9 +305,13 @@ class Report:
             **{f"seconds_{phase}": value for phase, value in seconds.items()},
             "floor": floor,
             "force_error": force_error(unknowns, left, simulation.solver.force_scale),
-            "omitted": simulation.plan.table(),
+            "omitted": [asdict(omission) for omission in self._omitted(simulation)],
             "woken": self._woken,
         }
+
+    @staticmethod
+    def _omitted(simulation: Simulation) -> tuple[Omission, ...]:
+        return (*simulation.plan.omitted, *left_out(simulation.scene))
 
     def close(self, whole: bool = True) -> None:
         """Close every file; ``whole`` as in :meth:`fingerpad.io.writing.Writer.close`."""

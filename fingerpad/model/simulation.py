@@ -19,12 +19,12 @@ from geometry import fingertip, mesh, meshfile, tags
 from geometry.profiles import Profiles
 from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.body import Body
+from variational.contact.formulation import SurfaceState
 from variational.energy import EnergyBook
 from variational.problem import Interface
-from variational.quantities import RidgeLoads, SurfaceState
+from variational.quantities import RidgeLoads
 from variational.solvers.continuation import Attempt, StepFailed, Target
 from variational.solvers.failure import NotConverged
-from variational.solvers.squeeze import squeeze
 from variational.solvers.stability import StabilityCheck
 from variational.solvers.transfer import StateSnapshot, give
 from variational.state import ContactState, RidgeStates, StepRecord
@@ -152,35 +152,29 @@ class Simulation:
             "contact_length": float(loads.length.sum()),
         }
 
-    def adopt(
-        self, carried: StateSnapshot, name: str, direction: int = 0, squeezed: tuple[float, float] | None = None
-    ) -> None:
-        """Solve again for a state that was reached on another mesh of the same finger, or of a model of it.
+    def adopt(self, carried: StateSnapshot, name: str, direction: int = 0) -> None:
+        """Solve again for a state that was reached on another mesh of the same finger.
 
         Args:
             carried: the state.
             name: what it is called in a failure.
             direction: 1 or -1 for a state of full slip, the way the bone slides; zero for another.
-            squeezed: depth and reach (m) of :func:`variational.solvers.squeeze.squeeze`, for a state of another
-                model, in which the skin is not where it is here; such a state must be stable, too.
 
         Raises:
             StepFailed: no equilibrium was found from there, or it is none (forces out of balance, skin where it was not
-                expected to touch), or full slip is no longer full or not steady, or the state is not stable.
+                expected to touch), or full slip is no longer full or not steady.
         """
         try:
-            self._adopt(carried, name, direction, squeezed)
+            self._adopt(carried, name, direction)
         except (RestartRequired, FingerExceeded) as error:
             raise StepFailed(
                 f"{name}, solved again with a contact size of {self.scene.mesh.contact:g} m: {error}"
             ) from error
 
-    def _adopt(self, carried: StateSnapshot, name: str, direction: int, squeezed: tuple[float, float] | None) -> None:
+    def _adopt(self, carried: StateSnapshot, name: str, direction: int) -> None:
         give(carried, self.coupling, direction * SLIDE_ON)
-        if squeezed is not None:
-            squeeze(self.solver, *squeezed)
         self._load = name
-        self.continuation.adopt(name, same_body=squeezed is None)
+        self.continuation.adopt(name)
         # What was dissipated on the way is not known.
         self.energy = EnergyBook(self.problem, *self._state(), copies=self._copies)
         loads = self.ridge_loads()
@@ -192,11 +186,6 @@ class Simulation:
             raise StepFailed(
                 f"{name}, solved again with a contact size of {self.scene.mesh.contact:g} m, is not steady"
             )
-        if squeezed is not None:
-            self._check_stability()
-            found = self.checks[self.continuation.steps]
-            if not found.stable:
-                raise StepFailed(f"{name} from another model is {found}")
 
     def _ahead(self, load: Load) -> float:
         return (load.bone_x or 0.0) - float(self.solver.control.x)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from variational.quantities import SurfaceState
+from variational.contact.formulation import SurfaceState
 from variational.solvers.continuation import Attempt
 from variational.solvers.stability import Stability
 from variational.state import ContactState

@@ -1,87 +1,47 @@
-"""How many ridges a mesh needs: decided before the finger is meshed, where the scene does not say.
+"""Which ridges are meshed to touch the screen, where a scene does not give their number: a rule of thumb.
 
-A coarse finger (:mod:`fingerpad.reduced.coarse`) says which ridge the screen reaches last, and the mesh has
-:data:`MARGIN` ridges more on either side. Against the full runs the coarse finger is at most one ridge short
-(``docs/reach.md``), and the last ridge that is meshed must stay clear of the screen for the run to go on
-(:mod:`fingerpad.model.contact_zone`): two, then. Where the coarse finger finds no equilibrium there is a rule of thumb,
-from full runs of the default finger.
+Ridges in contact grow with the force to the power 0.27 in full runs of the default finger, and friction rolls the
+finger onto its leading side. At 75 N/m and a friction coefficient of 0.25 ten ridges on either side can touch; full
+runs need nine. The width of the zone is a length, and so a finger of narrower ridges has more of them in it. A bone
+that is lowered by a depth d brings down the skin within sqrt(2 R d) of the lowest ridge, R the radius of the outline.
+
+The rule has at least one ridge to spare in every full run of ``tests/reach.json``. What the rule misses on other
+fingers costs a restart: :mod:`fingerpad.model.contact_zone` checks each accepted step.
 """
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+import math
 
-from fingerpad.model.options import ModelOptions
+from fingerpad.model.options import Omission
 from fingerpad.scene import Scene
+from geometry.parameters import Fingertip
 from geometry.sizing import touching_ridges
 
-if TYPE_CHECKING:
-    from mpi4py import MPI
-
-MARGIN = 2
-# What the rule of thumb knows: 5 mm are enough for this force (N/m) and friction. Ridges in contact grow as the force
-# to the 0.27 (15 at 46 N/m, 17 at 73 N/m); friction rolls the finger onto its leading side (ridge 10 touches at 1).
-_HALF_ARC = 5e-3
-_FORCE, _WIDENS = 75.0, 0.27
-_FRICTION, _ROLLS = 0.25, 0.3
-_PRESSURE = 30e3  # Pa, mean contact pressure of ridges, at which a friction law that is not Coulomb's counts
-
-
-@dataclass(frozen=True)
-class Decision:
-    """What was decided of a scene's mesh, the same on every rank."""
-
-    scene: Scene
-    """With a ``mesh.touching_half_arc``, unless its mesh is of a file."""
-    reason: str
-    """Why so many ridges; empty where the scene gave the number."""
-    cost: dict[str, Any]
-    """Of the coarse solve, ready for JSON; empty where there was none."""
-
-    def plan(self, needed: ModelOptions, scene: Scene) -> ModelOptions:
-        """Return a plan that says which ridges are left out of the decision's scene, or of a wider one."""
-        if not self.reason:
-            return needed
-        last = touching_ridges(scene.geometry, scene.mesh)[-1]
-        if last == (scene.geometry.ridge_count - 1) // 2:
-            return needed
-        return needed.with_ridges(last, self.reason)
-
-
-def decide(scene: Scene, comm: "MPI.Comm") -> Decision:
-    """Decide how many ridges can touch; collective."""
-    from fingerpad.reduced import coarse  # dolfinx: not for those who want the rule alone
-
-    if scene.mesh.touching_half_arc is not None or scene.laws.mesh is not None:  # a file says which ridges there are
-        return Decision(scene, "", {})
-    try:
-        found = coarse.solve(scene, comm)
-    except coarse.NoCoarseSolution as failure:
-        reason = f"a rule of thumb says so, since a coarse solve failed: {failure}"
-        return Decision(by_rule(scene), reason, {"failure": str(failure)})
-    half_arc = (found.last + MARGIN) * scene.geometry.ridge_wavelength
-    reason = f"a coarse solve shows ridge {found.last} to be the last that the screen reaches"
-    cost = {
-        "last_ridge": found.last,
-        "unknowns": found.unknowns,
-        "factorisations": found.factorisations,
-        "processor_seconds": found.seconds,
-    }
-    return Decision(_with(scene, half_arc), reason, cost)
+_RIDGES, _FORCE, _FRICTION = 10, 75.0, 0.25  # on either side, at a force (N/m) and a friction coefficient
+_WIDENS, _ROLLS = 0.27, 0.3  # powers of the force and of a larger friction coefficient
+_LEAST = 2  # ridges on either side
+_PRESSURE = 30e3  # Pa, mean contact pressure of ridges, at which a friction law other than Coulomb's is evaluated
 
 
 def by_rule(scene: Scene) -> Scene:
-    """Return the scene with so many ridges as the rule of thumb says, if it does not say itself.
-
-    A series of runs over voltages shares a mesh so, whatever a coarse solve would say of each.
-    """
+    """Return the scene with a ``mesh.touching_half_arc``, by the rule of thumb where it gives none."""
     if scene.mesh.touching_half_arc is not None:
         return scene
-    law = scene.friction_law()
-    mu_f = 0.0 if law is None else law.coefficient(_PRESSURE)
-    force = max((load.f_ext for load in scene.loads() if load.f_ext), default=0.0) / _FORCE
-    wider = max(force, 1.0) ** _WIDENS * max(mu_f / _FRICTION, 1.0) ** _ROLLS
-    return _with(scene, _HALF_ARC * wider)
-
-
-def _with(scene: Scene, half_arc: float) -> Scene:
+    finger, law = scene.geometry, scene.friction_law()
+    force = max((load.f_ext for load in scene.loads() if load.f_ext), default=0.0)
+    depth = max((-load.bone_height for load in scene.loads() if load.bone_height), default=0.0)
+    ridges = _RIDGES * Fingertip().ridge_wavelength / finger.ridge_wavelength * (force / _FORCE) ** _WIDENS
+    radius = finger.width**2 / (2 * finger.height)
+    lowered = math.sqrt(2 * radius * max(depth, 0.0)) / finger.ridge_wavelength
+    friction = 0.0 if law is None else law.coefficient(_PRESSURE)
+    last = math.ceil(max(ridges, lowered, _LEAST) * max(friction / _FRICTION, 1.0) ** _ROLLS)
+    half_arc = min(last, max(finger.ridge_count // 2, 1)) * finger.ridge_wavelength
     return scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"touching_half_arc": half_arc})})
+
+
+def left_out(scene: Scene) -> tuple[Omission, ...]:
+    """Return the omission of the ridges that are not meshed to touch, if there are any; of a scene with a half arc."""
+    last = touching_ridges(scene.geometry, scene.mesh)[-1]
+    if scene.laws.mesh is not None or last == (scene.geometry.ridge_count - 1) // 2:
+        return ()
+    reason = "they are not expected to touch, which each accepted step is checked for"
+    return (Omission(f"contact of the ridges beyond ±{last}", reason),)

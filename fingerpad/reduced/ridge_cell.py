@@ -39,7 +39,8 @@ from variational.attraction.insulator import VACUUM_PERMITTIVITY
 from variational.body import Body
 from variational.contact.ridge_law import RidgeTable
 from variational.materials.material import Material
-from variational.problem import Interface, Ogden
+from variational.materials.ogden import Ogden
+from variational.problem import Interface
 from variational.solvers.continuation import Attempt, StepFailed, Target
 
 Array = NDArray[np.float64]

@@ -15,7 +15,7 @@ lengths by 0.1 % and the bone's height by 0.13 % (default finger, 15 and 75 N/m,
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -40,7 +40,6 @@ from variational.contact.friction import Coulomb
 from variational.contact.ridge_law import RidgeLaw, RidgeTable
 from variational.problem import Interface
 from variational.solvers.continuation import Attempt, StepFailed, Target
-from variational.solvers.transfer import StateSnapshot, carry
 from variational.state import ContactState, Errors
 
 Array = NDArray[np.float64]
@@ -201,51 +200,6 @@ def _named(state: str, name: str) -> str:
     return f"{name} of {WORDS[state]}"
 
 
-@dataclass(frozen=True)
-class Slipping:
-    """The smooth finger's full slip, as a guess of the ridged finger's."""
-
-    carried: StateSnapshot
-    """In the ridged finger's place, by its ridges and at its voltage."""
-    ridges: int
-    """In contact."""
-    factorisations: int
-    unknowns: int
-
-
-def full_slip(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Slipping:
-    """Return the smooth finger's full slip for the full model to start from; collective.
-
-    Args:
-        scene: press, charge and slide.
-        folder: of the ridges' tables, which are kept.
-        comm: communicator of the mesh.
-
-    Raises:
-        StepFailed: there is none, or the smooth finger does not come to it.
-    """
-    if scene.history is not None or scene.numerics.element == "P2-P1" or scene.friction_law() is None:
-        raise StepFailed(
-            "the model 'smooth' has no full slip of a scene with a history, without friction or with element 'P2-P1'"
-        )
-    try:
-        refuse_others(scene, "smooth")
-        _refuse_friction(scene)
-    except SceneError as error:
-        raise StepFailed(str(error)) from error
-    finger = _SmoothFinger(scene, folder, comm)
-    finger.press()
-    found = finger.slide()
-    if found is None:
-        raise StepFailed(f"the model 'smooth' does not come to full slip within {scene.slide_length:g} m of sliding")
-    return Slipping(
-        finger.carried(),
-        found["ridges_in_contact"],
-        finger.solver.counts.factorisations,
-        finger.solver.layout.global_size,
-    )
-
-
 class _SmoothFinger:
     """The smooth finger and its loads."""
 
@@ -279,23 +233,6 @@ class _SmoothFinger:
         self.law.set(self.charged.slip)
         self.walk.run(Target("slide", bone_x=self.scene.slide_length, until_full_slip=True))
         return self._contact() if self.walk.slip[1] else None
-
-    def carried(self) -> StateSnapshot:
-        """Return the present state in the ridged finger's place, its air gaps those of the law's mean pressures."""
-        found = carry(self.walk.coupling, self.walk.surface_state)
-        force, _, length = self.law.table.at(self._mean_height())
-        pressure = np.divide(force, length, out=np.zeros_like(force), where=length > 0)
-        d_eq = self.scene.closure()(pressure).d_eq if self.scene.voltage else np.full_like(pressure, np.nan)
-        finger = self.scene.geometry
-        up = np.array([0.0, ridge_cell.mean_depth(finger) - Profiles(finger).lowered])
-        return replace(
-            found,
-            corners=found.corners + up,
-            skin={j: replace(ridge, origin=ridge.origin + up, position=None) for j, ridge in found.skin.items()},
-            d_eq=dict(zip(found.d_eq, map(float, d_eq), strict=True)),
-            gain=dict.fromkeys(found.gain, np.nan),
-            voltage=self.scene.voltage,
-        )
 
     def _mean_height(self) -> Array:
         """Return each ridge's mean height (m), shape (ridges,)."""

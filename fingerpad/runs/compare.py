@@ -9,35 +9,12 @@ Where each model is good enough: ``docs/ladder.md``.
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
-from pathlib import Path
 
-from fingerpad import startup
 from fingerpad.io.quantities import QUANTITIES, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS
-from fingerpad.reduced.answer import STATES, Stopwatch
-from fingerpad.scene import Scene
+from fingerpad.reduced.answer import STATES
 from variational.state import RESULTS
-
-
-def started(scene: Scene, folder: Path) -> Result:
-    """Return the full model's full slip from the smooth one's, or along the path with a note why; collective.
-
-    Args:
-        scene: press, charge and slide.
-        folder: of the tables of the ridge and of the run.
-    """
-    from fingerpad.runs import full, start
-    from variational.solvers.continuation import StepFailed
-
-    clock = Stopwatch()
-    try:
-        return start.answer(scene, folder / "ridge_tables", startup.MPI.COMM_WORLD)
-    except StepFailed as error:
-        found = full.run(scene, folder / "full", startup.MPI.COMM_WORLD)
-        notes = (*found.notes, f"{error}; the path was followed instead")
-        return replace(found, cost=replace(found.cost, processor_seconds=clock.seconds()), notes=notes)
 
 
 def table(results: Sequence[Result]) -> str:

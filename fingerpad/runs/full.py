@@ -21,7 +21,7 @@ from fingerpad.model.options import plan
 from fingerpad.model.report import Report
 from fingerpad.model.simulation import Simulation
 from fingerpad.model.steps import Step
-from fingerpad.model.touching import decide
+from fingerpad.model.touching import by_rule
 from fingerpad.scene import Scene, SceneError
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
@@ -38,9 +38,9 @@ def run(scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True) -
     Where no equilibrium is found and smaller elements may help, the run starts again with half the contact size, down
     to :data:`FINEST`, and says so. A scene that asks for an accuracy starts coarse.
 
-    Where the scene does not say how many ridges can touch, a coarse finger does. Where what was left out turns out to
-    matter, all loads are gone through again with it: ridges that come near the screen and could not touch, the other
-    half of a finger that may not stay symmetric.
+    Where the scene does not give the number of ridges that can touch, a rule of thumb does. Where what was left out
+    turns out to matter, all loads are gone through again with it: ridges that come near the screen and could not
+    touch, the other half of a finger that may not stay symmetric.
 
     Args:
         scene: what is run.
@@ -135,11 +135,10 @@ def _run(
                     keeper.see(step)
                 interrupt.stop_if_asked(step.state.step)
 
-            decision = decide(scene, comm)
-            present, needed, waking = decision.scene, plan(scene), True
+            present, needed, waking = by_rule(scene), plan(scene), True
             while waking:
                 search: Refinement | None = None  # one that was woken from is of another finger
-                simulation = Simulation(present, decision.plan(needed, present), comm, on_step, report.load_reached)
+                simulation = Simulation(present, needed, comm, on_step, report.load_reached)
                 report.open(simulation)
                 keeper = StateRecorder(simulation) if needed.errors else None
                 waking, reached = False, False
@@ -168,7 +167,7 @@ def _run(
                 tried += notes
                 report.finer(search.base.views)
                 named = report.on_final_mesh(named)
-            ended |= {"notes": tried, "coarse_solve": decision.cost or None}
+            ended |= {"notes": tried}
             if failed_starts:
                 ended["failed_starts"] = failed_starts
             report.load_reached()

@@ -258,7 +258,7 @@ class Continuation:
         )
 
     # -- a state from elsewhere ------------------------------------------------------------------------
-    def adopt(self, name: str, same_body: bool = True) -> Attempt:
+    def adopt(self, name: str) -> Attempt:
         """Solve at the present loads from fields and history that were put in from outside, and accept the state.
 
         On another mesh of the same body the carried skin is nearly right, and the strain in the elements next to it is
@@ -268,15 +268,13 @@ class Continuation:
 
         Args:
             name: what the state is called in a failure.
-            same_body: whether the state is of this body; else its skin is not where it could be held, and continuation
-                alone is tried.
 
         Raises:
             StepFailed: no equilibrium was found from there.
         """
         self._now = self._snapshot()
         attempt = Attempt()
-        for way in _WAYS if same_body else (_WAYS[0], _WAYS[-1]):
+        for way in _WAYS:
             try:
                 if way == "settled":
                     self._let_go(1.0, skin=True)

@@ -28,7 +28,8 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from variational.quantities import Observer, SurfaceState
+from variational.contact.formulation import SurfaceState
+from variational.quantities import Observer
 from variational.roughness.closure import Closure, air_gaps, check
 from variational.solvers.failure import NotConverged
 from variational.solvers.newton import Solver

@@ -33,9 +33,8 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from variational import compat
-from variational.contact.formulation import History
+from variational.contact.formulation import History, SurfaceState
 from variational.problem import Problem
-from variational.quantities import SurfaceState
 from variational.solvers.coupling import Coupling
 from variational.solvers.newton import Control
 
@@ -58,9 +57,8 @@ class SkinState:
     """s - u_x (m)."""
     pressure: Array
     """Contact pressure (Pa of reference area)."""
-    position: Array | None
-    """Current place (m), by facet, shape (facets, points on each, 2); None of another model, whose skin is not this
-    body's."""
+    position: Array
+    """Current place (m), by facet, shape (facets, points on each, 2)."""
 
 
 @dataclass(frozen=True)
@@ -141,10 +139,9 @@ def give(carried: StateSnapshot, coupling: Coupling, slide: float = 0.0) -> None
         raise ValueError(f"a node lies {farthest:.3g} triangles outside the state's mesh; it is of another body")
     for k, name in enumerate(names):
         skin, on_ridge = carried.skin[name], problem.surface.nodes(problem.V, k)
-        if skin.position is not None:
-            there = place(skin, skin.position, nodes[on_ridge]) - nodes[on_ridge]
-            lower = there[:, 1] < u[on_ridge, 1]
-            u[on_ridge[lower]] = there[lower]
+        there = place(skin, skin.position, nodes[on_ridge]) - nodes[on_ridge]
+        lower = there[:, 1] < u[on_ridge, 1]
+        u[on_ridge[lower]] = there[lower]
     shift = np.array([slide, 0.0])
     solver.set_displacement(u + shift, carried.bone + shift)
     solver.control = replace(carried.control, x=carried.control.x + slide)

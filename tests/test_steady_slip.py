@@ -1,4 +1,4 @@
-"""Full slip from the smooth finger's, on a finger of few ridges: that of the path, checked, or else the path itself."""
+"""Full slip is steady: as steady as its gaps are closed, or the slide ends; and its lengths by ridge are its length."""
 
 import numpy as np
 import pytest
@@ -8,10 +8,7 @@ from fingerpad.accuracy.recompute import StateRecorder
 from fingerpad.model import simulation as simulation_module
 from fingerpad.model.options import plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.reduced import smooth
-from fingerpad.runs import start
 from fingerpad.scene import from_data
-from variational.solvers.continuation import StepFailed
 
 SCENE = {
     "f_ext": 1.0,
@@ -19,16 +16,6 @@ SCENE = {
     "geometry": {"ridge_count": 9},
     "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
 }
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return tmp_path_factory.mktemp("tables")
-
-
-@pytest.fixture(scope="module")
-def started(folder):
-    return start.full_slip(from_data(SCENE), folder, MPI.COMM_WORLD)
 
 
 @pytest.fixture(scope="module")
@@ -41,14 +28,6 @@ def path():
 
 
 @pytest.mark.slow
-def test_full_slip_is_that_of_the_path(started, path):
-    """Tolerance: two loops over the scales that end at 1e-6 of d_eq, whose gain is below one half here."""
-    found, known = (solve.states["full_slip"].state for solve in (started.solve, path))
-    assert found.ridges_in_contact == known.ridges_in_contact
-    assert found.f_t == pytest.approx(known.f_t, rel=1e-6)
-
-
-@pytest.mark.slow
 def test_lengths_by_ridge_are_the_length(path):
     """Each ridge of the nine at its place: the length in contact is their sum, and the central ones touch."""
     state = path.states["full_slip"]
@@ -58,53 +37,6 @@ def test_lengths_by_ridge_are_the_length(path):
     assert len(touching) == state.state.ridges_in_contact < 9
     assert abs(touching.mean() - 4) <= 0.5
     assert path.parts()["slip_contact_length"] is state.lengths
-
-
-@pytest.mark.slow
-def test_it_costs_less_than_the_path(started, path):
-    """Factorisations of both meshes, times unknowns; the ridge's tables, made once, are left out."""
-    own = started.solve.factorisations * started.solve.unknowns
-    spent = own + started.smooth.factorisations * started.smooth.unknowns
-    assert spent < path.factorisations * path.unknowns
-
-
-@pytest.mark.slow
-def test_another_squeeze_is_tried(started, folder, monkeypatch):
-    """The first one lost, the state is the same, and what the first one cost is counted."""
-    adopt, squeezes = Simulation.adopt, []
-
-    def fail_first(self, carried, name, direction=0, squeezed=None):
-        squeezes.append(squeezed)
-        if len(squeezes) == 1:
-            raise StepFailed("no equilibrium")
-        adopt(self, carried, name, direction, squeezed)
-
-    monkeypatch.setattr(Simulation, "adopt", fail_first)
-    found = start.full_slip(from_data(SCENE), folder, MPI.COMM_WORLD)
-    assert len(set(squeezes)) == len(squeezes) == 2
-    first, second = (each.solve.states["full_slip"].state.f_t for each in (started, found))
-    assert second == pytest.approx(first, rel=1e-6)
-
-
-def test_no_squeeze_that_helps_is_a_failure(folder, monkeypatch):
-    def fail(*args, **more):
-        raise StepFailed("no equilibrium")
-
-    monkeypatch.setattr(Simulation, "adopt", fail)
-    with pytest.raises(StepFailed, match="full slip was not found from that of the model 'smooth': no equilibrium"):
-        start.full_slip(from_data(SCENE), folder, MPI.COMM_WORLD)
-
-
-def test_state_that_is_not_full_slip_is_refused(folder):
-    """A micrometre of sliding leaves most points sticking."""
-    with pytest.raises(StepFailed, match="does not come to full slip within 1e-06 m"):
-        smooth.full_slip(from_data(SCENE | {"slide_length": 1e-6}), folder)
-
-
-@pytest.mark.parametrize("other", [{"friction": 0.0}, {"numerics": {"element": "P2-P1"}}])
-def test_scene_without_a_full_slip_to_carry_is_refused(folder, other):
-    with pytest.raises(StepFailed, match="the model 'smooth' has no full slip of a scene"):
-        start.full_slip(from_data(SCENE | other), folder, MPI.COMM_WORLD)
 
 
 @pytest.mark.slow
