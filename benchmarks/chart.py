@@ -263,14 +263,5 @@ def draw(docs: Path) -> Path:
     )
 
 
-def main(given: Sequence[str] | None = None) -> int:
-    """Run what is missing, keep the numbers and draw the page."""
-    args = harness.parser(__doc__).parse_args(given)
-    if not args.draw:
-        compute(args)
-    print(draw(args.docs))
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(harness.main(__doc__, compute, draw))

@@ -40,32 +40,19 @@ QUANTITIES: Mapping[str, tuple[str, float]] = {  # name: words, and the value of
     **{f"{state}_sed_{j}": (f"SED at ridge {j}, {words} (J/m³)", 1) for state, words in STATES.items() for j in SITES},
 }
 KINDS = {"mu_app": "µ_app", "contact_length": "contact length", "sed_": "energy density"}
-_MESH = {"contact": AT, "receptor": AT_SITES}
+_OTHERS = {"mesh": {"contact": AT, "receptor": AT_SITES}}
+
+
+def _sizes(name: str, *sizes: float) -> dict[float, dict[str, Any]]:
+    return {size: {"mesh": _OTHERS["mesh"] | {name: size}} for size in sizes}
+
+
+_PENALTIES = {eps_n: _OTHERS | {"contact": {"eps_n": eps_n}} for eps_n in (0.5e12, 1.5e12, 5e12)}
 STUDIES: dict[str, tuple[str, float, str, dict[float, dict[str, Any]]]] = {  # heading, unit, its name, settings
-    "contact": (
-        "Contact size",
-        1e-6,
-        "µm",
-        {h: {"mesh": _MESH | {"contact": h}} for h in (20e-6, 10e-6, 5e-6, 2.5e-6)},
-    ),
-    "growth": (
-        "Growth of the elements with depth",
-        1,
-        "",
-        {g: {"mesh": _MESH | {"growth": g}} for g in (0.5, 0.25, 0.125)},
-    ),
-    "receptor": (
-        "Size at the Merkel sites",
-        1e-6,
-        "µm",
-        {h: {"mesh": _MESH | {"receptor": h}} for h in (40e-6, 20e-6, 10e-6, 5e-6, 2.5e-6)},
-    ),
-    "penalty": (
-        "Penalty stiffness",
-        1e9,
-        "MPa/mm",
-        {eps: {"mesh": _MESH, "contact": {"eps_n": eps}} for eps in (0.5e12, 1.5e12, 5e12)},
-    ),
+    "contact": ("Contact size", 1e-6, "µm", _sizes("contact", 20e-6, 10e-6, 5e-6, 2.5e-6)),
+    "growth": ("Growth of the elements with depth", 1, "", _sizes("growth", 0.5, 0.25, 0.125)),
+    "receptor": ("Size at the Merkel sites", 1e-6, "µm", _sizes("receptor", 40e-6, 20e-6, 10e-6, 5e-6, 2.5e-6)),
+    "penalty": ("Penalty stiffness", 1e9, "MPa/mm", _PENALTIES),
 }
 
 
@@ -75,25 +62,21 @@ def study(name: str) -> dict[float, Scene]:
     return {value: by_rule(from_data(data)) for value, data in STUDIES[name][3].items()}
 
 
-def values(run: Run) -> dict[str, float] | None:
-    """Return the quantities of a run and its cost, None if it did not reach full slip."""
-    if not run.summary["full_slip"]:
-        return None
-    found = {name: float(run.summary[name]) for name in QUANTITIES if name in run.summary}
-    for state in STATES:
-        row = run.row(state)
-        found[f"{state}_contact_length"] = float(run.steps["contact_length"][row])
-        sed = dict(zip(run.receptors["ridge"], run.receptors["merkel_sed"][row], strict=True))
-        found |= {f"{state}_sed_{j}": float(sed[j]) for j in SITES}
-    return found | {name: float(run.summary[name]) for name in ("unknowns", "factorisations")}
-
-
-def values_in(scene: Scene, out: Path) -> dict[str, float] | None:
-    """Return the same of a scene, None if it has not been run to full slip."""
+def values(scene: Scene, out: Path) -> dict[str, float] | None:
+    """Return the quantities of a run and its cost, None where it is missing or did not reach full slip."""
     try:
-        return values(Run(scene, out))
+        run = Run(scene, out)
     except FileNotFoundError:
         return None
+    if not run.summary["full_slip"]:
+        return None
+    found = {
+        name: float(run.summary[name]) for name in (*QUANTITIES, "unknowns", "factorisations") if "sed" not in name
+    }
+    for state in STATES:
+        sed = dict(zip(run.receptors["ridge"], run.receptors["merkel_sed"][run.row(state)], strict=True))
+        found |= {f"{state}_sed_{j}": float(sed[j]) for j in SITES}
+    return found
 
 
 def lengths(run: Run) -> dict[str, Array]:
@@ -130,13 +113,13 @@ def compute(args: Any) -> None:
     # The finest first: it takes longest.
     summaries = harness.run({"default": DEFAULT} | dict(reversed(scenes.items())), args, _LIMIT)
     again = limits.ask_all({"default scene": DEFAULT}, LEVELS, args.out.parent / "limits", 1)["default scene"]
-    whole = values_in(DEFAULT, args.out)
+    whole = values(DEFAULT, args.out)
     if whole is None or "failure" in again:
         raise SystemExit(f"the default scene has no limit: {again.get('failure', 'its run did not reach full slip')}")
     studies: dict[str, list[dict[str, Any]]] = {}
     for name in STUDIES:
         for value, scene in study(name).items():
-            quantities = values_in(scene, args.out)
+            quantities = values(scene, args.out)
             if quantities is not None:
                 of_ridges = {k: list(v) for k, v in lengths(Run(scene, args.out)).items()}
                 row = {"value": value, "quantities": quantities, "lengths": of_ridges, "scene": scene.parameters()}
@@ -307,14 +290,5 @@ def _penalty(rows: Sequence[Mapping[str, Any]]) -> list[list[float]]:
     return [[row["quantities"][name] for row in rows] for name in names]
 
 
-def main(given: Sequence[str] | None = None) -> int:
-    """Run what is missing, keep the numbers and draw the page."""
-    args = harness.parser(__doc__).parse_args(given)
-    if not args.draw:
-        compute(args)
-    print(draw(args.docs))
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(harness.main(__doc__, compute, draw))

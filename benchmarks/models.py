@@ -8,7 +8,7 @@ error and ``check`` its rule of the cost, and docs/models.md.
 
 import argparse
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -199,14 +199,5 @@ def draw(docs: Path) -> Path:
     return harness.page(docs / "models.md", "Which model when", finding, how, body, command, kept.made, ["models"])
 
 
-def main(given: Sequence[str] | None = None) -> int:
-    """Run what is missing, keep the numbers and draw the page."""
-    args = harness.parser(__doc__).parse_args(given)
-    if not args.draw:
-        compute(args)
-    print(draw(args.docs))
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(harness.main(__doc__, compute, draw))

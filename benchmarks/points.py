@@ -106,7 +106,7 @@ def _errors(values: Mapping[str, Any], reference: Reference) -> dict[str, float]
 def runs(out: Path, reference: Reference) -> Iterator[Point]:
     """Yield the points of runs that reached full slip."""
     for (family, label), scene in scenes().items():
-        if (values := errors.values_in(scene, out)) is None:
+        if (values := errors.values(scene, out)) is None:
             continue
         run = Run(scene, out)
         spent = np.cumsum(run.steps["factorisations"]) * run.summary["unknowns"]

@@ -7,7 +7,7 @@ docs/sensitivity.json and docs/sensitivity.md.
 """
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -142,14 +142,5 @@ def draw(docs: Path) -> Path:
     return harness.page(path, "What the assumptions change", finding, how, body, command, kept.made, ["sensitivity"])
 
 
-def main(given: Sequence[str] | None = None) -> int:
-    """Run what is missing, keep the numbers and draw the page."""
-    args = harness.parser(__doc__).parse_args(given)
-    if not args.draw:
-        compute(args)
-    print(draw(args.docs))
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(harness.main(__doc__, compute, draw))

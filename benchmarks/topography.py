@@ -1,6 +1,6 @@
 """What a small map of the skin misses: heights, spectrum and bias of spots cut out of synthetic surfaces.
 
-environment/run python3 -m benchmarks.topography [--surfaces 20] [--draw]     a minute
+environment/run python3 -m benchmarks.topography [--draw]     a minute
 
 The measured maps of the paper's Fig. 3 are not public. A surface of its parameters is made, eight spots of 100 um are
 cut out and analysed as section 3.1 does; then many spots, for the bias. Writes docs/topography.json,
@@ -8,7 +8,7 @@ docs/topography.md and docs/topography.png.
 """
 
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, NamedTuple, get_args
@@ -18,13 +18,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from benchmarks import harness
-from fingerpad.cli.arguments import positive
 from variational.roughness.selfaffine import SelfAffine
 from variational.roughness.spectrum import PowerSpectrum, power_spectrum, roughness_table
 from variational.roughness.topography import HeightMap, Trend, distribution, polynomials
 
 _UM = 1e6
 SIDE, SPOT, SPOTS = 800e-6, 100e-6, 8  # m; the paper's spots
+SURFACES = 20  # that the many spots are cut from
 FINE, COARSE = 2048, 512  # pixels along the side: for one surface, for the many
 WINDOWS = (50e-6, 100e-6, 200e-6, 400e-6)  # m
 TRENDS: tuple[Trend, ...] = get_args(Trend)
@@ -115,7 +115,7 @@ def compute(args: Any) -> None:
     heights, spectrum = distribution(*flat), power_spectrum(*flat, window="hann")
     fit = spectrum.fit()
     numbers = {
-        "surfaces": args.surfaces,
+        "surfaces": SURFACES,
         "heights": {key: float(getattr(heights, key)) for key in ("h_rms", "skewness", "kurtosis", "distance")},
         "fit": {"hurst": fit.hurst, "q_range": list(fit.q_range)},
         "table": roughness_table(*cut),
@@ -123,9 +123,9 @@ def compute(args: Any) -> None:
         "bias": [
             asdict(kind) | {"window": window, "trend": trend, **found._asdict()}
             for kind in READINGS
-            for (window, trend), found in biases(kind, args.surfaces).items()
+            for (window, trend), found in biases(kind, SURFACES).items()
         ],
-        "fits": fits(args.surfaces),
+        "fits": fits(SURFACES),
     }
     harness.keep("topography", numbers, harness.made(), args.docs)
 
@@ -276,16 +276,5 @@ def draw(docs: Path) -> Path:
     return harness.page(path, "Topography of a ridge", finding, how, body, command, kept.made, ["topography"])
 
 
-def main(given: Sequence[str] | None = None) -> int:
-    """Compute the numbers, keep the numbers and draw the page."""
-    parser = harness.parser(__doc__)
-    parser.add_argument("--surfaces", type=positive(int), default=20, help="surfaces the spots are cut from")
-    args = parser.parse_args(given)
-    if not args.draw:
-        compute(args)
-    print(draw(args.docs))
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(harness.main(__doc__, compute, draw))
