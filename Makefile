@@ -38,10 +38,10 @@ pages:
 	$(run) python3 -m benchmarks.pages
 
 verify:
-	$(run) python3 benchmarks/verify.py
+	$(run) python3 -m benchmarks.verification
 
 paper:
-	$(run) python3 benchmarks/reproduce.py
+	$(run) python3 -m benchmarks.paper
 
 chart:
 	$(run) python3 -m benchmarks.errors

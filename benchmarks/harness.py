@@ -18,24 +18,21 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-from matplotlib.axis import Axis
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from fingerpad.cli.arguments import positive
-from fingerpad.io.files import replace, replace_json
+from fingerpad.io import style
+from fingerpad.io.files import replace
 from fingerpad.runs.batch import Summary, sweep
 from fingerpad.scene import Scene
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS, RESULTS = ROOT / "docs", ROOT / "results"
 PACKAGES = ("geometry", "variational", "fingerpad")
-
-# Okabe and Ito's colours, told apart by colour-blind readers.
-BLACK, BLUE, VERMILION, GREEN = "#000000", "#0072B2", "#D55E00", "#009E73"
-ORANGE, SKY, PURPLE, GREY = "#E69F00", "#56B4E9", "#CC79A7", "#999999"
-_STYLE = {"font.size": 10, "axes.titlesize": 10, "legend.fontsize": 8, "lines.linewidth": 1.4, "savefig.dpi": 130}
+_LINE = 400  # characters of a record that is kept on one line
+# Names of the palette for the studies.
+BLACK, BLUE, GREEN, GREY = style.BLACK, style.BLUE, style.GREEN, style.GREY
+ORANGE, PURPLE, SKY, VERMILION = style.ORANGE, style.PURPLE, style.SKY, style.VERMILION
 
 
 # -- runs ----------------------------------------------------------------------------------------------------
@@ -145,8 +142,21 @@ class Kept:
 
 
 def keep(name: str, numbers: Any, by: Made, docs: Path = DOCS) -> None:
-    """Write numbers to ``docs/NAME.json``; values that are not finite become null."""
-    replace_json(docs / f"{name}.json", {"made": asdict(by), "numbers": numbers})
+    """Write numbers to ``docs/NAME.json``, short records a line each; values that are not finite become null."""
+    finite = json.loads(json.dumps({"made": asdict(by), "numbers": numbers}), parse_constant=lambda _: None)
+    replace(docs / f"{name}.json", _text(finite) + "\n")
+
+
+def _text(data: Any, indent: str = "") -> str:
+    line = json.dumps(data, ensure_ascii=False)
+    if not data or not isinstance(data, list | dict) or len(line) <= _LINE:
+        return line
+    inner = indent + " "
+    if isinstance(data, list):
+        left, right, parts = "[", "]", [_text(value, inner) for value in data]
+    else:
+        left, right, parts = "{", "}", [f'"{key}": {_text(value, inner)}' for key, value in data.items()]
+    return f"{left}\n{inner}" + f",\n{inner}".join(parts) + f"\n{indent}{right}"
 
 
 def kept(name: str, docs: Path = DOCS) -> Kept:
@@ -179,11 +189,12 @@ def _same(a: Any, b: Any, relative: float) -> bool:
 
 
 def _leaves(data: Any, place: str = "") -> Iterator[tuple[str, Any]]:
-    pairs = data.items() if isinstance(data, Mapping) else enumerate(data) if isinstance(data, list) else None
-    if pairs is None:
+    if isinstance(data, list):
+        data = dict(enumerate(data))
+    if not isinstance(data, Mapping):
         yield place, data
         return
-    for key, value in pairs:
+    for key, value in data.items():
         yield from _leaves(value, f"{place}/{key}")
 
 
@@ -238,18 +249,8 @@ def picture(path: Path, size: tuple[float, float], paint: Callable[[Figure], Non
         caption: one sentence that says what the picture shows.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    with matplotlib.rc_context(_STYLE):
-        figure = Figure(figsize=size, layout="constrained")
+    with style.look():
+        figure = style.figure(size[1], size[0])
         paint(figure)
         figure.savefig(path)
     return f"![{caption}]({path.name})\n\n*{caption}*"
-
-
-def voltage_colour(voltage: float, largest: float = 200.0) -> tuple[float, ...]:
-    """Return the colour of a voltage (V) on the one ramp of all pictures: dark at 0 V, light at the largest."""
-    return tuple(matplotlib.colormaps["viridis"](0.9 * voltage / largest))
-
-
-def counts(axis: Axis) -> None:
-    """Give an axis of counts ticks at integers."""
-    axis.set_major_locator(MaxNLocator(integer=True))

@@ -17,8 +17,12 @@ PAGES = {
     "chart": "benchmarks.chart",
     "errors": "benchmarks.errors",
     "models": "benchmarks.models",
+    "paper": "benchmarks.paper.page",
+    "peers": "benchmarks.peers.page",
     "sensitivity": "benchmarks.sensitivity",
+    "stability": "benchmarks.stability.page",
     "topography": "benchmarks.topography",
+    "verification": "benchmarks.verification.page",
 }
 
 
