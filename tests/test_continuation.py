@@ -43,8 +43,8 @@ def test_range_without_equilibrium_is_stepped_over(sliding):
     """Steps of 60 um lead into it; one of 90 um leads over it, is said to have, and costs one failed attempt."""
     reached = sliding(0.235e-3, 0.260e-3, cycling=True)
     assert reached[-1][0] == pytest.approx(0.6e-3)
-    over = [(x, attempt) for x, attempt in reached if attempt.stepped_over_fold]
-    assert [x for x, _ in over] == [pytest.approx(0.27e-3)]
+    crossed = [(x, attempt) for x, attempt in reached if attempt.stepped_over_fold]
+    assert [x for x, _ in crossed] == [pytest.approx(0.27e-3)]
     assert [len(attempt.cutbacks) for _, attempt in reached if attempt.cutbacks] == [1]
 
 
