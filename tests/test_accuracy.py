@@ -297,7 +297,6 @@ def test_parameters_in_use_give_the_same_scene():
         ({"accuracy": {"mu_app": 1.5}}, "accuracy.mu_app is 1.5; it must be from 1e-06 to 0.5"),
         ({"accuracy": {"f_n": 0.1}}, "accuracy.f_n is not a key of accuracy"),
         ({"accuracy": {}}, "accuracy is empty; give at least one of accuracy.mu_app, accuracy.f_t"),
-        ({"accuracy": {"f_t": 0.1}, "numerics": {"element": "P2-P1"}}, "cannot be carried to another mesh"),
         (
             {"accuracy": {"sed": 0.1}, "output": {"receptors": False}},
             "accuracy.sed is 0.1 and output.receptors is false, without which there are no sites",

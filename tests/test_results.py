@@ -131,7 +131,7 @@ def test_errors_are_estimated_of_the_headline(more, load):
     for state in ("charged", "full_slip"):
         for name in RESULTS:
             assert getattr(kept[state].state, name) == getattr(found[state], name), (state, name)
-        assert kept[state].carried.voltage == found[state].voltage
+        assert kept[state].snapshot.voltage == found[state].voltage
 
 
 def test_probe_of_full_slip_leaves_no_trace(monkeypatch):

@@ -38,10 +38,10 @@ def stiffened(contact: Contact) -> Contact:
     return contact.model_copy(update={"eps_n": 2 * contact.eps_n, "eps_t": 2 * contact.eps_t})
 
 
-def over_stiffer(carried: StateSnapshot) -> StateSnapshot:
+def over_stiffer(snapshot: StateSnapshot) -> StateSnapshot:
     """Return a state whose springs, of twice the stiffness, bear the same friction."""
-    skin = {j: replace(ridge, elastic_slip=ridge.elastic_slip / 2) for j, ridge in carried.skin.items()}
-    return replace(carried, skin=skin)
+    skin = {j: replace(ridge, elastic_slip=ridge.elastic_slip / 2) for j, ridge in snapshot.skin.items()}
+    return replace(snapshot, skin=skin)
 
 
 def rigid(values: Mapping[str, float], stiffer: Mapping[str, float]) -> dict[str, float]:

@@ -59,7 +59,7 @@ class Solves:
     def over_stiffer_screen(self, base: Solve) -> Solve:
         """Return states over a screen of twice the stiffness; collective; raises as :meth:`on_mesh`."""
         scene = self._scene.model_copy(update={"mesh": base.mesh, "contact": stiffened(self._scene.contact)})
-        states = {name: replace(s, carried=over_stiffer(s.carried)) for name, s in base.states.items()}
+        states = {name: replace(s, snapshot=over_stiffer(s.snapshot)) for name, s in base.states.items()}
         return self._again(scene, states)
 
     def _again(self, scene: Scene, states: Mapping[str, State]) -> Solve:

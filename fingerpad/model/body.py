@@ -261,8 +261,8 @@ class Body:
             all_slip=all_slip,
             record=record,
             ridges=RidgeStates(
-                np.array(made.surface.names), loads.length, loads.f_contact, loads.f_friction, loads.f_attraction,
-                loads.p_c, self._d_eq.copy(),
+                np.array(made.surface.ridge_numbers), loads.length, loads.f_contact, loads.f_friction,
+                loads.f_attraction, loads.p_c, self._d_eq.copy(),
             ),
             skin=self._points.gather(surface),
         )  # fmt: skip
@@ -282,7 +282,7 @@ class Body:
             released_error=balance.released_error,
             newton_iterations=attempt.newton,
             factorisations=attempt.factorisations,
-            sweeps=attempt.sweeps,
+            coupling_iterations=attempt.coupling_iterations,
             cutbacks=len(attempt.cutbacks),
             jump=attempt.jump,
         )

@@ -84,7 +84,7 @@ class Finger:
         )
         self.problem, self.solver, self.observer = made.problem, made.solver, made.observer
         self.coupling, self.continuation = made.coupling, made.continuation
-        self.ridges = symmetry.names(made.surface.names) if half else made.surface.names
+        self.ridges = symmetry.names(made.surface.ridge_numbers) if half else made.surface.ridge_numbers
         shortest = float(np.min(comm.allgather(made.surface.length.min(initial=np.inf))))
         self.contact_size = scene.mesh.contact if scene.laws.mesh is None else shortest
         self.unknowns = self.solver.layout.global_size

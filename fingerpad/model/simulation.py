@@ -15,7 +15,7 @@ from fingerpad.model.stability import StabilityChecks
 from fingerpad.scene import Load, Scene
 from variational.quantities import RidgeLoads
 from variational.solvers.continuation import Attempt, StepFailed, Target
-from variational.solvers.transfer import StateSnapshot, give
+from variational.solvers.transfer import StateSnapshot, restore
 from variational.state import ContactState, StepRecord
 
 
@@ -90,11 +90,11 @@ class Simulation:
     def _ahead(self, load: Load) -> float:
         return (load.bone_x or 0.0) - float(self.finger.solver.control.x)
 
-    def adopt(self, carried: StateSnapshot, name: str, direction: int = 0) -> None:
+    def re_equilibrate(self, snapshot: StateSnapshot, name: str, direction: int = 0) -> None:
         """Solve again for a state that was reached on another mesh of the same finger; collective.
 
         Args:
-            carried: the state.
+            snapshot: the state.
             name: what it is called in a failure.
             direction: 1 or -1 for a state of full slip, the way the bone slides; zero for another.
 
@@ -103,7 +103,7 @@ class Simulation:
                 expected to touch), or full slip is no longer full or not steady.
         """
         finger, again = self.finger, f"{name}, solved again with a contact size of {self.finger.contact_size:g} m"
-        give(carried, finger.coupling, direction * SLIDE_ON)
+        restore(snapshot, finger.coupling, direction * SLIDE_ON)
         self._load = name
         finger.continuation.re_equilibrate(name)
         self.energy = finger.book()  # what was dissipated on the way is not known
@@ -173,7 +173,7 @@ class Simulation:
             released_error=energy.released_error,
             newton_iterations=attempt.newton,
             factorisations=attempt.factorisations,
-            sweeps=attempt.sweeps,
+            coupling_iterations=attempt.coupling_iterations,
             cutbacks=len(attempt.cutbacks),
             jump=attempt.jump,
         )

@@ -64,7 +64,7 @@ def run(scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True) -
 
 def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console) -> Result:
     """Run a scene until nothing must be added to its model."""
-    jit.sweep(comm)
+    jit.delete_unfinished(comm)
     writer.log.info("scene %s", json.dumps(scene.parameters()))
     clock, restarts = Clock(comm), Restarts(writer.log, console)
     present, options = by_rule(scene), plan(scene)
