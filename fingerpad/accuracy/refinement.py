@@ -35,8 +35,8 @@ from fingerpad.accuracy.solves import Solves
 from fingerpad.io.interrupt import Interrupted
 from fingerpad.io.quantities import in_words, scaled
 from fingerpad.io.states import PREFIXES
-from fingerpad.model.contact_zone import RestartRequired
 from fingerpad.model.options import ModelOptions
+from fingerpad.model.simulation import RestartRequired
 from fingerpad.richardson import MeshParameter, errors, plus_minus, to_refine
 from fingerpad.scene import Scene
 from geometry.profiles import GeometryError
@@ -81,7 +81,8 @@ class Refinement:
         Raises:
             StepFailed: the path has no state in which a quantity asked for is known.
         """
-        self.scene, self._show = scene, show
+        self.scene = scene
+        self._show = show
         self.asked = {} if scene.accuracy is None else scene.accuracy.tolerances()
         for name in {"mu_app", "f_t"} & set(self.asked) if "full_slip" not in path.states else ():
             raise StepFailed(

@@ -55,7 +55,8 @@ class Finger:
             comm: communicator of the mesh.
             on_accept: see :class:`variational.solvers.continuation.Continuation`.
         """
-        self.scene, self.options, self.profiles = scene, options, Profiles(scene.geometry)
+        self.scene = scene
+        self.options, self.profiles = options, Profiles(scene.geometry)
         contact, numerics, half = scene.contact, scene.numerics, not options.both_halves
         if scene.laws.mesh is not None:
             self.mesh = mesh.load(comm, meshfile.file(scene.laws.mesh))
