@@ -12,12 +12,13 @@ from fingerpad.model.finger import Finger, Step
 from fingerpad.model.full_slip import FullSlip
 from fingerpad.model.options import ModelOptions
 from fingerpad.model.stability import StabilityChecks
+from fingerpad.model.state import step_record
 from fingerpad.model.touching import with_ridges
 from fingerpad.scene import Load, Scene
 from variational.quantities import RidgeLoads
 from variational.solvers.continuation import Attempt, StepFailed, Target
 from variational.solvers.transfer import StateSnapshot, give
-from variational.state import ContactState, StepRecord
+from variational.state import ContactState
 
 
 @dataclass(frozen=True)
@@ -170,7 +171,9 @@ class Simulation:
                 return True
         step = self.present(loads, attempt, touches)
         state = self._slip.placed(self.states, step.state, probe=part >= 1 and not target.until_full_slip)
-        state = replace(state, record=self._record(imbalance, attempt))
+        energy = self.energy.step(*finger.surface_and_bone())
+        record = step_record(finger.continuation, energy, imbalance, attempt)
+        state = replace(state, record=record)
         self.states.append(state)
         done = min((self._loads_done + (0.0 if touches else part)) / len(self._loads), 1.0)
         self.on_step(replace(step, state=state), done)
@@ -179,21 +182,3 @@ class Simulation:
         except FingerExceeded as error:
             raise StepFailed(f"step {finger.continuation.steps} ({self._load}): {error}") from error
         return self._restart is not None
-
-    def _record(self, imbalance: float, attempt: Attempt) -> StepRecord:
-        """Return energies and work of the step to the present state; collective."""
-        finger, energy = self.finger, self.energy.step(*self.finger.surface_and_bone())
-        return StepRecord(
-            penetration=finger.observer.penetration(finger.continuation.surface_state),
-            imbalance=imbalance,
-            floor=finger.solver.floor,
-            stored=energy.stored,
-            dissipation=energy.dissipation,
-            energy_released=energy.released,
-            released_error=energy.released_error,
-            newton_iterations=attempt.newton,
-            factorisations=attempt.factorisations,
-            sweeps=attempt.sweeps,
-            cutbacks=len(attempt.cutbacks),
-            jump=attempt.jump,
-        )
