@@ -73,7 +73,7 @@ class Place:
             folder: of the results.
             parameters: of the scene that they are of.
             comm: communicator of the run.
-            model: that answers, see :data:`fingerpad.runs.solve.MODELS`.
+            model: whose results they are, see :data:`fingerpad.runs.solve.MODELS`.
         """
         self.folder, self._comm = folder, comm
         self._parameters = json.loads(json.dumps(parameters))  # as they are read back

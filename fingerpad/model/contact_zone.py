@@ -7,6 +7,7 @@ is a tenth of a millimetre higher.
 """
 
 from dataclasses import dataclass
+from pathlib import Path
 
 from dolfinx import fem
 
@@ -35,16 +36,20 @@ class FingerExceeded(RuntimeError):
 class ContactZone:
     """Checks the skin of a finger."""
 
-    def __init__(self, body: TaggedMesh, observer: Observer, ridges: list[int], count: int | None) -> None:
+    def __init__(
+        self, body: TaggedMesh, observer: Observer, ridges: list[int], count: int, file: str | Path | None = None
+    ) -> None:
         """Find the skin that cannot touch.
 
         Args:
             body: the finger's mesh.
             observer: evaluates its surface.
             ridges: numbers of the ridges that can touch, of the whole finger.
-            count: number of all ridges of the finger; None where a mesh of a file has those there are.
+            count: number of all ridges of the finger.
+            file: the mesh's, where it is of a file, which has all the ridges there are.
         """
-        self._observer, self._problem, self._ridges, self._count = observer, observer.problem, ridges, count
+        self._observer, self._problem = observer, observer.problem
+        self._ridges, self._count, self._file = ridges, count, file
         outside = body.facet_tags.find(tags.OUTER_SKIN)
         self._nodes = fem.locate_dofs_topological(self._problem.V, 1, outside)
 
@@ -63,10 +68,10 @@ class ContactZone:
             FingerExceeded: more ridges must be able to touch, and there are no more.
         """
         lowest = self._lowest_outside()
-        if self._count is None:
+        if self._file is not None:
             if lowest < 0:
                 raise FingerExceeded(
-                    f"skin of the group 'outer skin' is at a height of {lowest:.3g} m; the mesh file must have more "
+                    f"skin of the group 'outer skin' is at a height of {lowest:.3g} m; {self._file} must have more "
                     "ridges, or f_ext be smaller"
                 )
             return None

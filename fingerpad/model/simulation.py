@@ -65,8 +65,8 @@ class Simulation:
         self.checks = StabilityChecks(finger)
         self._loads, self._load, self._loads_done = scene.loads(), "", 0
         self._slip = FullSlip(finger)
-        count = None if scene.laws.mesh is not None else scene.geometry.ridge_count
-        self._zone = ContactZone(finger.mesh, finger.observer, finger.ridges, count)
+        count, file = scene.geometry.ridge_count, scene.laws.mesh
+        self._zone = ContactZone(finger.mesh, finger.observer, finger.ridges, count, file)
         self._restart: RestartRequired | None = None
 
     def run(self) -> RestartRequired | None:
