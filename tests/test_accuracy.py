@@ -22,10 +22,10 @@ from fingerpad.richardson import MORE, ONCE, plus_minus
 from fingerpad.runs import attempt
 from fingerpad.runs.batch import key
 from fingerpad.scene import SceneError, from_data
-from tests.runs import run
+from tests.runs import SMALL_FINGER, run
 from variational.solvers.continuation import StepFailed
+from variational.solvers.equations import Control
 from variational.solvers.failure import NotConverged
-from variational.solvers.newton import Control
 from variational.solvers.transfer import StateSnapshot
 from variational.state import ContactState
 
@@ -338,7 +338,7 @@ def test_starts_again_finer_where_the_path_is_lost(asked, start, helps, finer):
 SMALL = {
     "f_ext": 1.0,
     "voltage": 100.0,
-    "geometry": {"ridge_count": 9},
+    "geometry": SMALL_FINGER,
     "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
     "accuracy": {"mu_app": 0.5},
 }

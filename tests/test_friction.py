@@ -19,7 +19,8 @@ from variational.contact.formulation import Formulation, _limit
 from variational.contact.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction, law_of
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
-from variational.problem import Interface, Ogden
+from variational.materials.ogden import Ogden
+from variational.problem import Interface
 from variational.solvers.continuation import Target
 
 EPS_T = 1e11

@@ -20,8 +20,9 @@ from tests.runs import run
 from variational.body import Body
 from variational.contact.penalty import Penalty
 from variational.energy import EnergyBook
+from variational.materials.ogden import Ogden
 from variational.output import Snapshot
-from variational.problem import Interface, Ogden
+from variational.problem import Interface
 from variational.quantities import RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Target
@@ -190,7 +191,7 @@ def columns(folder, name: str) -> list[dict[str, str]]:
 def fingers(tmp_path_factory):
     """Summaries and folders of a charged finger, by half and whole."""
     folders = [tmp_path_factory.mktemp(name) for name in ("half", "whole")]
-    scene = from_data({"mesh": MESH, "history": HISTORY})
+    scene = from_data({"mesh": MESH, "history": HISTORY, "geometry": {"ridge_count": 9}})
     half = run(scene, folders[0], MPI.COMM_WORLD)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(run_module, "plan", lambda scene: replace(options.plan(scene), both_halves=True))

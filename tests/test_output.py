@@ -13,8 +13,10 @@ from variational import compat, kinematics
 from variational.cellwise import Cellwise
 from variational.contact.penalty import Penalty
 from variational.materials import ogden, saint_venant, stress
+from variational.materials.ogden import Ogden
+from variational.materials.saint_venant import SaintVenant
 from variational.output import Fields, gather_mesh, sed_per_cell
-from variational.problem import Interface, Ogden, Problem, SaintVenant
+from variational.problem import Interface, Problem
 from variational.receptors import Receptors
 from variational.surface import Surface
 

@@ -2,16 +2,22 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 from types import SimpleNamespace
 
+import matplotlib
 import numpy as np
 import pytest
 from matplotlib.colors import LogNorm
 from matplotlib.image import imread
 from matplotlib.tri import Triangulation
 
-from fingerpad.io import pictures, titles
+from fingerpad.io import style, titles
+from fingerpad.io.finger_picture import finger, highest_density
+from fingerpad.io.history_picture import history
+from fingerpad.io.skin_picture import SurfaceProfile, saw_teeth, surface
 from geometry import tags
+from variational.state import ContactState, Errors
 
 TITLE = titles.conditions(75.0, 200.0, 0.25)
 BREAK = np.full(1, np.nan)
@@ -30,7 +36,7 @@ def snapshot() -> SimpleNamespace:
     return SimpleNamespace(x=np.column_stack([x, y]), u=u, triangles=triangles, sed=2e4 * np.exp(-cy / 5e-4), tag=tag)
 
 
-def profile(title: str, shift: float, sign: float) -> pictures.SurfaceProfile:
+def profile(title: str, shift: float, sign: float) -> SurfaceProfile:
     """Return 17 ridges of Hertzian pressure up to 100 kPa."""
     columns = []
     for j in range(-8, 9):
@@ -39,9 +45,12 @@ def profile(title: str, shift: float, sign: float) -> pictures.SurfaceProfile:
         y = 2.0 * np.maximum(np.abs(s) - 5e-5, 0) ** 1.5
         d_eq = np.full_like(s, 1.6e-6 + 1e-8 * j**2)
         p_el = 8.854e-12 * 200**2 / 2 / (0.514e-6 + np.maximum(y, d_eq)) ** 2
-        columns += [np.stack([j * 0.45e-3 + s + shift, y, p, sign * 0.25 * p, p_el, d_eq]), np.tile(BREAK, (6, 1))]
+        columns += [
+            np.stack([j * 0.45e-3 + s + shift, y, p, sign * 0.25 * p, p_el, d_eq, np.full_like(s, j)]),
+            np.tile(BREAK, (7, 1)),
+        ]
     arrays = np.concatenate(columns, axis=1)
-    return pictures.SurfaceProfile(title, *arrays, f_ext=75.0, voltage=200.0, bone_x=shift, contact_length=1.5e-3)
+    return SurfaceProfile(title, *arrays, f_ext=75.0, voltage=200.0, bone_x=shift, contact_length=1.5e-3)
 
 
 def steps(f_ext: list[float]) -> list[dict]:
@@ -76,18 +85,18 @@ def assert_picture(path, figure) -> None:
 
 @pytest.mark.parametrize("sites", [None, np.array([[-0.4e-3, 0.5e-3], [0.1e-3, 0.5e-3]])], ids=["bare", "sites"])
 def test_finger(tmp_path, snapshot, sites):
-    figure = pictures.finger(tmp_path / "finger.png", snapshot, sites, "Normal contact: " + TITLE)
+    figure = finger(tmp_path / "finger.png", snapshot, sites, "Normal contact: " + TITLE)
     assert_picture(tmp_path / "finger.png", figure)
-    whole, near = figure.axes[:2]
+    whole = figure.axes[0]
     named = [text.get_text() for text in whole.get_legend().get_texts()]
-    assert named == ["stratum corneum", "viable epidermis", "dermis", "screen"]
+    sites_named = [] if sites is None else ["Merkel sites"]
+    assert named == ["stratum corneum", "viable epidermis", "dermis", "screen", *sites_named]
     assert "bone" in [text.get_text() for text in whole.texts]
-    assert ("Merkel sites" in near.get_legend_handles_labels()[1]) == (sites is not None)
 
 
 def test_finger_views_the_contact(tmp_path, snapshot):
     """The contact, 1 mm on either side, up to 1.3 mm, with energies in kPa on a logarithmic scale."""
-    near = pictures.finger(tmp_path / "finger.png", snapshot, None, TITLE).axes[1]
+    near = finger(tmp_path / "finger.png", snapshot, None, TITLE).axes[1]
     assert near.get_xlim() == pytest.approx((-2.0, 2.0))
     assert near.get_ylim()[1] == pytest.approx(1.3)
     norm = near.collections[0].norm
@@ -95,10 +104,17 @@ def test_finger_views_the_contact(tmp_path, snapshot):
     assert norm.vmax == pytest.approx(20.0, rel=0.2)
 
 
+def test_finger_takes_a_common_scale_and_numbers_ridges(snapshot):
+    near = finger(None, snapshot, None, TITLE, ridges={-1: -0.5e-3, 0: 0.0, 9: 9e-3}, highest=1e6).axes[1]
+    assert near.collections[0].norm.vmax == pytest.approx(1e3)  # kPa
+    assert [text.get_text() for text in near.texts] == ["-1", "0"], "a ridge out of view has no number"
+    assert highest_density(snapshot) == pytest.approx(2e4, rel=0.2)
+
+
 def test_finger_without_contact(tmp_path, snapshot):
     """A body above the screen is viewed about its lowest part."""
     snapshot.u[:, 1] += 1e-4
-    near = pictures.finger(tmp_path / "finger.png", snapshot, None, TITLE).axes[1]
+    near = finger(tmp_path / "finger.png", snapshot, None, TITLE).axes[1]
     assert near.get_xlim() == pytest.approx((-2.0, 2.0))
 
 
@@ -108,7 +124,7 @@ def test_surface(tmp_path):
         profile("partial slip", 1e-4, -0.6),
         profile("full slip", 3e-4, -1.0),
     ]
-    figure = pictures.surface(tmp_path / "surface.png", states, TITLE)
+    figure = surface(tmp_path / "surface.png", states, TITLE)
     assert_picture(tmp_path / "surface.png", figure)
     titles = [ax.get_title(loc="left") for ax in figure.axes[::2]]
     for title, state in zip(titles, states, strict=True):
@@ -120,37 +136,100 @@ def test_surface(tmp_path):
     assert np.isnan(pressure.get_ydata()).sum() == 17  # lines break between ridges
 
 
+def test_ridges_in_contact_are_numbered_from_the_centre():
+    stresses = surface(None, [profile("full slip", 1e-4, -1.0)], TITLE).axes[0]
+    places = {int(text.get_text()): text.get_position()[0] for text in stresses.texts}
+    assert places == pytest.approx({j: 0.45 * j + 0.1 for j in range(-8, 9)})
+
+
+@pytest.mark.parametrize(
+    ("p", "height"),
+    [
+        ([0.0, 1.0, 3.0, 2.0, 0.0, np.nan, 0.0, 4.0, 2.0, 1.0], 0.0),
+        ([0.0, 1.0, 4.0, 1.0, 3.0, 1.0, 0.0], 2 / 4),
+        ([4.0, 4.0, 1.0, 1.0, 4.0, 4.0, 0.0], 3 / 4),
+        ([4.0, 0.0, 4.0], 0.0),
+        ([4.0, *(8 * [1.0]), 4.0], 0.0),
+        ([0.0, 0.0, 0.0], 0.0),
+        ([np.nan], 0.0),
+    ],
+    ids=["two ridges", "teeth", "pairs", "two patches", "wide", "no contact", "no ridge"],
+)
+def test_saw_teeth(p, height):
+    """The depth between two larger pressures, over the peak; gaps of contact and wide hollows are none."""
+    assert saw_teeth(np.array(p)) == pytest.approx(height)
+
+
+@pytest.mark.parametrize(("tooth", "noted"), [(0.0, False), (0.3, True)])
+def test_note_on_a_mesh_too_coarse_for_the_pressure(tooth, noted):
+    smooth = profile("full slip", 0.0, -1.0)
+    state = replace(smooth, p=smooth.p * (1 - tooth * (np.arange(len(smooth.p)) % 2)))
+    title = surface(None, [state], TITLE).axes[0].get_title(loc="left")
+    assert ("mesh too coarse for the pressure: saw teeth of" in title) == noted
+
+
 def test_surface_without_contact(tmp_path):
     """No pressure anywhere is a state too."""
     touching = profile("above the screen", 0.0, 0.0)
     nothing = 0 * touching.p
-    state = pictures.SurfaceProfile(
-        "above the screen", touching.x, touching.y + 1e-6, nothing, nothing, nothing, touching.d_eq, *(4 * [0.0])
-    )
-    pictures.surface(tmp_path / "surface.png", [state], TITLE)
+    state = replace(touching, y=touching.y + 1e-6, p=nothing, t=nothing, p_el=nothing, f_ext=0.0, contact_length=0.0)
+    surface(tmp_path / "surface.png", [state], TITLE)
     assert (tmp_path / "surface.png").stat().st_size > 10_000
 
 
 @pytest.mark.parametrize("f_ext", [[20.0, 50.0] + 10 * [75.0], list(range(70, 82))], ids=["constant", "varying"])
 def test_history(tmp_path, f_ext):
     """It starts with the charged normal state, the last before sliding, and marks both jumps."""
-    figure = pictures.history(tmp_path / "history.png", steps(f_ext), "Sliding: " + TITLE, mu_0=0.25)
+    figure = history(tmp_path / "history.png", steps(f_ext), "Sliding: " + TITLE, mu_0=0.25)
     assert_picture(tmp_path / "history.png", figure)
     assert any("mu_{app}" in label for label in labels(figure))
-    assert any("ridges in contact" in label for label in labels(figure))
+    assert any("ridges in\ncontact" in label for label in labels(figure))
+    ticks = figure.axes[2].get_yticks()
+    assert (ticks == np.round(ticks)).all(), "ridges are counted"
     force = figure.axes[0].lines[0]
     assert len(force.get_xdata()) == 9
     assert (force.get_xdata()[0], force.get_ydata()[0]) == (0, 0)
     assert sum(line.get_linestyle() == ":" for line in figure.axes[0].lines) == 2
 
 
+def test_history_shows_estimated_errors(tmp_path):
+    """Full slip has an error bar in both panels, normal contact in that of the contact length; none without errors."""
+    rows, error = steps(12 * [75.0]), Errors(f_t=1.0, contact_length=2e-5)
+    common = {"f_ext": 75.0, "voltage": 200.0, "mu_app": 0.5, "f_contact": 150.0, "f_electrostatic": 75.0}
+    states = {
+        name: ContactState(**common, bone_x=x, f_t=f_t, contact_length=1.4e-3, ridges_in_contact=16, error=error)
+        for name, x, f_t in (("charged", 0.0, 0.0), ("full_slip", 1.4e-3, 35.0))
+    }
+    named = history(None, rows, TITLE, named=states)
+    assert [len(ax.containers) for ax in named.axes[:2]] == [1, 2]
+    bar = named.axes[1].containers[1].lines[2][0].get_segments()[0]
+    assert bar == pytest.approx(np.array([[1.4, 1.38], [1.4, 1.42]]))
+    bare = {name: replace(state, error=Errors()) for name, state in states.items()}
+    assert not history(None, rows, TITLE, named=bare).axes[1].containers
+
+
 def test_history_without_sliding(tmp_path):
     """A run that only pressed shows its last state."""
-    figure = pictures.history(tmp_path / "history.png", steps(12 * [75.0])[:3], TITLE)
+    figure = history(tmp_path / "history.png", steps(12 * [75.0])[:3], TITLE)
     assert len(figure.axes[0].lines[0].get_xdata()) == 1
+
+
+def test_style_holds_inside_its_block_alone():
+    before = dict(matplotlib.rcParams)
+    with style.look():
+        assert dict(matplotlib.rcParams) != before
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_voltage_is_a_ramp():
+    """Brighter with the voltage, whatever its sign, up to the highest."""
+    brightness = [np.dot(style.voltage(u)[:3], (0.299, 0.587, 0.114)) for u in (0.0, 50.0, 100.0, 150.0, 200.0)]
+    assert (np.diff(brightness) > 0.05).all()
+    assert style.voltage(-150.0) == style.voltage(150.0)
+    assert style.voltage(300.0) == style.voltage(200.0)
 
 
 def test_no_dolfinx_and_no_window():
     """Pictures are drawn from plain arrays, on machines without a display."""
-    code = "import sys, fingerpad.io.pictures; sys.exit('dolfinx' in sys.modules or 'matplotlib.pyplot' in sys.modules)"
+    code = "import sys, fingerpad.io.drawing; sys.exit('dolfinx' in sys.modules or 'matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

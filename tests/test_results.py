@@ -1,7 +1,6 @@
 """What a run says of itself: of which state, under which loads, on which mesh, and nothing of a state it rejects."""
 
 import csv
-import json
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -19,14 +18,14 @@ from fingerpad.model.balance import force_error
 from fingerpad.model.options import plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data
-from tests import test_demo
-from tests.runs import run
+from tests.runs import SMALL_FINGER, run
 from variational.contact.friction import CONE_ROUNDOFF
-from variational.solvers.newton import PREFIX, Solver
+from variational.solvers.iteration import PREFIX
+from variational.solvers.newton import Solver
 
 MU_0 = 0.25
 SMALL = {
-    "geometry": {"ridge_count": 9},
+    "geometry": SMALL_FINGER,
     "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
 }
 LEAN = SMALL | {"output": {"errors": False, "receptors": False}}
@@ -44,18 +43,18 @@ def titles(monkeypatch) -> dict[str, str]:
     """Titles of the pictures that would be drawn, by file; of the surface's panels, by state."""
     found: dict[str, str] = {}
 
-    def finger(path, snapshot, sites, title):
+    def finger(path, snapshot, sites, title, ridges, highest):
         found[Path(path).stem] = title
 
     def surface(path, states, title):
         found[Path(path).stem] = title
-        found.update({state.title: drawing.pictures._surface_title("A", state) for state in states})
+        found.update({state.title: drawing.skin_picture._surface_title("A", state) for state in states})
 
-    def history(path, rows, title, mu_0):
+    def history(path, rows, title, mu_0, named):
         found[Path(path).stem] = title
 
-    for function in (finger, surface, history):
-        monkeypatch.setattr(drawing.pictures, function.__name__, function)
+    for module, function in (("finger", finger), ("skin", surface), ("history", history)):
+        monkeypatch.setattr(getattr(drawing, f"{module}_picture"), function.__name__, function)
     return found
 
 
@@ -81,6 +80,15 @@ def test_charged_while_it_slides(tmp_path, titles):
     assert "$f_{ext}$ = 1 N/m, $U$ = 0 to 100 V" in titles["history"] and "$U$ = 0 to 100 V" in titles["surface"]
 
 
+def test_skin_is_drawn_without_sliding(tmp_path, titles):
+    """A run that only presses has the skin at the end of its load, and no history of sliding."""
+    run(from_data(LEAN | {"history": [PRESS]}), tmp_path, MPI.COMM_WORLD)
+    assert {"surface", "surface_press", "finger_press"} <= set(titles) and "history" not in titles
+    assert "$f_{ext}$ = 1 N/m, $U$ = 0 V" in titles["After press"]
+    with np.load(tmp_path / "surface_press.npz") as arrays:
+        assert set(arrays["end_ridge"][arrays["end_p"] > 0]) == {-1.0, 0.0, 1.0}, "the central three touch"
+
+
 HEIGHT = {"name": "press", "bone_height": -20e-6}
 BACK = {"name": "back", "bone_x": 0.0}
 
@@ -95,24 +103,14 @@ BACK = {"name": "back", "bone_x": 0.0}
     ],
     ids=["lift", "height", "two slips", "there and back"],
 )
-def test_demo_passes(tmp_path, history, load, f_ext):
+def test_headline_is_the_last_full_slip(tmp_path, history, load, f_ext):
     """Whatever came after the full slip, and whichever of height and force was given."""
-    loads = "\n".join(
-        "[[history]]\n" + "\n".join(f"{k} = {json.dumps(v)}" for k, v in load.items()) for load in history
-    )
-    tables = {"geometry": LEAN["geometry"], "mesh": LEAN["mesh"], "output": LEAN["output"]}
-    rest = "\n".join(
-        f"[{name}]\n" + "\n".join(f"{k} = {json.dumps(v)}" for k, v in t.items()) for name, t in tables.items()
-    )
-    (tmp_path / "scene.toml").write_text(f"{loads}\n{rest}\n", encoding="utf-8")
-    done = test_demo.run(tmp_path / "out", str(tmp_path / "scene.toml"))
-    assert done.returncode == 0, done.stdout + done.stderr
-    summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
+    summary = run(from_data(LEAN | {"history": history}), tmp_path, MPI.COMM_WORLD)
     assert summary["slip_load"] == load
     assert f_ext is None or summary["slip_f_ext"] == pytest.approx(f_ext, rel=1e-9)
     assert (summary["normal_load"], summary["normal_bone_x"]) == ("press", 0.0)
     assert abs(summary["normal_mu_app"]) < 0.01
-    assert float(rows_of(tmp_path / "out")[-1]["f_ext"]) == summary["f_ext"]
+    assert float(rows_of(tmp_path)[-1]["f_ext"]) == summary["f_ext"]
 
 
 CHARGE, SLIDE_ON = {"name": "charge", "voltage": 60.0}, {"name": "slide on", "bone_x": 0.6e-3}
@@ -270,7 +268,7 @@ def test_profile_is_sorted_along_each_ridge():
     """Two ridges, the second one's facets first: a line each, with a break between."""
     profile = Profile(ridge=np.array([1, 0]), values=np.ones((7, 2, 2)), d_eq=np.array([1e-6, 2e-6]))
     profile.values[0] = [[3e-3, 2e-3], [1e-3, 0.0]]
-    state = SimpleNamespace(f_ext=1.0, voltage=0.0, bone_x=0.0, contact_length=1e-3)
+    state = SimpleNamespace(f_ext=1.0, voltage=0.0, bone_x=0.0, contact_length=1e-3, ridges=None)
     found = drawing._along(profile, "full slip", state, "")
     assert found.x[[0, 1, 3, 4]] == pytest.approx([0.0, 1e-3, 2e-3, 3e-3]) and np.isnan(found.x[[2, 5]]).all()
     assert found.d_eq[[0, 3]] == pytest.approx([1e-6, 2e-6])

@@ -11,7 +11,8 @@ from geometry.bodies import block
 from geometry.mesh import load
 from variational.body import Body
 from variational.contact.ridge_law import RidgeLaw, RidgeTable, ramps
-from variational.problem import Interface, SaintVenant
+from variational.materials.saint_venant import SaintVenant
+from variational.problem import Interface
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Target
 

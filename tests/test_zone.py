@@ -23,7 +23,9 @@ WAVELENGTH = 483e-6
 def press(folder, half_arc: float) -> dict:
     """Press a finger until three ridges are in contact and some more, as the mesh lets them."""
     history = [{"name": "press", "bone_height": -50e-6}]
-    return run(from_data({"mesh": MESH | {"touching_half_arc": half_arc}, "history": history}), folder, MPI.COMM_WORLD)
+    few = {"geometry": {"ridge_count": 11}, "output": {"errors": False}}
+    scene = from_data({"mesh": MESH | {"touching_half_arc": half_arc}, "history": history} | few)
+    return run(scene, folder, MPI.COMM_WORLD)
 
 
 def columns(folder, name: str) -> list[dict[str, str]]:
@@ -122,7 +124,7 @@ def half(tmp_path_factory):
     folder, check = tmp_path_factory.mktemp("half"), StabilityCheck.check
 
     def unstable(self):
-        return Stability(-1.0, True) if self.solver.antisymmetric_rows() is not None else check(self)
+        return Stability(-1.0, True) if self.solver.equations.antisymmetric_rows() is not None else check(self)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(StabilityCheck, "check", unstable)

@@ -38,8 +38,8 @@ from numpy.typing import NDArray
 
 from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.attraction.insulator import VACUUM_PERMITTIVITY
+from variational.contact.formulation import SurfaceState
 from variational.problem import Problem
-from variational.quantities import SurfaceState
 
 Array = NDArray[np.float64]
 

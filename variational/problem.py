@@ -35,8 +35,6 @@ from variational.contact.friction import Friction, law_of
 from variational.element import ELEMENTS, at_centroid
 from variational.materials import stress
 from variational.materials.material import Material
-from variational.materials.ogden import Ogden as Ogden
-from variational.materials.saint_venant import SaintVenant as SaintVenant
 from variational.pressure import LayerwisePressure
 from variational.surface import Surface
 

@@ -6,6 +6,7 @@ import numpy as np
 import ufl
 from numpy.typing import NDArray
 
+from variational.contact.formulation import SurfaceState
 from variational.contact.friction import CONE_ROUNDOFF
 from variational.problem import Problem
 
@@ -32,22 +33,6 @@ class RidgeLoads:
     def p_c(self) -> Array:
         """Mean contact pressure over the length in contact (Pa of current area), zero without contact."""
         return np.divide(self.f_contact, self.length, out=np.zeros_like(self.length), where=self.length > 0)
-
-
-@dataclass(frozen=True)
-class SurfaceState:
-    """Values at this rank's Gauss points, shape (facets, points)."""
-
-    x: Array
-    y: Array
-    gap: Array
-    """Length (m) that is negative in contact, see :meth:`variational.contact.formulation.Formulation.opening`."""
-    anchor: Array
-    p_n: Array
-    t_t: Array
-    p_el: Array
-    area_x: Array
-    area_y: Array
 
 
 class Observer:

@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fingerpad.io import pictures, titles
+from fingerpad.io import finger_picture, history_picture, skin_picture, titles
+from fingerpad.io.skin_picture import SurfaceProfile
 from fingerpad.io.states import PREFIXES, WORDS, before_sliding, named, partial_slip
 from fingerpad.io.views import Profile, View
 from variational.state import ContactState
@@ -46,20 +47,26 @@ class Drawing:
     """Normal contact and full slip on another mesh than the path's, by their names in :mod:`fingerpad.io.states`."""
     starting_size: float | None
     """Contact size (m) of the mesh of the path, where an accuracy was asked for."""
+    named: Mapping[str, ContactState]
+    """Named states with their estimated errors, by their names in :mod:`fingerpad.io.states`."""
 
     def write(self, folder: Path) -> None:
         """Write every picture and its arrays into a folder."""
         for load, end in self.ends.items():
-            _keep(folder / f"finger_{load.replace(' ', '_')}.npz", end.snapshot, end.sites)
-            self._finger(folder / f"finger_{load.replace(' ', '_')}.png", f"After {load}", *end, self._path_note())
+            words = load.replace(" ", "_")
+            _keep(folder / f"finger_{words}.npz", end.snapshot, end.sites)
+            self._end(folder / f"finger_{words}.png", load)
+            if end.state.step in self.profiles and end.state.ridges_in_contact > 0:
+                along = _along(self.profiles[end.state.step], f"After {load}", end.state, self._path_note())
+                self._surface(folder / f"surface_{words}", {"end": along}, [end.state])
         for name, view in self.finer.items():
             if view.snapshot is not None:
                 words = WORDS[name].replace(" ", "_")
                 _keep(folder / f"finger_{words}.npz", view.snapshot, view.merkel)
                 self._final(folder / f"finger_{words}.png", name)
+        if shown := self._shown():
+            self._surface(folder / "surface", self._named_skin(), [state for _, state, _ in shown.values()])
         if self._slides():
-            np.savez_compressed(folder / "surface.npz", **self._arrays())
-            self.figure("surface", folder / "surface.png")
             self.figure("history", folder / "history.png")
 
     def figure(self, kind: str, path: Path | None = None) -> Figure:
@@ -76,18 +83,34 @@ class Drawing:
         if kind == "finger":
             return self._last_finger(path)
         if kind == "surface":
-            profiles = self._along()
+            profiles = self._named_skin()
             if not profiles:
                 raise ValueError("the run has no state with skin on the screen to draw")
-            conditions = titles.conditions_of([state.row() for _, state, _ in self._shown().values()], self.mu_0)
-            return pictures.surface(path, list(profiles.values()), conditions)
+            return self._skin(path, profiles, [state for _, state, _ in self._shown().values()])
         if kind != "history":
             raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(KINDS)}")
         if not self._slides():
             raise ValueError("the run has no history of sliding; the bone never moved sideways with skin on the screen")
         shown = [state.row() for state in self.states[len(before_sliding(self.states)) - 1 :]]
         conditions = _joined(titles.conditions_of(shown, self.mu_0), self._path_note())
-        return pictures.history(path, shown, conditions, self.mu_0)
+        return history_picture.history(path, shown, conditions, self.mu_0, self.named)
+
+    def _skin(
+        self, path: Path | None, profiles: Mapping[str, SurfaceProfile], states: Sequence[ContactState]
+    ) -> Figure:
+        conditions = titles.conditions_of([state.row() for state in states], self.mu_0)
+        return skin_picture.surface(path, list(profiles.values()), conditions)
+
+    def _surface(self, path: Path, profiles: Mapping[str, SurfaceProfile], states: Sequence[ContactState]) -> None:
+        """Write the picture of the skin in some states and its arrays; ``path`` has no suffix."""
+        arrays: dict[str, Any] = {
+            f"{name}_{field}": value
+            for name, profile in profiles.items()
+            for field, value in vars(profile).items()
+            if isinstance(value, np.ndarray)
+        }
+        np.savez_compressed(path.with_name(f"{path.name}.npz"), **arrays)
+        self._skin(path.with_name(f"{path.name}.png"), profiles, states)
 
     def _slides(self) -> bool:
         return len(before_sliding(self.states)) not in (0, len(self.states))
@@ -101,14 +124,20 @@ class Drawing:
             return self._final(path, final)
         if not self.ends:
             raise ValueError("the result has no finger to draw: no load was reached, or it was read from files")
-        load, end = list(self.ends.items())[-1]
-        return self._finger(path, f"After {load}", *end, self._path_note())
+        return self._end(path, list(self.ends)[-1])
+
+    def _end(self, path: Path | None, load: str) -> Figure:
+        end = self.ends[load]
+        return self._finger(
+            path, f"After {load}", *end, self._path_note(), _places(self.profiles.get(end.state.step), end.state)
+        )
 
     def _final(self, path: Path | None, name: str) -> Figure:
         view = self.finer[name]
         assert view.snapshot is not None
+        note = _note(_FINAL, view.mesh.contact)
         return self._finger(
-            path, _TITLES[name], view.state, view.snapshot, view.merkel, _note(_FINAL, view.mesh.contact)
+            path, _TITLES[name], view.state, view.snapshot, view.merkel, note, _places(view.profile, view.state)
         )
 
     def _finger(
@@ -119,9 +148,13 @@ class Drawing:
         snapshot: "Snapshot",
         sites: NDArray[np.float64] | None,
         note: str,
+        ridges: Mapping[int, float],
     ) -> Figure:
         conditions = titles.conditions(state.f_ext, state.voltage, self.mu_0, state.bone_x)
-        return pictures.finger(path, snapshot, sites, _joined(f"{title}: {conditions}", note))
+        snapshots = [end.snapshot for end in self.ends.values()]
+        snapshots += [view.snapshot for view in self.finer.values() if view.snapshot is not None]
+        highest = max(map(finger_picture.highest_density, snapshots))
+        return finger_picture.finger(path, snapshot, sites, _joined(f"{title}: {conditions}", note), ridges, highest)
 
     def _shown(self) -> "dict[str, tuple[str, ContactState, View | None]]":
         """Return the states along whose skin is drawn: title, state, and its view on the final mesh if there is one."""
@@ -141,9 +174,10 @@ class Drawing:
 
     def steps_along(self) -> list[int]:
         """Return the steps of the states along whose skin is drawn."""
-        return [state.step for _, state, _ in self._shown().values()]
+        states = [state for _, state, _ in self._shown().values()] + [end.state for end in self.ends.values()]
+        return [state.step for state in states]
 
-    def _along(self) -> dict[str, pictures.SurfaceProfile]:
+    def _named_skin(self) -> dict[str, SurfaceProfile]:
         profiles = {}
         for name, (title, state, view) in self._shown().items():
             if view is not None and view.profile is not None:
@@ -153,14 +187,6 @@ class Drawing:
             else:
                 profiles[name] = _along(self.profiles[state.step], title, state, self._path_note())
         return profiles
-
-    def _arrays(self) -> dict[str, Any]:
-        return {
-            f"{name}_{field}": value
-            for name, profile in self._along().items()
-            for field, value in vars(profile).items()
-            if isinstance(value, np.ndarray)
-        }
 
 
 def _keep(path: Path, snapshot: "Snapshot", sites: NDArray[np.float64] | None) -> None:
@@ -176,17 +202,33 @@ def _joined(title: str, note: str) -> str:
     return f"{title}\n{note}" if note else title
 
 
-def _along(profile: "Profile", title: str, state: ContactState, note: str) -> pictures.SurfaceProfile:
+def _numbers(profile: Profile, state: ContactState) -> NDArray[np.int64]:
+    """Return the number of each ridge, 0 at the centre, shape (ridges,)."""
+    count = len(profile.d_eq)
+    return np.arange(count) - count // 2 if state.ridges is None else state.ridges.number
+
+
+def _places(profile: Profile | None, state: ContactState) -> dict[int, float]:
+    """Return the current abscissa (m) of the lowest point of each ridge that can touch, by its number."""
+    if profile is None:
+        return {}
+    skin = profile.skin(_numbers(profile, state))
+    lowest = {int(k): np.where((skin.ridge == k)[:, None], skin.y, np.inf).argmin() for k in np.unique(skin.ridge)}
+    return {k: float(skin.x.flat[point]) for k, point in lowest.items()}
+
+
+def _along(profile: Profile, title: str, state: ContactState, note: str) -> SurfaceProfile:
     """Return the skin sorted along each ridge, a NaN between ridges."""
-    skin = profile.skin(np.arange(len(profile.d_eq)))
+    skin = profile.skin(_numbers(profile, state))
     gap = np.broadcast_to(profile.d_eq[profile.ridge][:, None], skin.x.shape)
-    columns: list[list[Any]] = [[] for _ in range(6)]
+    number = np.broadcast_to(skin.ridge[:, None].astype(float), skin.x.shape)
+    columns: list[list[Any]] = [[] for _ in range(7)]
     for k in np.unique(profile.ridge):
         mine = profile.ridge == k
         order = np.argsort(skin.x[mine], axis=None)
-        for column, part in zip(columns, (skin.x, skin.y, skin.p_n, skin.t_t, skin.p_el, gap), strict=True):
+        for column, part in zip(columns, (skin.x, skin.y, skin.p_n, skin.t_t, skin.p_el, gap, number), strict=True):
             column += [part[mine].ravel()[order], [np.nan]]
     along = (np.concatenate(column) for column in columns)
     given = {name: getattr(state, name) for name in ("f_ext", "voltage", "bone_x", "contact_length")}
-    arrays: dict[str, Any] = dict(zip(("x", "y", "p", "t", "p_el", "d_eq"), along, strict=True))
-    return pictures.SurfaceProfile(title=title, note=note, **arrays, **given)
+    arrays: dict[str, Any] = dict(zip(("x", "y", "p", "t", "p_el", "d_eq", "ridge"), along, strict=True))
+    return SurfaceProfile(title=title, note=note, **arrays, **given)

@@ -34,7 +34,7 @@ LEFT = (
         "summary.json.part",
         "run.log",
     ),
-    *("displacement.bp", "stress.bp", "sed.bp", "finger_*.npz", "finger_*.png", "surface.npz", "surface*.png"),
+    *("displacement.bp", "stress.bp", "sed.bp", "finger_*.npz", "finger_*.png", "surface*.npz", "surface*.png"),
     "history.png",
 )
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP)  # some network file systems

@@ -16,9 +16,10 @@ from geometry import fingertip, mesh, meshfile, tags
 from geometry.profiles import Profiles
 from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.body import Body
+from variational.contact.formulation import SurfaceState
 from variational.energy import EnergyBook
 from variational.problem import Interface
-from variational.quantities import RidgeLoads, SurfaceState
+from variational.quantities import RidgeLoads
 from variational.solvers.continuation import Attempt, Target
 from variational.state import ContactState
 

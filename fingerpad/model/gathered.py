@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from variational import body as setup
 from variational import compat
+from variational.contact.formulation import SurfaceState
 from variational.problem import Problem
-from variational.quantities import SurfaceState
 from variational.state import Skin
 
 Array = NDArray[np.float64]

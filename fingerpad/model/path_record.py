@@ -67,17 +67,20 @@ class PathRecord:
             found.append(states.load_result(name, mine, None if check is None else check.stable))
         return found
 
-    def drawing(self, mu_0: float | None, final: Mapping[str, View], size: float | None) -> Drawing | None:
+    def drawing(
+        self, mu_0: float | None, final: Mapping[str, View], size: float | None, named: Mapping[str, ContactState]
+    ) -> Drawing | None:
         """Return what the pictures are drawn from, on rank 0; None without a state.
 
         Args:
             mu_0: friction coefficient; None where the law of friction is not Coulomb's.
             final: as of :meth:`named`.
             size: contact size (m) of the path's mesh, where an accuracy was asked for.
+            named: the named states, with their estimated errors.
         """
         if not self.states or self._comm.rank != 0:
             return None
-        whole = Drawing(mu_0, self.states, self.profiles, self.ends, final, size)
+        whole = Drawing(mu_0, self.states, self.profiles, self.ends, final, size, named)
         shown = whole.steps_along()
         return replace(whole, profiles={step: p for step, p in self.profiles.items() if step in shown})
 

@@ -119,7 +119,7 @@ class Simulation:
         finger, again = self.finger, f"{name}, solved again with a contact size of {self.finger.contact_size:g} m"
         give(carried, finger.coupling, direction * SLIDE_ON)
         self._load = name
-        finger.continuation.adopt(name)
+        finger.continuation.re_equilibrate(name)
         self.energy = finger.book()  # what was dissipated on the way is not known
         loads = finger.ridge_loads()
         finger.check_balance(loads, name)

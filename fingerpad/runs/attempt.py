@@ -109,7 +109,8 @@ class Attempt:
         failure = self._ended.get("failure", "" if refinement is None else refinement.failure)
         mu_0 = coefficient(scene)
         with self._clock.phase("output"):
-            drawing = record.drawing(mu_0, final, None if scene.accuracy is None else finger.scene.mesh.contact)
+            size = None if scene.accuracy is None else finger.scene.mesh.contact
+            drawing = record.drawing(mu_0, final, size, named)
             if drawing is not None and self._writer.folder is not None:
                 drawing.write(self._writer.folder)
         totals = record.totals()

@@ -15,16 +15,12 @@ The slip of a step counts from the accepted place :math:`x_n`, so that
 """
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import ufl
 
-from variational.contact.formulation import Contact, Formulation, History, Skin, Springs
+from variational.contact.formulation import Contact, Formulation, History, Skin, Springs, SurfaceState
 from variational.contact.friction import CONE_ROUNDOFF, Friction
-
-if TYPE_CHECKING:
-    from variational.quantities import SurfaceState
 
 
 @dataclass(frozen=True)
@@ -47,7 +43,7 @@ class AugmentedLagrangian(Formulation):
         """
         return ufl.conditional(ufl.lt(contact.gap, 0.0), -contact.p_n / skin.stiffness(), skin.y)
 
-    def error(self, state: "SurfaceState", history: History, friction: Friction | None) -> float:
+    def error(self, state: SurfaceState, history: History, friction: Friction | None) -> float:
         """Return the largest depth, or opening under pressure, and elastic slip at this rank's points (m)."""
         depth = np.abs(state.p_n - history.pressure) / self.eps_n
         limit = np.zeros_like(state.p_n) if friction is None else friction.limit(state.p_n)
@@ -55,6 +51,6 @@ class AugmentedLagrangian(Formulation):
         slip = np.where(sticking, np.abs(state.x - history.x), 0.0)
         return float(max(depth.max(initial=0.0), slip.max(initial=0.0)))
 
-    def corrected(self, state: "SurfaceState", history: History) -> History:
+    def corrected(self, state: SurfaceState, history: History) -> History:
         """Return the history with the tractions of a solve as multipliers; the accepted place stays."""
         return replace(history, pressure=state.p_n, anchor=state.anchor - (state.x - history.x))

@@ -18,7 +18,7 @@ The history variable of friction is the anchor s, see :mod:`~variational.contact
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import ufl
@@ -27,9 +27,6 @@ from numpy.typing import NDArray
 from variational.coefficients import said
 from variational.contact import return_mapping
 from variational.contact.friction import Friction
-
-if TYPE_CHECKING:
-    from variational.quantities import SurfaceState
 
 Array = NDArray[np.float64]
 
@@ -134,6 +131,22 @@ class History:
     """Current abscissa (m)."""
 
 
+@dataclass(frozen=True)
+class SurfaceState:
+    """Values at this rank's Gauss points, shape (facets, points)."""
+
+    x: Array
+    y: Array
+    gap: Array
+    """Length (m) that is negative in contact, see :meth:`Formulation.opening`."""
+    anchor: Array
+    p_n: Array
+    t_t: Array
+    p_el: Array
+    area_x: Array
+    area_y: Array
+
+
 class Formulation(ABC):
     """How contact and friction enter the weak form."""
 
@@ -152,18 +165,18 @@ class Formulation(ABC):
         """Return a length (m), smooth within a facet, that is negative where the augmented gap is."""
         return contact.gap
 
-    def error(self, state: "SurfaceState", history: History, friction: Friction | None) -> float:
+    def error(self, state: SurfaceState, history: History, friction: Friction | None) -> float:
         """Return the largest error (m) at this rank's points that :meth:`corrected` can lower; mostly none."""
         return 0.0
 
-    def corrected(self, state: "SurfaceState", history: History) -> History:
+    def corrected(self, state: SurfaceState, history: History) -> History:
         """Return the history with which to solve again where there is an error."""
         return history
 
-    def stored(self, state: "SurfaceState") -> Array:
+    def stored(self, state: SurfaceState) -> Array:
         """Return the energy of the contact's springs (J/m^2 of reference area) at the points; mostly there are none."""
         return np.zeros_like(state.p_n)
 
-    def slip(self, before: "SurfaceState", after: "SurfaceState") -> Array:
+    def slip(self, before: SurfaceState, after: SurfaceState) -> Array:
         """Return how far each of this rank's points slipped over the screen (m) from one state to the next."""
         return after.x - before.x

@@ -8,15 +8,11 @@ Contact Mechanics, 2nd ed., ch. 6). The skin sinks by :math:`p_n / \epsilon_n`, 
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from variational.contact.formulation import Formulation, Skin, Springs
-
-if TYPE_CHECKING:
-    from variational.quantities import SurfaceState
+from variational.contact.formulation import Formulation, Skin, Springs, SurfaceState
 
 Array = NDArray[np.float64]
 
@@ -32,10 +28,10 @@ class Penalty(Formulation):
         """Return springs that nothing preloads."""
         return Springs(0.0, 0.0, skin.constant(self.eps_n), skin.constant(self.eps_t))
 
-    def stored(self, state: "SurfaceState") -> Array:
+    def stored(self, state: SurfaceState) -> Array:
         """Return the energy of the springs (J/m^2 of reference area)."""
         return np.asarray((state.p_n**2 / self.eps_n + state.t_t**2 / self.eps_t) / 2)
 
-    def slip(self, before: "SurfaceState", after: "SurfaceState") -> Array:
+    def slip(self, before: SurfaceState, after: SurfaceState) -> Array:
         """Return how far the tangential springs were dragged (m)."""
         return after.anchor - before.anchor

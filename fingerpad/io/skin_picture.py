@@ -1,0 +1,149 @@
+"""Picture of the skin near the screen: pressure, shear traction, attraction and gaps along the surface.
+
+Plain arrays in SI in, a PNG file out.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+from fingerpad.io import style, titles
+
+Array = NDArray[np.float64]
+_MM, _UM, _KPA = 1e3, 1e6, 1e-3
+_NEAR = 4  # points: the span of a saw tooth to either side
+_COARSE = 0.1  # of the peak: deeper saw teeth are noted; 7 % at the default contact size
+
+
+@dataclass(frozen=True)
+class SurfaceProfile:
+    """The skin near the screen in one state; arrays along the arc, a NaN between ridges breaks the lines."""
+
+    title: str
+    x: Array
+    """Current abscissa (m)."""
+    y: Array
+    """Current height above the screen (m)."""
+    p: Array
+    """Contact pressure (Pa of current area)."""
+    t: Array
+    """Shear traction on the skin (Pa of current area), positive towards x > 0."""
+    p_el: Array
+    """Electrostatic attraction (Pa of current area)."""
+    d_eq: Array
+    """Equivalent air gap of the ridge (m)."""
+    ridge: Array
+    """Number of the ridge, 0 at the centre."""
+    f_ext: float
+    """External normal force per length (N/m)."""
+    voltage: float
+    """Instantaneous voltage (V)."""
+    bone_x: float
+    """Where the bone is sideways (m)."""
+    contact_length: float
+    """Contact length L_R (m)."""
+    note: str = ""
+    """What else the panel's title says."""
+
+
+def surface(path: Path | str | None, states: Sequence[SurfaceProfile], title: str, largest_gap: float = 6e-6) -> Figure:
+    """Draw pressure, shear traction, attraction and gaps along the surface (Fig. 2 of Forsbach et al. 2023).
+
+    Numbers above the pressure are those of the ridges in contact, 0 at the centre of the finger. A note says where the
+    mesh is too coarse for the pressure: where :func:`saw_teeth` exceeds a tenth.
+
+    Args:
+        path: of the PNG file; None for the figure alone.
+        states: one pair of panels each, such as normal contact, partial slip and full slip.
+        title: what they have in common, see :mod:`fingerpad.io.titles`.
+        largest_gap: end of the gaps' axis (m).
+    """
+    with style.look():
+        figure = style.figure(1 + 3.0 * len(states))
+        figure.suptitle(title)
+        axes = figure.subplots(2 * len(states), 1, sharex=True, squeeze=False, height_ratios=[2, 1] * len(states))[:, 0]
+        stresses, gaps = axes[::2], axes[1::2]
+        for letter, state, above, below in zip("ABCDEFGH", states, stresses, gaps, strict=False):
+            _draw_stresses(above, state)
+            above.set_title(_surface_title(letter, state), loc="left")
+            _draw_gaps(below, state, largest_gap)
+        bottom, top = _common_range(states)
+        for ax in stresses:
+            ax.set_ylim(bottom, top)
+        handles = [h for ax in (stresses[0], gaps[0]) for h in ax.get_legend_handles_labels()[0]]
+        figure.legend(handles=handles, loc="outside lower center", ncols=3)
+        touching = np.concatenate([s.x[s.p > 0] for s in states])
+        if len(touching):
+            gaps[-1].set_xlim(_MM * touching.min() - 0.5, _MM * touching.max() + 0.5)
+        gaps[-1].set_xlabel("x on the screen (mm)")
+        return style.save(figure, path)
+
+
+def saw_teeth(p: Array) -> float:
+    """Return the depth of the deepest saw tooth of the contact pressure over its peak.
+
+    A tooth is a dip of the pressure between two larger ones, both within :data:`_NEAR` points, where every point
+    between is under pressure. Four points are a facet's: teeth of a coarse mesh go up and down within one facet or two.
+
+    Args:
+        p: contact pressure (Pa) along the arc, a NaN between ridges, shape (points,).
+    """
+    deepest, known = 0.0, np.nan_to_num(p)
+    for patch in np.split(known, np.flatnonzero(known <= 0)):
+        if len(patch):
+            largest = sliding_window_view(np.pad(patch, _NEAR), _NEAR).max(axis=1)
+            dips = np.minimum(largest[: len(patch)], largest[_NEAR + 1 :]) - patch
+            deepest = max(deepest, float(dips[patch > 0].max(initial=0.0)))
+    return deepest / float(known.max()) if deepest else 0.0
+
+
+def _surface_title(letter: str, state: SurfaceProfile) -> str:
+    words = f"{letter}  {state.title}: {titles.loads([(state.f_ext, state.voltage, state.bone_x)])}"
+    words += f", $L_R$ = {_MM * state.contact_length:.3g} mm"
+    if state.contact_length > 0:
+        words += f", $f_{{ext}}/L_R$ = {_KPA * state.f_ext / state.contact_length:.3g} kPa"
+    teeth = saw_teeth(state.p)
+    coarse = (
+        f"mesh too coarse for the pressure: saw teeth of {100 * teeth:.0f} % of its peak" if teeth > _COARSE else ""
+    )
+    notes = "; ".join(filter(None, (state.note, coarse)))
+    return f"{words}\n     {notes}" if notes else words
+
+
+def _common_range(states: Sequence[SurfaceProfile]) -> tuple[float, float]:
+    values = _KPA * np.concatenate([array[np.isfinite(array)] for s in states for array in (s.p, s.t, s.p_el)])
+    low, high = min(float(values.min(initial=0)), 0.0), max(float(values.max(initial=0)), 1e-9)
+    return low - 0.06 * (high - low), high + 0.17 * (high - low)  # numbers of ridges above
+
+
+def _draw_stresses(ax: Axes, s: SurfaceProfile) -> None:
+    x = _MM * s.x
+    ax.axhline(0, color="0.7", lw=0.8, zorder=0)
+    ax.fill_between(x, 0, _KPA * s.p, color=style.PRESSURE, alpha=0.12, lw=0)
+    ax.plot(x, _KPA * s.p, color=style.PRESSURE, lw=1.2, label="contact pressure $p$")
+    ax.plot(x, _KPA * s.p_el, color=style.ATTRACTION, ls="--", label="attraction $\\sigma_{el}$")
+    ax.plot(x, _KPA * s.t, color=style.SHEAR, label="shear traction $t$ on the skin, positive to the right")
+    ax.set_ylabel("stress (kPa)")
+    for number in np.unique(s.ridge[s.p > 0]):
+        where = x[(s.ridge == number) & (s.p > 0)].mean()
+        ax.text(where, 0.97, f"{number:.0f}", transform=ax.get_xaxis_transform(), ha="center", va="top", fontsize=8)
+    if s.contact_length > 0 and s.f_ext > 0:
+        mean = _KPA * s.f_ext / s.contact_length
+        there_and_back: Any = (lambda stress: stress / mean, lambda ratio: ratio * mean)
+        ax.secondary_yaxis("right", functions=there_and_back).set_ylabel("stress / $(f_{ext}/L_R)$ (–)")
+
+
+def _draw_gaps(ax: Axes, s: SurfaceProfile, largest: float) -> None:
+    ax.axhline(0, color="0.7", lw=0.8, zorder=0)
+    ax.fill_between(_MM * s.x, np.minimum(_UM * s.y, 2 * _UM * largest), 2 * _UM * largest, color="0.85", lw=0)
+    ax.plot(_MM * s.x, _UM * s.y, color="0.4", lw=1, label="height of the skin (grey) above the screen")
+    ax.plot(_MM * s.x, _UM * s.d_eq, color=style.GAP, lw=2.2, label="equivalent air gap $d_{eq}$")
+    ax.set_ylim(-0.08 * largest * _UM, largest * _UM)
+    ax.set_ylabel("gap (µm)")

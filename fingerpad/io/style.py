@@ -1,0 +1,61 @@
+"""How every picture looks: one palette, one set of fonts and sizes, told apart with any colour vision.
+
+Categories have Okabe and Ito's colours, magnitudes viridis, voltages a ramp of their own. Importing changes nothing.
+"""
+
+from collections.abc import Iterator
+from contextlib import chdir, contextmanager
+from pathlib import Path
+
+with chdir("/"):  # a matplotlibrc of the current folder is not obeyed, see fingerpad.startup
+    import matplotlib
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+BLACK, ORANGE, SKY, GREEN, YELLOW = "#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442"
+BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#999999"
+CATEGORIES = (BLUE, VERMILION, GREEN, PURPLE, SKY, ORANGE, BLACK)
+MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+STATE = {"uncharged": SKY, "charged": BLUE, "full_slip": VERMILION}
+PRESSURE, ATTRACTION, SHEAR, GAP = BLACK, BLUE, ORANGE, GREEN
+MAGNITUDE = "viridis"
+WIDTH = 9.0  # in, of a page
+_LOOK = {
+    "font.size": 10.5,
+    "axes.titlesize": 10.5,
+    "legend.fontsize": 9.5,
+    "legend.frameon": False,
+    "figure.titlesize": 12,
+    "lines.linewidth": 1.5,
+    "savefig.dpi": 150,
+}
+
+
+@contextmanager
+def look() -> Iterator[None]:
+    """Give the figures that are drawn and saved inside the block the common fonts, sizes and resolution."""
+    with matplotlib.rc_context(_LOOK):
+        yield
+
+
+def figure(height: float, width: float = WIDTH) -> Figure:
+    """Return an empty figure of a size (in); its parts keep clear of each other."""
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def voltage(value: float, highest: float = 200.0) -> tuple[float, float, float, float]:
+    """Return the colour of a voltage (V): dark blue at 0 V, over red to orange at ``highest``."""
+    return matplotlib.colormaps["plasma"](0.82 * min(abs(value) / highest, 1.0))
+
+
+def count(axis: Axis) -> None:
+    """Give an axis that counts whole numbers whole numbers alone."""
+    axis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
+
+
+def save(drawn: Figure, path: Path | str | None) -> Figure:
+    """Write a figure as PNG where a path is given, and return it."""
+    if path is not None:
+        drawn.savefig(path)
+    return drawn
