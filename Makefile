@@ -44,5 +44,5 @@ paper:
 	$(run) python3 -m benchmarks.paper
 
 chart:
-	$(run) python3 benchmarks/errors.py
-	$(run) python3 benchmarks/chart.py
+	$(run) python3 -m benchmarks.errors
+	$(run) python3 -m benchmarks.chart

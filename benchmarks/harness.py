@@ -63,6 +63,20 @@ def run(scenes: Mapping[str, Scene], args: argparse.Namespace, limit: float, mod
     return sweep(scenes, args.out, args.jobs, limit, model)
 
 
+def main(
+    description: str | None,
+    compute: Callable[[argparse.Namespace], None],
+    draw: Callable[[Path], Path],
+    given: Sequence[str] | None = None,
+) -> int:
+    """Run the command of a study: compute and keep the numbers, unless ``--draw`` is given, then draw the page."""
+    args = parser(description).parse_args(given)
+    if not args.draw:
+        compute(args)
+    print(draw(args.docs))
+    return 0
+
+
 # -- numbers -------------------------------------------------------------------------------------------------
 @dataclass(frozen=True)
 class Made:
