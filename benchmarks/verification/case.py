@@ -58,6 +58,7 @@ class Curves:
         known: abscissae and ordinates by name.
         computed: likewise.
         logarithmic: whether both axes are.
+        limits: of the abscissa; None for all there is.
     """
 
     x: str
@@ -65,6 +66,7 @@ class Curves:
     known: Lines
     computed: Lines
     logarithmic: bool = False
+    limits: tuple[float, float] | None = None
 
     def draw(self, figure: Figure) -> None:
         """Draw into an empty figure."""
@@ -76,7 +78,7 @@ class Curves:
         for k, (name, (x, y)) in enumerate(self.computed.items()):
             ax.plot(x, y, "osv^d"[k % 5], color=f"C{k}", ms=4, mfc="none", label=f"{name}, computed")
         scale = "log" if self.logarithmic else "linear"
-        ax.set(xlabel=self.x, ylabel=self.y, xscale=scale, yscale=scale)
+        ax.set(xlabel=self.x, ylabel=self.y, xscale=scale, yscale=scale, xlim=self.limits)
         ax.legend(fontsize="small")
 
 

@@ -150,7 +150,7 @@ def partial_slip(small: bool) -> Outcome:
     along, unit = np.linspace(-1.2, 1.2, 961), MU_F * 2 * FORCE / (np.pi * HALF_WIDTH)
     known = {f"Cattaneo, Q / μP = {s.part:.2f}": (along, shear(along * HALF_WIDTH, s.part) / unit) for s in states}
     found = {f"Q / μP = {s.part:.2f}": (s.x / HALF_WIDTH, s.t / unit) for s in states}
-    return Outcome(tuple(rows), Curves("x / a (–)", "t / (μ p_0) (–)", known, found))
+    return Outcome(tuple(rows), Curves("x / a (–)", "t / (μ p_0) (–)", known, found, limits=(-1.2, 1.2)))
 
 
 # -- incline -------------------------------------------------------------------------------------------
