@@ -8,6 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
+from fingerpad.io.style import CATEGORIES, MARKERS
+
 _FEW = 40  # known points that are drawn one by one
 Lines = Mapping[str, tuple[ArrayLike, ArrayLike]]
 
@@ -76,10 +78,10 @@ class Curves:
             line = ("-", "--", ":", "-.")[k % 4] if np.size(x) > 2 else "none"
             ax.plot(x, y, ls=line, marker=marker, color="black", lw=0.8, label=name)
         for k, (name, (x, y)) in enumerate(self.computed.items()):
-            ax.plot(x, y, "osv^d"[k % 5], color=f"C{k}", ms=4, mfc="none", label=f"{name}, computed")
+            ax.plot(x, y, MARKERS[k % 7], color=CATEGORIES[k % 7], ms=4, mfc="none", label=f"{name}, computed")
         scale = "log" if self.logarithmic else "linear"
         ax.set(xlabel=self.x, ylabel=self.y, xscale=scale, yscale=scale, xlim=self.limits)
-        ax.legend(fontsize="small")
+        figure.legend(fontsize="small", loc="outside right upper")
 
 
 @dataclass(frozen=True)
