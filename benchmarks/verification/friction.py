@@ -172,15 +172,13 @@ def incline(small: bool) -> Outcome:
     return Outcome(tuple(rows))
 
 
+_COULOMB = "Coulomb's law: f_T is mu_0 times the contact force, wherever the plane is"
 _CATTANEO = (
     "Cattaneo 1938, Mindlin 1949, in Johnson, Contact Mechanics, 1985, sec. 7.2(a), doi 10.1017/CBO9781139171731"
 )
+_NAFEMS = "closed form of NAFEMS CGS-4 (R0081, 2001), F / G = (tan alpha + mu) / (1 - mu tan alpha), tan alpha = 0.1"
 CASES = (
-    Case("Full slip", "Coulomb's law: f_T is mu_0 times the contact force, wherever the plane is", full_slip),
+    Case("Full slip", _COULOMB, full_slip),
     Case("Partial slip", _CATTANEO, partial_slip),
-    Case(
-        "Incline",
-        "closed form of NAFEMS CGS-4 (R0081, 2001), F / G = (tan alpha + mu) / (1 - mu tan alpha), tan alpha = 0.1",
-        incline,
-    ),
+    Case("Incline", _NAFEMS, incline),
 )
