@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from benchmarks.harness import DOCS, Made, keep, kept
 from benchmarks.paper import __main__ as command
 from benchmarks.paper import friction, micro, page, scenes, section, sed
-from benchmarks.paper.statement import HOLDS, IN_PART, NOT, Statement, verdict
+from benchmarks.paper.statement import HOLDS, IN_PART, NOT, Statement, statement
 from benchmarks.runs import Run
 from benchmarks.traces import FORCES, VOLTAGES
 from fingerpad.io import style
@@ -174,7 +174,8 @@ def test_pictures_have_units(grid):
 
 
 def test_verdicts():
-    assert [verdict(True), verdict(False, True), verdict(False)] == [HOLDS, IN_PART, NOT]
+    found = [statement("wavy", "", {}, *given) for given in ((True,), (False, True), (False,))]
+    assert [s.verdict for s in found] == [HOLDS, IN_PART, NOT]
 
 
 def test_threshold_statements():
@@ -235,8 +236,7 @@ def test_run_is_read(tmp_path):
         "state": ["", "", "", ""],
     }
     receptors = {"step": [1, 1, 2, 2], "ridge": [0, 1, 0, 1], "merkel_sed": [1.0, 2.0, 3.0, 4.0]}
-    tables = {"steps": steps, "ridges": ridges, "receptors": receptors}
-    leave(tmp_path, scene, tables, normal_step=2, slip_step=4)
+    leave(tmp_path, scene, {"steps": steps, "ridges": ridges, "receptors": receptors}, normal_step=2, slip_step=4)
     run = Run(scene, tmp_path)
     assert (run.normal, run.slip) == (1, 3)
     assert [list(found) for found in run.on_ridges(1, "d_eq")] == [[0, 1], [2e-6, 2.5e-6]]
@@ -258,6 +258,28 @@ def test_missing_runs_are_named(tmp_path, capsys):
     keep("paper", numbers, MADE, tmp_path)
     assert "**Not run yet:** Fig. 2, Figs. 6 to 8" in page.draw(tmp_path).read_text(encoding="utf-8")
     assert "missing: Fig. 2, run" in capsys.readouterr().out
+
+
+def test_grid_of_runs_is_collected(monkeypatch, tmp_path):
+    """Friction and lengths of all runs, and the waves of the path; runs without their fields are named."""
+
+    class Fields(SimpleNamespace):
+        def arrays(self, name):
+            raise FileNotFoundError(name)
+
+        receptors = property(lambda self: self.arrays("receptors"))
+
+    def run(scene, out):
+        found = state(scene.f_ext, scene.voltage, lost=0.03)
+        return Fields(scene=scene, **vars(found), on_ridges=lambda row, name: ([0], None), loads=["slide"] * 3)
+
+    monkeypatch.setattr(command, "Run", run)
+    numbers = command.collect(tmp_path, 10e-6)
+    assert np.shape(numbers["grid"]["slip_f_t"]) == (len(FORCES), len(VOLTAGES))
+    assert {s["figure"] for s in numbers["statements"]} == {"4, Eq. 14", "5, Eq. 15", "6", "7", "8"}
+    wavy = next(s for s in numbers["statements"] if "wavy" in s["paper"])
+    assert wavy["numbers"] == {f"rises_{u:g}": 0.0 for u in VOLTAGES}
+    assert numbers["missing"] == ["Fig. 2", "Fig. 9A", "Fig. 9B", "section 5"]
 
 
 # -- scenes, page - ------------------------------------------------------------------------------

@@ -4,9 +4,11 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
+_FEW = 40  # known points that are drawn one by one
 Lines = Mapping[str, tuple[ArrayLike, ArrayLike]]
 
 
@@ -48,7 +50,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Curves:
-    """The picture of a case: known answers as lines, computed numbers as markers.
+    """The picture of a case: known answers in black, computed numbers as coloured markers.
 
     Attributes:
         x: label of the abscissa, with its unit.
@@ -68,7 +70,9 @@ class Curves:
         """Draw into an empty figure."""
         ax = figure.subplots()
         for k, (name, (x, y)) in enumerate(self.known.items()):
-            ax.plot(x, y, ("-", "--", ":", "-.")[k % 4], color="black", lw=0.8, label=name)
+            marker = "+" if np.size(x) < _FEW else ""
+            line = ("-", "--", ":", "-.")[k % 4] if np.size(x) > 2 else "none"
+            ax.plot(x, y, ls=line, marker=marker, color="black", lw=0.8, label=name)
         for k, (name, (x, y)) in enumerate(self.computed.items()):
             ax.plot(x, y, "osv^d"[k % 5], color=f"C{k}", ms=4, mfc="none", label=f"{name}, computed")
         scale = "log" if self.logarithmic else "linear"
