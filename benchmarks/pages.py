@@ -16,6 +16,7 @@ PAGES = {
     "accuracy": "benchmarks.accuracy",
     "chart": "benchmarks.chart",
     "errors": "benchmarks.errors",
+    "hero": "benchmarks.hero",
     "models": "benchmarks.models",
     "paper": "benchmarks.paper.page",
     "peers": "benchmarks.peers.page",
