@@ -10,7 +10,6 @@ import pytest
 import fingerpad as fp
 from fingerpad import cli
 from fingerpad.scene import from_data
-from tests.runs import SMALL_FINGER
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -19,7 +18,7 @@ COMMANDS = [line.split("#")[0] for line in re.findall(r"^    (?:mpirun .*)?(fing
 SMALL = {
     "f_ext": 1.0,
     "voltage": 60.0,
-    "geometry": SMALL_FINGER,
+    "geometry": {"ridge_count": 9},
     "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
     "output": {"receptors": False, "errors": False},
 }
