@@ -241,7 +241,7 @@ class Body:
     def _present(self, record: StepRecord | None) -> ContactState:
         path, solver = self._made.continuation, self._made.solver
         found = contact_state(
-            path, self._made.observer.ridge_loads(path.surface_state), self._made.surface.ridge_numbers, self._d_eq.copy(),
+            path, self._made.observer.ridge_loads(path.surface_state), self._made.surface.ridge_numbers, self._d_eq,
             load=self._load, load_number=self._loads, record=record, skin=self._points.gather(path.surface_state),
         )  # fmt: skip
         least = force_error(solver.layout.global_size, max(_TOLERANCE, solver.floor), solver.force_scale)
