@@ -59,7 +59,8 @@ def _picture(docs: Path, name: str, numbers: dict[str, Any], measured: friction.
         return picture(path, (9, 7), lambda figure: section.paint(figure, numbers["section"]), _CAPTIONS[name])
     if name == "energy" and "sites" in numbers:
         return picture(path, (8, 5), lambda figure: sed.paint(figure, numbers["sites"]), _CAPTIONS[name])
-    return f"![{_CAPTIONS[name]}]({path.name})\n\n*{_CAPTIONS[name]}*" if path.exists() else ""
+    caption = f"{_CAPTIONS[name]} Drawn with the runs, whose data are not kept."
+    return f"![{caption}]({path.name})\n\n*{caption}*" if path.exists() else ""
 
 
 def draw(docs: Path, measured: friction.Measured | None = None) -> Path:

@@ -27,8 +27,10 @@ def refuse_contradictions(scene: "Scene") -> None:
 
 
 def _refuse_accuracy(scene: "Scene") -> None:
-    """Refuse an accuracy of sites that are not there."""
-    if scene.accuracy is not None and scene.accuracy.sed is not None and not scene.output.receptors:
+    """Refuse an accuracy of receptor sites that are not there."""
+    if scene.accuracy is None:
+        return
+    if scene.accuracy.sed is not None and not scene.output.receptors:
         raise ValueError(
             f"accuracy.sed is {show(scene.accuracy.sed)} and output.receptors is false, without which there are no "
             "sites; leave out one of the two"
