@@ -3,6 +3,7 @@
 # make lint   style, layout and types: ruff and mypy, half a minute
 # make test-order  all tests with other rounding: cells numbered the other way round, other kernels of OpenBLAS
 # make fuzz   10 000 scenes and command lines, each ready to run or refused in one sentence; some minutes
+# make pages  every generated page and picture of docs/ from the numbers kept there; seconds, no run
 # make verify every number with a known answer, some minutes; docs/verification.md
 # make paper  every figure and table of the paper, beside what it says; docs/paper.md, an hour or two
 # make chart  error over work, one numerical setting after the other; docs/chart.md, hours
@@ -12,7 +13,7 @@
 
 run := environment/run
 
-.PHONY: help demo lint test test-order fuzz verify paper chart
+.PHONY: help demo lint test test-order fuzz pages verify paper chart
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -33,12 +34,15 @@ test-order:
 fuzz:
 	$(run) python3 -m tests.fuzz --count 10000
 
+pages:
+	$(run) python3 -m benchmarks.pages
+
 verify:
-	$(run) python3 benchmarks/verify.py
+	$(run) python3 -m benchmarks.verification
 
 paper:
-	$(run) python3 benchmarks/reproduce.py
+	$(run) python3 -m benchmarks.paper
 
 chart:
-	$(run) python3 benchmarks/errors.py
-	$(run) python3 benchmarks/chart.py
+	$(run) python3 -m benchmarks.errors
+	$(run) python3 -m benchmarks.chart

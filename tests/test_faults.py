@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad.runs import full
+from fingerpad.runs import attempt
 from fingerpad.scene import from_data
 from geometry.bodies import block
 from geometry.mesh import load
@@ -29,15 +29,16 @@ GOOD = 2  # steps accepted before a fault
 @pytest.fixture(autouse=True)
 def one_start(monkeypatch):
     """A fault is one of its mesh: no run starts again with smaller elements."""
-    monkeypatch.setattr(full, "FINEST", 1.0)
+    monkeypatch.setattr(attempt, "FINEST", 1.0)
 
 
 @pytest.fixture
 def scene():
-    """A finger pressed in two steps and charged in four."""
+    """A finger of nine ridges pressed in two steps and charged in four; without errors, that no fault is put into."""
 
     def make_scene(**numerics):
-        return from_data({"mesh": MESH, "history": HISTORY, "numerics": numerics})
+        parts = {"geometry": {"ridge_count": 9}, "output": {"errors": False}}
+        return from_data({"mesh": MESH, "history": HISTORY, "numerics": numerics, **parts})
 
     return make_scene
 

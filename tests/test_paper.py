@@ -1,20 +1,23 @@
-"""The paper's figures and statements from runs that are made up, so that their numbers are known."""
+"""The paper's statements and pictures from runs that are made up, so that their numbers are known."""
 
 import csv
 import json
+from dataclasses import asdict
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from benchmarks import reproduce
-from benchmarks.paper import friction, micro, page, scenes, section, sed, style, tables
-from benchmarks.paper.statement import HOLDS, IN_PART, NOT, Statement, verdict
+from benchmarks.harness import DOCS, Made, keep, kept
+from benchmarks.paper import __main__ as command
+from benchmarks.paper import friction, micro, page, scenes, section, sed
+from benchmarks.paper.statement import HOLDS, IN_PART, NOT, Statement, statement
 from benchmarks.runs import Run
 from benchmarks.traces import FORCES, VOLTAGES
+from fingerpad.io import style
 from fingerpad.runs.batch import key
-from fingerpad.scene import Scene, from_data
+from fingerpad.scene import Scene
 from geometry import tags
 
 MU_0 = 0.25
@@ -33,6 +36,10 @@ def state(f_ext, voltage, lost=0.0, ridges=10.0):
     return SimpleNamespace(steps=steps, normal=0, slip=2)
 
 
+RISES = {"0": 2.0, "200": 1.0}
+MADE = Made("0.1.0", "abc1234", "2026-11-21")
+
+
 @pytest.fixture
 def grid():
     """Runs that lose contact in proportion to their mean shear stress."""
@@ -42,7 +49,7 @@ def grid():
             plain = state(f, u)
             x = plain.steps["f_t"][-1] / plain.steps["contact_length"][-1]
             found[f, u] = state(f, u, lost=2e-5 * x)
-    return found
+    return friction.gather(found)
 
 
 def by(statements, words):
@@ -51,32 +58,37 @@ def by(statements, words):
 
 def test_friction_statements(grid):
     """The largest rise of F_T is that at the smallest force, where the attraction is eight times the force."""
-    found = by(friction.statements(grid), "more than 100 %")
+    found = by(friction.statements(grid, RISES), "more than 100 %")
     assert found.numbers["largest"] == pytest.approx(1 + 40 / 5)
     assert found.numbers["least"] == pytest.approx(1 + 40 / 150)
     assert found.verdict == IN_PART
-    assert by(friction.statements(grid), "0.55").numbers["mu_app"] == pytest.approx(MU_0 * 115 / 75)
-    assert by(friction.statements(grid), "below 50 V").verdict == IN_PART
-    assert by(friction.statements(grid), "ridges fewer").numbers == {"least": 1, "largest": 1}
+    assert by(friction.statements(grid, RISES), "0.55").numbers["mu_app"] == pytest.approx(MU_0 * 115 / 75)
+    assert by(friction.statements(grid, RISES), "below 50 V").verdict == IN_PART
+    assert by(friction.statements(grid, RISES), "ridges fewer").numbers == {"least": 1, "largest": 1}
 
 
 def test_reduction_is_fitted(grid):
     """Nearly linear, since the stress counts with the length that is left."""
     found = friction.reduction(grid)
-    assert len(found.stress) == 40
+    assert found.stress.size == 40
     assert found.slope == pytest.approx(2e-5, rel=0.1)
     assert found.r_squared > 0.99
 
 
 def test_markers_of_the_reductions_are_of_their_voltage(grid):
-    """Fig. 8B: a colour a voltage, over f_T / L_R of its runs in kPa."""
+    """A colour a voltage, over f_T / L_R of its runs in kPa."""
     figure = Figure()
-    friction.figure_8(figure, grid)
+    friction.paint(figure, grid)
     markers = {line.get_color(): line for line in figure.axes[1].lines if line.get_linestyle() == "None"}
-    for voltage in VOLTAGES:
-        runs = [grid[f, voltage].steps for f in FORCES]
-        stress = [1e-3 * steps["f_t"][-1] / steps["contact_length"][-1] for steps in runs]
-        assert sorted(markers[style.VOLTAGE[voltage][0]].get_xdata()) == pytest.approx(sorted(stress), rel=1e-12)
+    for k, voltage in enumerate(VOLTAGES):
+        stress = 1e-3 * grid["slip_f_t"][:, k] / grid["slip_contact_length"][:, k]
+        assert markers[style.voltage(voltage)].get_xdata() == pytest.approx(stress, rel=1e-12)
+
+
+def test_waves_are_counted_by_voltage(grid):
+    found = by(friction.statements(grid, RISES), "wavy")
+    assert (found.numbers, found.verdict) == ({"rises_0": 2.0, "rises_200": 1.0}, HOLDS)
+    assert by(friction.statements(grid, {"0": 0.0, "200": 1.0}), "wavy").verdict == IN_PART
 
 
 def charged(run_x, tag, before, after):
@@ -129,19 +141,41 @@ def test_section_statements():
     assert by(section.statements(run), "1.7 to 3").numbers["share"] == pytest.approx(12 / 18)
 
 
-def test_figures_are_drawn(grid):
-    for paint in (friction.figure_6, friction.figure_7, friction.figure_8):
+SITES = {"ridge": [-2, -1, 0], "voltage": [100.0, 200.0, 400.0], "friction": [80.0, 202.0, 400.0]}
+
+
+def test_claim_is_judged_site_by_site():
+    found = sed.claim_statement(SITES)
+    assert found.numbers == pytest.approx({"median": 0.01, "largest": -0.2})
+    assert "at ridge -2; 2 of 3 sites" in found.ours
+    assert found.verdict == IN_PART
+
+
+def test_section_is_gathered_in_contact():
+    """Points in contact alone, from left to right, over f_ext / L_R."""
+    run = sheared()
+    arrays = run.arrays("surface")
+    extra = {f"{state}_{name}": arrays["normal_x"] for state in section.STATES for name in ("x", "p", "p_el", "t")}
+    run.arrays = lambda _: extra | arrays
+    found = section.gather(run)["normal"]
+    assert found["x"] == pytest.approx(np.linspace(-0.75, 0.75, 7))
+    assert found["p"] == pytest.approx([0.2] * 7)
+
+
+def test_pictures_have_units(grid):
+    run = sheared()
+    arrays = run.arrays("surface")
+    shape = {f"{state}_{name}": arrays["normal_x"] for state in section.STATES for name in ("x", "p", "p_el", "t")}
+    run.arrays = lambda _: shape
+    for paint, numbers in ((friction.paint, grid), (sed.paint, SITES), (section.paint, section.gather(run))):
         figure = Figure()
-        paint(figure, grid)
-        assert all(ax.has_data() and ax.get_xlabel() for ax in figure.axes)
-    for paint in (micro.figure_4, micro.figure_5):
-        figure = Figure()
-        paint(figure)
-        assert all(ax.has_data() and ax.get_xlabel() for ax in figure.axes)
+        paint(figure, numbers)
+        assert all(ax.has_data() and "(" in ax.get_ylabel() for ax in figure.axes)
 
 
 def test_verdicts():
-    assert [verdict(True), verdict(False, True), verdict(False)] == [HOLDS, IN_PART, NOT]
+    found = [statement("wavy", "", {}, *given) for given in ((True,), (False, True), (False,))]
+    assert [s.verdict for s in found] == [HOLDS, IN_PART, NOT]
 
 
 def test_threshold_statements():
@@ -159,7 +193,7 @@ def test_measured_friction_is_read_and_drawn(tmp_path, grid):
     assert measured.label == "somebody"
     assert list(measured.friction) == [0.14, 0.31]
     figure = Figure()
-    friction.figure_6(figure, grid, measured)
+    friction.paint(figure, grid, measured)
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     assert "somebody, 200 V" in labels
 
@@ -208,7 +242,6 @@ def test_run_is_read(tmp_path):
     assert [list(found) for found in run.on_ridges(1, "d_eq")] == [[0, 1], [2e-6, 2.5e-6]]
     assert run.receptors["merkel_sed"].tolist() == [[1.0, 2.0], [3.0, 4.0]]
     assert run.receptors["ridge"].tolist() == [0, 1]
-    assert sed.number(run, 0) == "M28"
 
 
 @pytest.mark.parametrize("summary", [{"failure": "stuck"}, {"interrupted": True}])
@@ -218,16 +251,38 @@ def test_unfinished_run_is_refused(tmp_path, summary):
         Run(Scene(), tmp_path)
 
 
-def test_missing_runs_are_named(tmp_path):
-    """Without a run the microscale is drawn all the same, and the page says what is missing."""
-    book = reproduce.make(tmp_path / "runs", tmp_path, 10e-6, None)
-    text = (tmp_path / "paper.md").read_text(encoding="utf-8")
-    assert [name for name, _ in book.figures] == ["fig4.png", "fig5.png"]
-    assert "**Not run yet:** fig2" in text
-    assert all((tmp_path / "paper" / name).exists() for name, _ in book.figures)
+def test_missing_runs_are_named(tmp_path, capsys):
+    """Without a run the statements on the microscale are made all the same, and the page lists what is missing."""
+    numbers = command.collect(tmp_path / "runs", 10e-6)
+    assert [s["figure"] for s in numbers["statements"]] == ["4, Eq. 14", "5, Eq. 15"]
+    keep("paper", numbers, MADE, tmp_path)
+    assert "**Not run yet:** Fig. 2, Figs. 6 to 8" in page.draw(tmp_path).read_text(encoding="utf-8")
+    assert "missing: Fig. 2, run" in capsys.readouterr().out
 
 
-# -- scenes, tables, page ------------------------------------------------------------------------------
+def test_grid_of_runs_is_collected(monkeypatch, tmp_path):
+    """Friction and lengths of all runs, and the waves of the path; runs without their fields are named."""
+
+    class Fields(SimpleNamespace):
+        def arrays(self, name):
+            raise FileNotFoundError(name)
+
+        receptors = property(lambda self: self.arrays("receptors"))
+
+    def run(scene, out):
+        found = state(scene.f_ext, scene.voltage, lost=0.03)
+        return Fields(scene=scene, **vars(found), on_ridges=lambda row, name: ([0], None), loads=["slide"] * 3)
+
+    monkeypatch.setattr(command, "Run", run)
+    numbers = command.collect(tmp_path, 10e-6)
+    assert np.shape(numbers["grid"]["slip_f_t"]) == (len(FORCES), len(VOLTAGES))
+    assert {s["figure"] for s in numbers["statements"]} == {"4, Eq. 14", "5, Eq. 15", "6", "7", "8"}
+    wavy = next(s for s in numbers["statements"] if "wavy" in s["paper"])
+    assert wavy["numbers"] == {f"rises_{u:g}": 0.0 for u in VOLTAGES}
+    assert numbers["missing"] == ["Fig. 2", "Fig. 9A", "Fig. 9B", "section 5"]
+
+
+# -- scenes, page - ------------------------------------------------------------------------------
 def test_sine_is_a_valid_scene():
     """From 0 V over the peak and back to 0 V, each reached before the finger slides on to full slip, ever farther."""
     loads = scenes.sine(10e-6).loads()[1:]
@@ -237,42 +292,46 @@ def test_sine_is_a_valid_scene():
     assert [load.until_full_slip for load in loads] == [True] + [False, True] * 12
 
 
-def test_every_parameter_has_a_source():
-    """What is called an assumption in its docstring is called one in the table."""
-    scene = from_data({})
-    for name in ("geometry", "materials", "electric", "roughness"):
-        for key_, _, source, told in tables.rows(getattr(scene, name), name):
-            assert told
-            if "*assumption*" in told.lower() and key_ not in ("roughness.beta", "materials.exponent"):
-                assert source == "*assumption*", key_
-    keys = {key_ for name in ("geometry", "roughness") for key_, *_ in tables.rows(getattr(scene, name), name)}
-    assert keys >= tables.ASSUMED
+def numbers_with(*statements, size=10e-6):
+    return {"contact_size": size, "missing": [], "statements": [asdict(s) for s in statements]}
 
 
 def test_page(tmp_path):
-    (tmp_path / "paper").mkdir()
     good = Statement("6", "it rises", "by 3 %", {"rise": 0.03}, HOLDS, "never shown")
     bad = Statement("7", "it falls", "by 1 %", {"fall": 0.01}, NOT, "it is flat")
-    page.write(tmp_path, 10e-6, [good, bad], [("a.png", "A")], "tables", "")
-    text = (tmp_path / "paper.md").read_text(encoding="utf-8")
-    assert "1 of 2 statements" in text
+    keep("paper", numbers_with(good, bad), MADE, tmp_path)
+    text = page.draw(tmp_path).read_text(encoding="utf-8")
+    assert "Of 2 statements of the paper, 1 hold" in text
     assert "**does not hold**: it is flat" in text
     assert "never shown" not in text
     assert "| equivalent air gap | 1.5e-6 | 2.5e-6 | m | Guo" in text
-    data = json.loads((tmp_path / "paper" / "paper.json").read_text(encoding="utf-8"))
-    assert data["statements"][1]["numbers"] == {"fall": 0.01}
+    assert "version 0.1.0 before 2026-11-21" in text
+    assert kept("paper", tmp_path).numbers["statements"][1]["numbers"] == {"fall": 0.01}
 
 
-def test_number_that_moved_is_named(tmp_path):
+def test_page_in_git_is_of_its_numbers(tmp_path):
+    """Drawn anew from the kept numbers, text and statements on the grid are those of the page."""
+    (tmp_path / "paper.json").write_bytes((DOCS / "paper.json").read_bytes())
+    numbers = kept("paper", tmp_path).numbers
+    grid = {name: np.array(values) for name, values in numbers["grid"].items()}
+    rises = next(s["numbers"] for s in numbers["statements"] if "wavy" in s["paper"])
+    again = friction.statements(grid, {name.removeprefix("rises_"): n for name, n in rises.items()})
+    assert [asdict(s) for s in again] == [s for s in numbers["statements"] if s["figure"] in ("6", "7", "8")]
+    assert page.draw(tmp_path).read_text(encoding="utf-8").count("| **") == len(numbers["statements"])
+
+
+def test_number_that_moved_is_named():
     """At the contact size of the page; a statement that is new has not moved."""
-    (tmp_path / "paper").mkdir()
 
-    def said(fall):
-        return [Statement("8", "it falls", "so", {"fall": fall, "rise": 0.0}, HOLDS)]
+    def said(fall, size=1e-5):
+        return numbers_with(Statement("8", "it falls", "so", {"fall": fall, "rise": 0.0}, HOLDS), size=size)
 
-    assert page.moved(tmp_path, 1e-5, said(0.1)) == []
-    page.write(tmp_path, 1e-5, said(0.1), [], "", "")
-    assert page.moved(tmp_path, 1e-5, said(0.10005)) == []
-    assert page.moved(tmp_path, 1e-5, said(0.102)) == ["it falls: fall was 0.1, is 0.102"]
-    assert page.moved(tmp_path, 5e-6, said(0.102)) == []
-    assert page.moved(tmp_path, 1e-5, [Statement("9", "new", "so", {"fall": 3.0}, HOLDS)]) == []
+    assert command.changes(said(0.1), said(0.10005)) == []
+    assert command.changes(said(0.1), said(0.102)) == ["/it falls/fall: was 0.1, is 0.102"]
+    assert command.changes(said(0.1), said(0.102, size=5e-6)) == []
+    assert command.changes(said(0.1), numbers_with(Statement("9", "new", "so", {"fall": 3.0}, HOLDS))) == []
+
+
+def test_paper_numbers_its_sites_along_the_arc():
+    """Ridge k is the paper's M(k + 28): the centre of the ridges, counted from one."""
+    assert scenes.CENTRE == (Scene().geometry.ridge_count + 1) // 2

@@ -1,47 +1,40 @@
-"""The stability map: its plan, its cache, single runs of a coarse strip, and what is drawn and written of them."""
+"""The stability map: its plan, its kept runs, single runs of a coarse strip, and the page drawn from their numbers."""
 
 import json
 from dataclasses import asdict, replace
-from functools import partial
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from matplotlib.image import imread
-from mpi4py import MPI
 
-from benchmarks import stability_map
-from benchmarks.stability import cache as caching
-from benchmarks.stability import pictures, plan, results, table
-from benchmarks.stability.cache import Cache, run_all
+from benchmarks.harness import DOCS, kept
+from benchmarks.stability import page, plan, solve
+from benchmarks.stability import runs as keeping
 from benchmarks.stability.case import Case, Outcome
 from benchmarks.stability.loop import loop
-from benchmarks.stability.solve import make_problem, make_solver, mesh_size
-from geometry import strip
-from geometry.mesh import load
-from geometry.parameters import Fingertip
-from variational.roughness.bam import BearingArea
+from benchmarks.stability.runs import Runs, run_all
 from variational.solvers.equations import Control
 
 # A press of half an newton a metre on facets of 60 um: two seconds a run.
 TINY = Case(contact_size=60e-6, force=0.5, voltage=50.0, element="P1", slide=0.0)
-HOPELESS = replace(TINY, parameter=1.5e20)
-CLOSURE = BearingArea(h_0=0.514e-6, p_floor=1.0)
+IRRECOVERABLE = replace(TINY, parameter=1.5e20)
 
 
 @pytest.fixture(scope="module")
-def chart() -> plan.Chart:
+def panel() -> plan.Panel:
     """Two voltages and two contact sizes."""
     x = plan.Axis("voltage", "voltage (V)", (0.0, 50.0))
     y = plan.Axis("contact_size", "contact size (µm)", (60e-6, 80e-6), 1e-6)
-    return plan.Chart("tiny", "Tiny", (plan.Panel("penalty", TINY, x, y),))
+    return plan.Panel("penalty", TINY, x, y)
 
 
 @pytest.fixture(scope="module")
-def tiny(chart, tmp_path_factory) -> Cache:
-    """The chart's runs, and one that fails."""
-    cache = Cache(tmp_path_factory.mktemp("stability") / "runs.jsonl")
-    assert run_all([*chart.panels[0].cases(), HOPELESS], cache, jobs=2, limit=300, hours=1) == 0
-    return cache
+def tiny(panel, tmp_path_factory) -> Runs:
+    """The panel's runs, and one that fails."""
+    runs = Runs(tmp_path_factory.mktemp("stability") / "runs.jsonl")
+    assert run_all([*panel.cases(), IRRECOVERABLE], runs, jobs=2, limit=300, hours=1) == 0
+    return runs
 
 
 def outcome(**values) -> Outcome:
@@ -100,7 +93,7 @@ def test_reference_keeps_the_physics():
         element="P1",
         contact_size=40e-6,
         step_scale=4.0,
-        creep=False,
+        pseudo_transient=False,
         detour=400.0,
         voltage=300.0,
         nu=0.3,
@@ -110,15 +103,17 @@ def test_reference_keeps_the_physics():
 
 
 @pytest.mark.parametrize("field", [f for f in asdict(Case()) if isinstance(getattr(Case(), f), float)])
-def test_key_tells_cases_apart(field):
-    assert replace(Case(), **{field: 0.123}).key != Case().key == Case().key
+def test_case_is_kept_by_what_is_changed(field):
+    case = replace(Case(), **{field: 0.123})
+    assert case.changed == {field: 0.123}
+    assert Case(**case.changed) == case != Case()
 
 
-# -- runs and their cache ------------------------------------------------------------------------------
-def test_tiny_map_converges(tiny, chart):
+# -- runs that are kept ------------------------------------------------------------------------------
+def test_tiny_map_converges(tiny, panel):
     """Pressed by half a newton a metre the ridge bears it, whatever the voltage. Tolerance: the solve's."""
-    for case in chart.panels[0].cases():
-        found = tiny.get(case)
+    for case in panel.cases():
+        found = tiny.outcomes[case]
         assert found.status == "converged"
         assert found.f_ext == pytest.approx(0.5, rel=1e-7)
         assert found.newton >= found.steps > 1
@@ -128,37 +123,34 @@ def test_tiny_map_converges(tiny, chart):
 def test_longer_steps_are_fewer(tiny, tmp_path):
     """Twice as long, of the press alone: at most half as many and one, the touch counted apart."""
     usual, longer = replace(TINY, voltage=0.0), replace(TINY, voltage=0.0, step_scale=2.0)
-    cache = Cache(tmp_path / "runs.jsonl")
-    run_all([longer], cache, jobs=1, limit=300, hours=1)
+    runs = Runs(tmp_path / "runs.jsonl")
+    run_all([longer], runs, jobs=1, limit=300, hours=1)
     touch = 1
-    assert cache.get(longer).steps - touch <= (tiny.get(usual).steps - touch) / 2 + 1
+    assert runs.outcomes[longer].steps - touch <= (tiny.outcomes[usual].steps - touch) / 2 + 1
 
 
 def test_friction_at_full_slip(tmp_path):
     """Without voltage the screen drags with mu_0 times the force. Tolerance: the solve's."""
     case = replace(TINY, voltage=0.0, slide=1e-3)
-    cache = Cache(tmp_path / "runs.jsonl")
-    run_all([case], cache, jobs=1, limit=300, hours=1)
-    assert cache.get(case).full_slip
-    assert cache.get(case).f_t == pytest.approx(0.25 * 0.5, rel=1e-6)
+    runs = Runs(tmp_path / "runs.jsonl")
+    run_all([case], runs, jobs=1, limit=300, hours=1)
+    assert runs.outcomes[case].full_slip
+    assert runs.outcomes[case].f_t == pytest.approx(0.25 * 0.5, rel=1e-6)
 
 
 @pytest.mark.parametrize("sides", ["carried", "free"])
 def test_strip_off_the_screen_follows_the_bone(sides):
     """Lifted and moved sideways without touching, all of it translates alike, lateral faces included."""
-    case = replace(TINY, sides=sides)
-    build = partial(strip.build, Fingertip(), mesh_size(case.contact_size))
-    body = load(MPI.COMM_WORLD, build, strip.LAYERS)
-    problem = make_problem(case, body)
-    solver = make_solver(case, body, problem)
-    solver.control = Control(5e-6, 2e-6)
-    solver.solve()
-    np.testing.assert_allclose(problem.displacement(), [[5e-6, 2e-6]] * problem.V.dofmap.index_map.size_local)
+    body = solve.make(replace(TINY, sides=sides))
+    body.solver.control = Control(5e-6, 2e-6)
+    body.solver.solve()
+    nodes = body.problem.V.dofmap.index_map.size_local
+    np.testing.assert_allclose(body.problem.displacement(), [[5e-6, 2e-6]] * nodes)
 
 
 def test_failure_is_recorded_with_its_reason(tiny):
     """A penalty 1e8 times the default leaves no digits: the run says by which name and in which load it ended."""
-    found = tiny.get(HOPELESS)
+    found = tiny.outcomes[IRRECOVERABLE]
     assert found.status == "failed"
     assert found.reason.startswith("DIVERGED_")
     assert found.reason in found.message
@@ -166,62 +158,63 @@ def test_failure_is_recorded_with_its_reason(tiny):
     assert found.cutbacks >= 0 < found.newton
 
 
-def test_cache_is_reused(tiny, chart, monkeypatch):
+def test_kept_runs_are_not_repeated(tiny, panel, monkeypatch):
     """A map started again, from the file, runs nothing."""
-    again = Cache(tiny.path)
-    monkeypatch.setattr(caching, "solve", lambda case, limit: pytest.fail("a run that was there"))
+    again = Runs(tiny.path)
+    monkeypatch.setattr(keeping, "solve", lambda case, limit: pytest.fail("a run that was there"))
     assert again.outcomes == tiny.outcomes
-    assert run_all([*chart.panels[0].cases(), HOPELESS], again, jobs=2, limit=1, hours=1) == 0
+    assert run_all([*panel.cases(), IRRECOVERABLE], again, jobs=2, limit=1, hours=1) == 0
 
 
 def test_line_that_was_cut_short(tmp_path):
     """What a kill leaves of the line in hand costs that run alone, and the next line is whole."""
-    cache = Cache(tmp_path / "runs.jsonl")
-    cache.add(TINY, outcome(newton=7))
-    with cache.path.open("a") as file:
-        file.write(json.dumps({"key": HOPELESS.key})[:-5])
-    again = Cache(cache.path)
-    assert again.missing([TINY, HOPELESS, HOPELESS]) == [HOPELESS]
-    again.add(HOPELESS, outcome(newton=8))
-    assert [Cache(cache.path).get(case).newton for case in (TINY, HOPELESS)] == [7, 8]
+    runs = Runs(tmp_path / "runs.jsonl")
+    runs.add(TINY, outcome(newton=7))
+    with runs.path.open("a") as file:
+        file.write(json.dumps({"case": IRRECOVERABLE.changed})[:-5])
+    again = Runs(runs.path)
+    assert again.missing([TINY, IRRECOVERABLE, IRRECOVERABLE]) == [IRRECOVERABLE]
+    again.add(IRRECOVERABLE, outcome(newton=8))
+    assert [Runs(runs.path).outcomes[case].newton for case in (TINY, IRRECOVERABLE)] == [7, 8]
 
 
 def test_time_limit():
     """A run that takes too long is stopped and reported so: steps of a billionth never end on any machine."""
-    found = caching.solve(replace(TINY, step_scale=1e-9), limit=1)
+    found = keeping.solve(replace(TINY, step_scale=1e-9), limit=1)
     assert (found.status, found.reason, found.seconds) == ("failed", "TIME_LIMIT", 1)
 
 
 def test_crash_is_an_outcome():
     """Whatever ends the process, here a case that it refuses, is recorded."""
-    found = caching.solve(replace(TINY, element="P9"), limit=300)
+    found = keeping.solve(replace(TINY, element="P9"), limit=300)
     assert (found.status, found.reason) == ("failed", "CRASH_1")
     assert "P9" in found.message
 
 
 def test_no_run_is_started_late(tmp_path):
-    assert run_all([TINY, HOPELESS], Cache(tmp_path / "runs.jsonl"), jobs=2, limit=1, hours=0) == 2
+    assert run_all([TINY, IRRECOVERABLE], Runs(tmp_path / "runs.jsonl"), jobs=2, limit=1, hours=0) == 2
 
 
-# -- what is read off them -----------------------------------------------------------------------------
+# -- their numbers -------------------------------------------------------------------------------------
 @pytest.fixture
-def compared(tmp_path) -> Cache:
+def compared(tmp_path) -> Runs:
     """A case 2 % above its reference in friction, 10 % below in length."""
-    cache = Cache(tmp_path / "runs.jsonl")
-    cache.add(TINY, outcome(f_t=1.02, contact_length=90e-6, penetration=1e-7))
-    cache.add(TINY.reference, outcome(f_t=1.0, contact_length=100e-6))
-    return cache
+    runs = Runs(tmp_path / "runs.jsonl")
+    runs.add(TINY, outcome(f_t=1.02, contact_length=90e-6, penetration=1e-7))
+    runs.add(TINY.reference, outcome(f_t=1.0, contact_length=100e-6))
+    return runs
 
 
 def test_errors(compared):
-    assert results.friction_error(TINY, compared) == pytest.approx(0.02)
-    assert results.length_error(TINY, compared) == pytest.approx(-0.1)
-    assert results.penetration(TINY, compared) == 1e-7
+    assert compared.error(TINY, "f_t") == pytest.approx(0.02)
+    (row,) = compared.numbers([TINY, IRRECOVERABLE])["runs"]
+    assert row["error_contact_length"] == pytest.approx(-0.1)
+    assert row["penetration"] == 1e-7
 
 
 def test_nothing_is_compared_with_a_failed_reference(compared):
     compared.add(TINY.reference, Outcome("failed", f_t=1.0))
-    assert results.friction_error(TINY, compared) is None
+    assert compared.error(TINY, "f_t") is None
 
 
 # -- the scalar fixed point ----------------------------------------------------------------------------
@@ -231,46 +224,42 @@ def test_nothing_is_compared_with_a_failed_reference(compared):
 )
 def test_fixed_point(pressure, voltage, diverges):
     """Out of phase it diverges just where the gain exceeds one half; keyed on the contact pressure it never does."""
-    found = loop(CLOSURE, pressure, voltage)
+    found = loop(page.CLOSURE, pressure, voltage)
     assert (found.by_external is None) == diverges == (found.gain > 0.5)
     assert found.by_contact is not None
 
 
-# -- pictures and page ---------------------------------------------------------------------------------
-def test_picture(tiny, chart, tmp_path):
-    """Every cell of the first map has its symbol and iterations, every axis its unit."""
-    figure = pictures.draw(chart, tiny, tmp_path / "tiny.png")
-    assert imread(tmp_path / "tiny.png").std() > 0.05
-    texts = [text.get_text() for text in figure.axes[0].texts]
-    assert texts == [f"●\n{tiny.get(case).newton}" for case in chart.panels[0].cases()]
-    assert {ax.get_xlabel() for ax in figure.axes} == {"voltage (V)"}
-    assert {ax.get_ylabel() for ax in figure.axes} == {"contact size (µm)"}
+# -- picture and page ----------------------------------------------------------------------------------
+def test_map_shows_each_run(tiny, panel):
+    """Every cell has its symbol and iterations, every axis its unit."""
+    ax = Figure().subplots()
+    page._map(ax, panel, rows_of(tiny, panel), "penalty", page.outcome_cell)
+    assert [text.get_text() for text in ax.texts] == [f"●\n{tiny.outcomes[case].newton}" for case in panel.cases()]
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("voltage (V)", "contact size (µm)")
 
 
-def test_page(tiny, chart, tmp_path):
-    """It holds each run of charts and named failures, with the reason of one that failed."""
-    named = plan.Named("irrecoverable", "A penalty too high.", (("1.5e20 Pa/m", HOPELESS),))
-    table.write(tmp_path / "stability.md", [chart], plan.neighbours(), [named], CLOSURE, tiny, left=0)
-    text = (tmp_path / "stability.md").read_text()
-    assert text.count("| ● converged |") == 4
-    assert f"✕ failed: {tiny.get(HOPELESS).reason}" in text
-    assert "stability/tiny.png" in text
+def rows_of(tiny, panel):
+    return {Case(**row["case"]): row for row in tiny.numbers([*panel.cases(), IRRECOVERABLE])["runs"]}
 
 
-def test_tables_are_whole(tiny, chart, tmp_path):
-    """All rows of a table have as many cells as its head."""
-    table.write(tmp_path / "stability.md", [chart], plan.neighbours(), plan.named(), CLOSURE, tiny, left=3)
-    blocks = [b.splitlines() for b in (tmp_path / "stability.md").read_text().split("\n\n") if b.startswith("|")]
-    assert len(blocks) == 3 + len(plan.named())  # the default's, the fixed point's and the chart's
+def test_tables_hold_each_run(tiny, panel):
+    """A run that failed is listed with its reason, and counted; a run that is missing is listed as not run."""
+    named = plan.Named("irrecoverable", "A penalty too high.", (("1.5e20 Pa/m", IRRECOVERABLE), ("default", Case())))
+    rows = rows_of(tiny, panel)
+    text = page.named_table(named, rows)
+    assert f"✕ failed: {tiny.outcomes[IRRECOVERABLE].reason}" in text
+    assert "| default | not run |" in text
+    assert "| Tiny | penalty | 4 | 4 | 0 | 0 | 0 |" in page.counts_table([plan.Chart("tiny", "Tiny", (panel,))], rows)
+
+
+def test_page_is_drawn_from_the_kept_numbers(tmp_path):
+    """Every table is whole, every run of the plan is in the numbers, and the picture is there."""
+    (tmp_path / "stability.json").write_bytes((DOCS / "stability.json").read_bytes())
+    text = page.draw(tmp_path).read_text(encoding="utf-8")
+    assert imread(tmp_path / "stability.png").std() > 0.05
+    blocks = [b.splitlines() for b in text.split("\n\n") if b.startswith("|")]
+    assert len(blocks) == 3 + len(plan.named())  # the default's, the counts' and the fixed point's
     for block in blocks:
         assert len({line.count("|") for line in block}) == 1
-
-
-def test_command_draws_what_is_there(tmp_path, capsys):
-    """Without running anything all pictures and the page come out, and say what is missing."""
-    arguments = ["--draw", "--out", str(tmp_path / "out"), "--docs", str(tmp_path / "docs")]
-    assert stability_map.main(arguments) == 0
-    assert f"{len(plan.cases())} runs are missing" in capsys.readouterr().out
-    for chart in plan.charts():
-        assert (tmp_path / "docs" / "stability" / f"{chart.name}.png").exists()
-    assert "not run" in (tmp_path / "docs" / "stability.md").read_text()
+    shown = {case for chart in plan.charts() for panel in chart.panels for case in panel.cases()}
+    assert shown <= {Case(**row["case"]) for row in kept("stability", tmp_path).numbers["runs"]}

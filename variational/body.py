@@ -81,7 +81,7 @@ class Body:
         coupling_tolerance: float = 1e-6,
         coupling_cap: int = 30,
         by_gap: bool = False,
-        on_accept: Callable[[Target, float, Attempt], None] = lambda target, part, attempt: None,
+        on_accept: Callable[[Target, float, Attempt], bool | None] = lambda target, part, attempt: None,
         touch_depth: float = 5e-6,
         step_scale: float = 1.0,
     ) -> None:

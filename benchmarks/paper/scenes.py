@@ -1,4 +1,4 @@
-"""The runs behind the figures, by name; those of Figs. 6 to 8 are the grid of ``benchmarks/traces.py``."""
+"""The runs behind the statements; those of Figs. 6 to 8 are the grid of ``benchmarks/traces.py``."""
 
 from typing import Any
 
@@ -14,6 +14,7 @@ SECTION = (120.0, 150.0)  # N/m, V of Fig. 2
 TRANSITION = 120.0  # N/m of Fig. 8
 MAP = 75.0  # N/m of Fig. 9
 PEAK = 200.0  # V, amplitude of Fig. 9's sine
+CENTRE = 28  # the paper's number of the central ridge's Merkel site, of 55
 _SLIP = 2e-3  # m, by which the finger slips without voltage (at 1.4 mm)
 _BETWEEN = 0.8e-3  # m of sliding from one voltage to the next, half of it while the voltage changes
 PHASES = np.linspace(0, np.pi, 13)  # of one half period, of which the square of the voltage is a whole one

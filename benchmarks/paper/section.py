@@ -1,62 +1,58 @@
-"""Fig. 2: what acts along the skin in normal contact, partial and full slip, and the air gaps of the ridges."""
+"""Fig. 2: tractions along the skin in normal contact, partial and full slip, and the air gaps of the ridges."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from benchmarks.paper.statement import Statement, verdict
-from benchmarks.paper.style import BLUE, GREEN, PURPLE, VERMILION
-from benchmarks.runs import Array, Run
+from benchmarks.paper.statement import Statement, statement
+from benchmarks.runs import Run
+from fingerpad.io.style import ATTRACTION, GREY, PRESSURE, SHEAR
 
-_STATES = {"normal": "frictional normal contact", "partial": "partial slip", "slip": "full slip"}
-_KPA, _MM, _UM = 1e3, 1e-3, 1e-6
+STATES = {"normal": "normal contact", "partial": "partial slip", "slip": "full slip"}
+_UM = 1e-6
 
 
 def _scale(run: Run, state: str) -> float:
     """Return f_ext / L_R (Pa), by which the paper normalises."""
     row = {"normal": run.normal, "slip": run.slip}.get(state)
-    if row is None:  # the step that is nearest to half of the points slipping, as the run chose it
+    if row is None:  # the step that is nearest to half of the points slipping, as the run chooses it
         moved = np.flatnonzero(np.abs(run.steps["bone_x"]) >= 1e-12)
         row = int(moved[np.argmin(np.abs(run.steps["slipping"][moved] - 0.5))])
     return float(run.steps["f_ext"][row] / run.steps["contact_length"][row])
 
 
-def figure_2(figure: Figure, run: Run) -> None:
-    """Draw pressure, attraction, elastic stress and shear over f_ext / L_R, and the gaps below."""
-    arrays = run.arrays("surface")
-    axes = figure.subplots(len(_STATES), 1, sharex=True)
-    for ax, (state, title) in zip(axes, _STATES.items(), strict=True):
-        _draw(
-            ax,
-            {k.removeprefix(f"{state}_"): v for k, v in arrays.items() if k.startswith(f"{state}_")},
-            _scale(run, state),
-        )
-        ax.set_title(f"{title}: f_ext/L_R = {_scale(run, state) / _KPA:.3g} kPa", loc="left")
-    x, p = arrays["normal_x"], arrays["normal_p"]
-    touching = x[np.nan_to_num(p) > 0] / _MM
-    axes[-1].set(xlabel="x on the screen (mm)", xlim=(touching.min() - 1, touching.max() + 1.5))
-    axes[0].legend(ncols=4, loc="upper center", bbox_to_anchor=(0.5, 1.42))
+def gather(run: Run) -> dict[str, Any]:
+    """Return what acts along the skin in contact, by state: x (m), tractions over f_ext / L_R, and that stress (Pa)."""
+    arrays, found = run.arrays("surface"), dict[str, Any]()
+    for state in STATES:
+        a = {name: arrays[f"{state}_{name}"] for name in ("x", "p", "p_el", "t")}
+        on = np.flatnonzero(np.nan_to_num(a["p"]) > 0)
+        on = on[np.argsort(a["x"][on])]
+        stress = _scale(run, state)
+        found[state] = {"stress": stress, "x": a["x"][on].tolist()}
+        found[state] |= {name: (a[name][on] / stress).round(5).tolist() for name in ("p", "p_el", "t")}
+    return found
 
 
-def _draw(ax: Axes, a: Mapping[str, Array], scale: float) -> None:
-    x = a["x"] / _MM
-    ax.axhline(0, color="0.7", lw=0.8)
-    ax.plot(x, a["p"] / scale, color=BLUE, label="contact pressure p")
-    ax.plot(x, a["p_el"] / scale, color=VERMILION, ls="--", label="attraction σ_el")
-    ax.plot(x, (a["p"] - a["p_el"]) / scale, color="black", lw=0.8, label="elastic stress p − σ_el")
-    ax.plot(x, a["t"] / scale, color=PURPLE, ls="-.", label="shear t")
-    ax.set_ylabel("over f_ext/L_R (–)")
-    gap = ax.twinx()
-    touching = np.nan_to_num(a["p"]) > 0
-    gap.plot(x[touching], a["d_eq"][touching] / _UM, ".", ms=3, color=GREEN)
-    gap.set_ylabel("d_eq (µm)", color=GREEN)
-    gap.set_ylim(0, 4)
+def paint(figure: Figure, section: Mapping[str, Any]) -> None:
+    """Draw pressure, attraction and shear along the skin from normal contact to full slip."""
+    axes = figure.subplots(len(STATES), 1, sharex=True, sharey=True)
+    looks = {"p": ("contact pressure", PRESSURE), "p_el": ("attraction", ATTRACTION), "t": ("shear", SHEAR)}
+    for ax, (state, title) in zip(axes, STATES.items(), strict=True):
+        a = section[state]
+        for name, (words, colour) in looks.items():
+            ax.plot(1e3 * np.array(a["x"]), a[name], ".", ms=2, color=colour, label=words)
+        ax.axhline(0, color=GREY, lw=0.8)
+        ax.set_title(f"{title}, f_ext/L_R = {a['stress'] / 1e3:.3g} kPa", loc="left")
+        ax.set_ylabel("over f_ext/L_R (–)")
+    axes[-1].set_xlabel("x on the screen (mm)")
+    axes[0].legend(ncols=3, markerscale=4)
 
 
 def statements(run: Run) -> list[Statement]:
-    """Return the statements on one state of normal contact and its way to full slip."""
+    """Return the statements on normal contact and its path to full slip."""
     a = run.arrays("surface")
     x, p, p_el, t = (a[f"normal_{name}"] for name in ("x", "p", "p_el", "t"))
     known = np.isfinite(p)
@@ -78,41 +74,32 @@ def statements(run: Run) -> list[Statement]:
     middle = (xs[on].min() + xs[on].max()) / 2
     leading, trailing = (float(slips[side].mean()) for side in (xs[on] > middle, xs[on] < middle))
     return [
-        Statement(
-            "2",
-            "d_eq mostly 1.7 to 3 µm",
+        statement(
+            "gaps",
             f"{both.min() / _UM:.2f} to {both.max() / _UM:.2f} µm; {100 * within:.0f} % of the ridges are within",
-            {"share": within, "least": float(both.min()), "largest": float(both.max())},
-            verdict(within > 0.9, within > 0.5),
-            "ridges that bear more than 30 kPa have less than 1.7 µm",
+            {"share": within, "least": both.min(), "largest": both.max()},
+            within > 0.9,
+            within > 0.5,
         ),
-        Statement(
-            "2",
-            "d_eq smallest at the central ridges, larger at the outer ones",
+        statement(
+            "central",
             f"{central / _UM:.2f} µm on the five central ridges, {outer / _UM:.2f} µm on the four outermost",
-            {"central": float(central), "outer": float(outer)},
-            verdict(bool(central < outer)),
+            {"central": central, "outer": outer},
+            central < outer,
         ),
-        Statement(
-            "2",
-            "elastic stress p − σ_el is tensile at ridge edges",
-            f"least value {tension:.2f} of f_ext/L_R",
-            {"tension": tension},
-            verdict(tension < 0),
-        ),
-        Statement(
-            "2",
-            "in normal contact the shear is point-symmetric",
+        statement("tension", f"least value {tension:.2f} of f_ext/L_R", {"tension": tension}, tension < 0),
+        statement(
+            "symmetric",
             f"its even part is {100 * uneven / 2:.2g} % of it",
             {"even": uneven / 2},
-            verdict(uneven / 2 < 0.05, uneven / 2 < 0.2),
+            uneven / 2 < 0.05,
+            uneven / 2 < 0.2,
         ),
-        Statement(
-            "2",
-            "tangentially loaded, slip spreads mostly from the leading edge",
+        statement(
+            "leading",
             f"in partial slip {100 * leading:.0f} % of the leading half, {100 * trailing:.0f} % of the trailing one",
             {"leading": leading, "trailing": trailing},
-            verdict(leading > 1.2 * trailing, leading > trailing),
-            "the bone moves to x > 0, the leading half is that of larger x",
+            leading > 1.2 * trailing,
+            leading > trailing,
         ),
     ]

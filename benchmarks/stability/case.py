@@ -1,10 +1,8 @@
-"""One run of the stability map as plain data; no dolfinx in here, so that the plan and the pictures start at once."""
+"""One run of the stability map as plain data."""
 
-import hashlib
-import json
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, replace
-from typing import Literal
+from typing import Any, Literal
 
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.formulation import Formulation
@@ -18,22 +16,26 @@ REFERENCE_SIZE = 1.25e-6
 
 @dataclass(frozen=True)
 class Treatment:
-    """A formulation of the contact, with its one numerical parameter."""
+    """A formulation of the contact, with its one numerical parameter.
+
+    Attributes:
+        label: symbol and unit of the parameter.
+        default: value of the parameter.
+        values: on the map, five decades.
+        law: from the parameter to the formulation.
+        everywhere: whether it is on every chart, not on that of its parameter alone.
+    """
 
     label: str
-    """Symbol and unit of the parameter."""
     default: float
     values: tuple[float, ...]
-    """Values on the map, five decades."""
     law: Callable[[float], Formulation]
-    """From the parameter to the formulation."""
     everywhere: bool = True
-    """Whether it is on every chart, not on that of its parameter alone."""
 
 
 _EPS_N = (1.5e10, 1.5e11, 1.5e12, 1.5e13, 1.5e14, 1.5e15)
 _GAMMA_0 = (0.1, 1.0, 10.0, 100.0, 1e3, 1e4)
-_STIFFNESS, _OVER_SKIN = r"$\epsilon_n$ (Pa/m)", r"$\gamma_0$"
+_STIFFNESS, _OVER_SKIN = r"$\epsilon_n$ (Pa/m)", r"$\gamma_0$ (–)"
 # One line to add a formulation: all maps and tables follow.
 FORMULATIONS = {
     "penalty": Treatment(_STIFFNESS, 1.5e12, _EPS_N, lambda eps_n: Penalty(eps_n, 5e10)),
@@ -48,84 +50,77 @@ ELEMENTS = ("P1", "P2", "P2 reduced", "P2-P1")
 
 @dataclass(frozen=True)
 class Case:
-    """A strip pressed, charged and dragged to full slip; SI units, forces per ridge and out-of-plane length."""
+    """A strip pressed, charged and dragged to full slip; SI units, forces per ridge and out-of-plane length.
+
+    Attributes:
+        force: the finger's 75 N/m over its 17 ridges in contact (N/m).
+        indentation: if not zero, the bone is lowered by so much (m) instead of being pressed by the force.
+        detour: if not zero, a voltage (V) reached between the press and the final voltage.
+        nu: Poisson's ratio of all layers.
+        step_scale: factor on the largest steps of force, voltage and sliding.
+        slide: farthest the bone slides towards full slip (m); zero for no sliding.
+        height: of the strip (m).
+        sides: lateral faces moved sideways with the bone and free to slide up and down, or free.
+        pseudo_transient: whether pseudo-transient continuation is allowed.
+    """
 
     formulation: str = "penalty"
     parameter: float = 1.5e12
     element: str = "P2"
     contact_size: float = 5e-6
     force: float = 4.4
-    """The finger's 75 N/m over its 17 ridges in contact (N/m)."""
     indentation: float = 0.0
-    """If not zero, the bone is lowered by so much (m) instead of being pressed by the force."""
     voltage: float = 200.0
     detour: float = 0.0
-    """If not zero, a voltage (V) reached between the press and the final voltage."""
     nu: float = 0.48
-    """Poisson's ratio of all layers."""
     mu_f: float = 0.25
     step_scale: float = 1.0
-    """Factor on the largest steps of force, voltage and sliding."""
     slide: float = 1e-3
-    """Farthest the bone slides towards full slip (m); zero for no sliding."""
     ridges: int = 1
     height: float = 1.5e-3
-    """Of the strip (m)."""
     sides: Literal["carried", "free"] = "carried"
-    """Lateral faces: moved sideways with the bone and free to slide up and down, or free."""
-    creep: bool = True
-    """Whether pseudo-transient continuation is allowed."""
+    pseudo_transient: bool = True
 
     @property
-    def key(self) -> str:
-        """Name under which the result is kept: a hash of all parameters."""
-        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()[:16]
+    def changed(self) -> dict[str, Any]:
+        """Fields that are not the default's: the case as it is kept."""
+        default = asdict(Case())
+        return {name: value for name, value in asdict(self).items() if value != default[name]}
 
     @property
     def reference(self) -> "Case":
         """The run on the finest mesh with the same physical parameters and default numerical ones."""
-        default = Case()
-        return replace(
-            self,
-            formulation=default.formulation,
-            parameter=default.parameter,
-            element=default.element,
-            step_scale=default.step_scale,
-            creep=True,
-            detour=0.0,
-            contact_size=REFERENCE_SIZE,
-        )
+        numerical = ("formulation", "parameter", "element", "step_scale", "pseudo_transient", "detour")
+        default = asdict(Case())
+        return replace(self, contact_size=REFERENCE_SIZE, **{name: default[name] for name in numerical})
 
 
 @dataclass
 class Outcome:
-    """What became of a case; lengths in m, forces per out-of-plane length in N/m, of the last accepted state."""
+    """What became of a case; lengths in m, forces per out-of-plane length in N/m, of the last accepted state.
+
+    Attributes:
+        status: reached by Newton's method, with the help of pseudo-transient continuation, or not at all.
+        reason: name of the failure, for example that of SNES.
+        load: in which the run ended.
+        seconds: processor time (s).
+        jumps: solves that needed pseudo-transient continuation.
+        inverted: failed solves in which steps led to J <= 0, by the layer with the least J in the end.
+    """
 
     status: Status
-    """Reached by Newton's method, with the help of pseudo-transient continuation, or not at all."""
     reason: str = ""
-    """Name of the failure, e.g. SNES's."""
     message: str = ""
     load: str = ""
-    """The load in which it ended."""
     full_slip: bool = False
     seconds: float = 0.0
-    """Processor time (s)."""
-    unknowns: int = 0
     steps: int = 0
     newton: int = 0
     factorisations: int = 0
     cutbacks: int = 0
     jumps: int = 0
-    """Solves that needed pseudo-transient continuation."""
     inverted: dict[str, int] = field(default_factory=dict)
-    """Failed solves in which steps led to J <= 0, by the layer with the least J in the end."""
-    dermis_j: float = 1.0
-    """Least J in the dermis."""
     penetration: float = 0.0
     f_ext: float = 0.0
     f_t: float = 0.0
     contact_length: float = 0.0
-    normal_length: float = 0.0
-    """Contact length before sliding."""
-    bone_height: float = 0.0

@@ -1,4 +1,4 @@
-r"""The fixed point over one uniform ridge, where no mesh blurs it: which keys of the closure let it converge.
+r"""The fixed point over one uniform ridge, without the error of a mesh: which keys of the closure let it converge.
 
 A ridge under the mean external pressure p carries the contact pressure :math:`p_c = p + \sigma_{el}(d)`. Keyed on
 p_c, a sweep is :math:`d_{k+1} = d_{eq}(p + \sigma_{el}(d_k))`. Keyed on the external pressure with contact pressure

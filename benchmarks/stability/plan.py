@@ -61,7 +61,7 @@ class Named:
 
     name: str
     says: str
-    """What is to be seen."""
+    """What the runs show."""
     cases: tuple[tuple[str, Case], ...]
     referenced: bool = False
     """Whether it takes references to show it."""
@@ -151,7 +151,7 @@ def named() -> list[Named]:
             "Newton's method cycling when a trailing ridge snaps off: three ridges with free sides, 1 N/m each, 10 µm.",
             (
                 ("with pseudo-transient continuation", trailing),
-                ("Newton alone, with cutback", replace(trailing, creep=False)),
+                ("Newton alone, with cutback", replace(trailing, pseudo_transient=False)),
             ),
         ),
         Named(
@@ -160,13 +160,6 @@ def named() -> list[Named]:
             (("20 N/m a ridge", replace(trailing, force=20.0, voltage=0.0)),),
         ),
     ]
-
-
-_WHY = """The penalty of 1.5e12 Pa/m with P2 elements and facets of 5 µm: Newton's method alone gets there, the skin is
-through the screen by less than a tenth of the air gap (150 nm), and the contact length is right to a per cent. A softer
-penalty lets it through by more than that and errs by six. One ten times stiffer costs no more here, but errs more in
-the contact length as long as the facets are not finer; one a thousand times stiffer needs continuation. P1 elements
-are too stiff. One ridge would bear steps twice as long. The last row says what the reference owes to its penalty."""
 
 
 def neighbours() -> Named:
@@ -183,7 +176,7 @@ def neighbours() -> Named:
     runs: list[tuple[str, Case]] = [("default", DEFAULT)]
     runs += [(words, replace(DEFAULT, **changed)) for words, changed in others.items()]
     runs.append(("1.25 µm, ε_n × 10", replace(DEFAULT.reference, parameter=DEFAULT.parameter * 10)))
-    return Named("default", _WHY, tuple(runs), referenced=True)
+    return Named("default", "", tuple(runs), referenced=True)
 
 
 def cases() -> list[Case]:

@@ -5,10 +5,10 @@ python3 -m benchmarks.stability.solve CASE LIMIT
 CASE is JSON, and so is the outcome, the last line printed; after LIMIT seconds of processor time the process ends.
 
 The bone's rim is the strip's flat top. The lateral faces are carried by the neighbours: they move sideways with the
-bone and freely up and down. A free stump of soft dermis under a stiff epidermis tips over before it slips; faces glued
+bone and freely up and down. A free stump of soft dermis under a stiff epidermis tips over before it slips. Faces glued
 to the bone would hold the epidermis up, which is 24 times stiffer than the dermis that should. Carried ridges
-behave like one of many equal ones, and 4.4 N/m on each give the finger's contact length and friction. Only where a
-trailing ridge is to snap off, or dermis to bulge, have they to be free."""
+behave like one of many equal ones. Faces are free only where a trailing ridge is to snap off, or dermis to bulge.
+"""
 
 import json
 import sys
@@ -27,21 +27,19 @@ from numpy.typing import NDArray
 from benchmarks.stability.case import FORMULATIONS, Case, Outcome
 from fingerpad.runs.processes import limit_processor_time
 from geometry import strip, tags
-from geometry.mesh import TaggedMesh, load
+from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from variational import compat, jit
+from variational.body import Body
 from variational.contact.formulation import SurfaceState
 from variational.kinematics import deformation_gradient
 from variational.materials.ogden import Ogden
-from variational.problem import Interface, Problem
-from variational.quantities import Observer
+from variational.problem import Interface
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Attempt, Continuation, StepFailed, Target
 from variational.solvers.coupling import Coupling
-from variational.solvers.equations import Control, Equations
+from variational.solvers.equations import Control
 from variational.solvers.failure import NotConverged
-from variational.solvers.newton import Solver
-from variational.surface import Surface
 
 _H_0 = 0.514e-6  # m
 _SKIN = {tags.STRATUM_CORNEUM: 86.76e3, tags.VIABLE_EPIDERMIS: 61.75e3, tags.DERMIS: 2.55e3}  # Pa
@@ -58,14 +56,17 @@ class PlainCoupling(Coupling):
 class Recorder(Continuation):
     """Counts failed solves in which steps would have turned elements inside out, by the layer nearest to it."""
 
-    def __init__(self, case: Case, coupling: Coupling, on_accept: Callable[[Target, float, Attempt], None]) -> None:
+    def __init__(self, case: Case, body: Body, on_accept: Callable[[Target, float, Attempt], None]) -> None:
+        if case.pseudo_transient:
+            coupling = body.coupling
+        else:
+            coupling = PlainCoupling(body.solver, body.observer, BearingArea(_H_0))
         super().__init__(coupling, on_accept, step_scale=case.step_scale)
         points, _ = basix.make_quadrature(basix.CellType.triangle, 2)
         self._jacobian = fem.Expression(ufl.det(deformation_gradient(ufl.grad(self.problem.u))), np.asarray(points))
         self.inverted: dict[str, int] = {}
 
-    def least_j(self, tag: int) -> float:
-        """Return the smallest ratio of current to reference volume at the quadrature points of a layer."""
+    def _least_j(self, tag: int) -> float:
         cells = self.problem.cell_tags.find(tag)
         return float(compat.evaluate_on_cells(self._jacobian, self.problem.mesh, cells).min())
 
@@ -75,29 +76,24 @@ class Recorder(Continuation):
         except NotConverged as failure:
             if failure.inverted:
                 layers = {name: tag for name, tag in tags.LAYERS.items() if tag in strip.LAYERS}
-                nearest = min(layers, key=lambda name: self.least_j(layers[name]))
+                nearest = min(layers, key=lambda name: self._least_j(layers[name]))
                 self.inverted[nearest] = self.inverted.get(nearest, 0) + 1
             raise
 
 
-def mesh_size(contact: float) -> MeshSize:
-    """Return element sizes: interfaces follow the contact, between 20 and 80 um."""
-    return MeshSize(contact=contact, interface=float(np.clip(4 * contact, 20e-6, 80e-6)))
-
-
-def make_problem(case: Case, body: TaggedMesh) -> Problem:
-    """Return the forms of a case on its mesh."""
-    surface = Surface(body.mesh, body.facet_tags, {j: tags.ridge(j) for j in body.ridges()})
-    interface = Interface(FORMULATIONS[case.formulation].law(case.parameter), case.mu_f, _H_0)
-    solids = {tag: Ogden(shear, _ALPHA, case.nu) for tag, shear in _SKIN.items()}
-    return Problem(body.mesh, body.cell_tags, surface, solids, interface, case.element)
-
-
-def make_solver(case: Case, body: TaggedMesh, problem: Problem) -> Solver:
-    """Return the solver with the lateral faces of a case."""
-    rim, sides = (body.facet_tags.find(tag) for tag in (tags.BONE_RIM, tags.SIDES))
-    scale = case.force * case.ridges
-    return Solver(Equations(problem, rim, moving_sides=None if case.sides == "free" else sides), scale)
+def make(case: Case) -> Body:
+    """Return the strip of a case; interfaces' elements follow the contact's, between 20 and 80 um."""
+    size = MeshSize(contact=case.contact_size, interface=float(np.clip(4 * case.contact_size, 20e-6, 80e-6)))
+    mesh = load(MPI.COMM_WORLD, partial(strip.build, Fingertip(), size, case.ridges, case.height), strip.LAYERS)
+    return Body(
+        mesh,
+        {tag: Ogden(shear, _ALPHA, case.nu) for tag, shear in _SKIN.items()},
+        Interface(FORMULATIONS[case.formulation].law(case.parameter), case.mu_f, _H_0),
+        BearingArea(_H_0),
+        element=case.element,
+        force_scale=case.force * case.ridges,
+        moving_sides=mesh.facets(tags.SIDES) if case.sides == "carried" else None,
+    )
 
 
 def targets(case: Case) -> list[Target]:
@@ -113,28 +109,20 @@ def targets(case: Case) -> list[Target]:
 def run(case: Case) -> Outcome:
     """Reach the loads of a case; a failure is an outcome like any other."""
     start = time.process_time()
-    build = partial(strip.build, Fingertip(), mesh_size(case.contact_size), case.ridges, case.height)
-    body = load(MPI.COMM_WORLD, build, strip.LAYERS)
-    problem = make_problem(case, body)
-    solver, observer = make_solver(case, body, problem), Observer(problem)
-    coupling = (Coupling if case.creep else PlainCoupling)(solver, observer, BearingArea(_H_0))
-    out = Outcome("converged", unknowns=solver.layout.global_size)
+    body, out = make(case), Outcome("converged")
 
     def accepted(target: Target, part: float, attempt: Attempt) -> None:
         state = walk.surface_state
-        loads = observer.ridge_loads(state)
-        pressed = state.p_n > 0
+        loads = body.observer.ridge_loads(state)
         out.steps, out.cutbacks = walk.steps, out.cutbacks + len(attempt.cutbacks)
         out.jumps += attempt.pseudo_transient
-        out.penetration = float(np.max(-state.y[pressed], initial=0.0))
-        out.f_ext, out.bone_height = float(solver.reaction[1]), float(solver.bone[1])
-        # What the screen exerts on the skin: carried faces bear a part that the bone does not feel.
+        out.penetration = float(np.max(-state.y[state.p_n > 0], initial=0.0))
+        out.f_ext = float(body.solver.reaction[1])
+        # What the screen exerts on the skin: carried faces bear a part that the bone does not bear.
         out.f_t = float((loads.f_attraction_x - loads.f_friction).sum())
         out.contact_length = float(loads.length.sum())
-        if target.name != "slide":
-            out.normal_length = out.contact_length
 
-    walk = Recorder(case, coupling, accepted)
+    walk = Recorder(case, body, accepted)
     try:
         for target in targets(case):
             out.load = target.name
@@ -145,8 +133,8 @@ def run(case: Case) -> Outcome:
         out.reason = cause.reason if isinstance(cause, NotConverged) else str(failure)
     else:
         out.status = "continuation" if out.jumps else "converged"
-    out.newton, out.factorisations = solver.counts.newton, solver.counts.factorisations
-    out.full_slip, out.inverted, out.dermis_j = walk.slip[1], walk.inverted, walk.least_j(tags.DERMIS)
+    out.newton, out.factorisations = body.solver.counts.newton, body.solver.counts.factorisations
+    out.full_slip, out.inverted = walk.slip[1], walk.inverted
     out.seconds = time.process_time() - start
     return out
 

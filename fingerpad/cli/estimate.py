@@ -5,13 +5,13 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.cli import ranges, tables
-from fingerpad.cli.arguments import Parser, path, say, scene_of, writable
+from fingerpad.cli.arguments import Parser, say, scene_of
 from fingerpad.io.quantities import PER_LENGTH
 from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError
 
-# Largest errors at full slip against the full runs of the default finger in docs/ladder.json, over their forces (N/m)
+# Largest errors at full slip against the full runs of the default finger in docs/models.json, over their forces (N/m)
 # and voltages (V); tests/test_command.py compares.
 KNOWN_ERROR = {"mu_app": 0.0243, "contact_length": 0.0618}
 KNOWN_RUNS, KNOWN_FORCES, KNOWN_VOLTAGES = 40, (5.0, 150.0), (0.0, 200.0)
@@ -38,11 +38,9 @@ def main(argv: Sequence[str]) -> int:
     parser.add_scene()
     parser.add_argument("--f-ext", metavar="RANGE", help="forces (N/m): 75, or 20,50,75, or first:last:count")
     parser.add_argument("--voltage", metavar="RANGE", help="voltages (V), written likewise")
-    parser.add_argument("--plot", type=path, metavar="PNG", help="picture: one curve a force")
-    parser.add_argument("--csv", type=path, metavar="CSV", help="table in SI units, unrounded")
+    tables.add_files(parser, "picture: one curve a force")
     args = parser.read(argv)
-    for file in (args.plot, args.csv):
-        writable(file)
+    tables.check_files(args)
     scene = scene_of(args, meshed=False)
     forces, voltages = (_axis(scene, key, getattr(args, key)) for key in ("f_ext", "voltage"))
     rows, lost = grid(scene, forces, voltages)
@@ -52,12 +50,7 @@ def main(argv: Sequence[str]) -> int:
     say("\nmu_app is friction over force, at full slip; contact is the length of skin on the screen.")
     for note in (PER_LENGTH, *_known(scene, rows), *lost):
         say(note)
-    if args.csv:
-        tables.write(args.csv, _COLUMNS, rows)
-    if args.plot:
-        draw(args.plot, rows)
-    for file in filter(None, (args.csv, args.plot)):
-        say(f"Written: {file}")
+    tables.write_files(args, _COLUMNS, rows, draw)
     return 0
 
 
@@ -112,16 +105,17 @@ def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
 def draw(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
     """Draw friction over voltage, one curve a force; over force where there is one voltage."""
     from fingerpad.cli import plot
+    from fingerpad.io import style
 
     forces, voltages = (list(dict.fromkeys(row[key] for row in rows)) for key in ("f_ext", "voltage"))
     over, each = ("voltage", "f_ext") if len(voltages) > 1 or len(forces) == 1 else ("f_ext", "voltage")
     label = {"voltage": "{:g} V", "f_ext": "{:g} N/m"}
     axis = {"voltage": "voltage U (V)", "f_ext": "normal force per length $f_{ext}$ (N/m)"}
-    figure, (ax,) = plot.figure("Friction at full slip, closed form")
-    for k, value in enumerate(forces if each == "f_ext" else voltages):
-        points = [row for row in rows if row[each] == value and "mu_app" in row]
-        plot.curve(ax, k, [p[over] for p in points], [p["mu_app"] for p in points], label[each].format(value))
-    ax.set(xlabel=axis[over], ylabel=r"apparent friction coefficient $\mu_{app}$")
-    ax.legend(title={"f_ext": "$f_{ext}$", "voltage": "U"}[each])
-    ax.grid(alpha=0.3)
-    plot.save(figure, file)
+    with plot.panels(file, "Friction at full slip, closed form") as (_, (ax,)):
+        for k, value in enumerate(forces if each == "f_ext" else voltages):
+            points = [row for row in rows if row[each] == value and "mu_app" in row]
+            colour = style.voltage(value, max(voltages)) if each == "voltage" else None
+            x, mu = ([point[key] for point in points] for key in (over, "mu_app"))
+            plot.curve(ax, k, x, mu, label[each].format(value), colour)
+        ax.set(xlabel=axis[over], ylabel=r"apparent friction coefficient $\mu_{app}$ (–)")
+        ax.legend(title={"f_ext": "$f_{ext}$", "voltage": "U"}[each])

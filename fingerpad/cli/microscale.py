@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from fingerpad.cli import ranges, tables
-from fingerpad.cli.arguments import Parser, path, say, scene_of, writable
+from fingerpad.cli.arguments import Parser, say, scene_of
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError
 
@@ -35,11 +35,9 @@ def main(argv: Sequence[str]) -> int:
     parser.add_scene()
     parser.add_argument("--voltage", metavar="RANGE", help="voltages (V): 200, or 0,100, or first:last:count")
     parser.add_argument("--p", metavar="RANGE", default=_PRESSURES, help=f"pressures (Pa); default {_PRESSURES}")
-    parser.add_argument("--plot", type=path, metavar="PNG", help="picture")
-    parser.add_argument("--csv", type=path, metavar="CSV", help="table in SI units, unrounded")
+    tables.add_files(parser, "picture")
     args = parser.read(argv)
-    for file in (args.plot, args.csv):
-        writable(file)
+    tables.check_files(args)
     scene = scene_of(args, meshed=False)
     voltages = [scene.voltage] if args.voltage is None else _voltages(scene, args.voltage)
     rows = table(scene, voltages, _pressures(args.p))
@@ -54,12 +52,7 @@ def main(argv: Sequence[str]) -> int:
     say(f"The air gap is held below {scene.roughness.p_floor * 1e-3:g} kPa (roughness.p_floor); at zero separation")
     say(f"the pressure is {closure.full_pressure * 1e-3:.4g} kPa. A ridge would stick without any force from ", end="")
     say(f"{closure.threshold():.0f} V.")
-    if args.csv:
-        tables.write(args.csv, _COLUMNS, rows)
-    if args.plot:
-        draw(args.plot, rows)
-    for file in filter(None, (args.csv, args.plot)):
-        say(f"Written: {file}")
+    tables.write_files(args, _COLUMNS, rows, draw)
     return 0
 
 
@@ -96,23 +89,22 @@ def table(scene: Scene, voltages: Sequence[float], pressures: Sequence[float]) -
 def draw(file: Path, rows: Sequence[dict[str, Any]]) -> None:
     """Draw lengths, attraction and real area over pressure."""
     from fingerpad.cli import plot
+    from fingerpad.io import style
 
     voltages = list(dict.fromkeys(row["voltage"] for row in rows))
     first = [row for row in rows if row["voltage"] == voltages[0]]
     p = [row["p_c"] * 1e-3 for row in first]
-    figure, (gaps, stress, area) = plot.figure("Microscale of a ridge: bearing area model", 3)
-    plot.curve(gaps, 0, p, [row["d_eq"] * 1e6 for row in first], "equivalent air gap $d_{eq}$")
-    plot.curve(gaps, 1, p, [row["u_bar"] * 1e6 for row in first], r"mean separation $\bar u$")
-    gaps.set(ylabel="length (µm)", ylim=(0, None))
-    for k, voltage in enumerate(voltages):
-        found = [row["p_el"] * 1e-3 for row in rows if row["voltage"] == voltage]
-        plot.curve(stress, k, p, found, f"{voltage:g} V")
-    stress.set(ylabel="attraction $p_{el}$ (kPa)", ylim=(0, None))
-    plot.curve(area, 0, p, [100 * row["area"] for row in first], "")
-    area.set(ylabel="real area of contact (% of the nominal)", yscale="log")
-    for ax in (gaps, stress, area):
-        ax.set(xlabel="mean contact pressure $p_c$ (kPa)", xscale="log")
-        ax.grid(alpha=0.3)
-    for ax in (gaps, stress):
-        ax.legend()
-    plot.save(figure, file)
+    with plot.panels(file, "Microscale of a ridge: bearing area model", 3) as (_, (gaps, stress, area)):
+        plot.curve(gaps, 0, p, [row["d_eq"] * 1e6 for row in first], "equivalent air gap $d_{eq}$")
+        plot.curve(gaps, 1, p, [row["u_bar"] * 1e6 for row in first], r"mean separation $\bar u$")
+        gaps.set(ylabel="length (µm)", ylim=(0, None))
+        for k, voltage in enumerate(voltages):
+            found = [row["p_el"] * 1e-3 for row in rows if row["voltage"] == voltage]
+            plot.curve(stress, k, p, found, f"{voltage:g} V", style.voltage(voltage, max(voltages)))
+        stress.set(ylabel="attraction $p_{el}$ (kPa)", ylim=(0, None))
+        plot.curve(area, 0, p, [100 * row["area"] for row in first], "")
+        area.set(ylabel="real area of contact (% of the nominal)", yscale="log")
+        for ax in (gaps, stress, area):
+            ax.set(xlabel="mean contact pressure $p_c$ (kPa)", xscale="log")
+        for ax in (gaps, stress):
+            ax.legend()

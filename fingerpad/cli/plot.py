@@ -1,40 +1,37 @@
-"""Curves for people: colours that are told apart with any colour vision, and a style of line for each."""
+"""Pictures of commands: panels side by side, curves with a colour, a dash and a marker each."""
 
-import contextlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-with contextlib.chdir("/"):  # matplotlibrc of the current folder is not obeyed, see fingerpad.startup
-    import matplotlib
-
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from numpy import size
 from numpy.typing import ArrayLike
 
-_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")  # Okabe and Ito's
-_LINES = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (8, 3)), (0, (1, 3)))
-_MARKERS = "osD^vP*"
+from fingerpad.io import style
+
+_DASHES = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (8, 3)), (0, (1, 3)))
+_FEW = 15  # points up to which each has a marker
 
 
-def figure(title: str, panels: int = 1) -> tuple[Figure, list[Axes]]:
-    """Return a figure and its panels side by side."""
-    matplotlib.rcParams.update({"font.size": 11, "axes.titlesize": 11, "legend.frameon": False})
-    made = Figure(figsize=(1.2 + 5.2 * panels, 4.6), layout="constrained")
-    made.suptitle(title, fontsize=12)
-    return made, list(made.subplots(1, panels, squeeze=False)[0])
+@contextmanager
+def panels(file: Path, title: str, count: int = 1) -> Iterator[tuple[Figure, list[Axes]]]:
+    """Give a figure and its panels side by side; write it at the end of the block."""
+    with style.look():
+        figure = style.figure(4.0, width=2.5 + 3.0 * count)
+        figure.suptitle(title)
+        yield figure, list(figure.subplots(1, count, squeeze=False)[0])
+        style.save(figure, file)
 
 
-def curve(ax: Axes, k: int, x: ArrayLike, y: ArrayLike, label: str) -> None:
-    """Draw curve number k, with markers where its points are few."""
-    marker: dict[str, Any] = {"marker": _MARKERS[k % len(_MARKERS)], "ms": 4} if np.size(x) <= 15 else {}
-    ax.plot(x, y, color=_COLOURS[k % len(_COLOURS)], ls=_LINES[k % len(_LINES)], lw=1.8, label=label, **marker)
-
-
-def save(made: Figure, file: Path) -> None:
-    """Write a picture, in the format that the name ends with."""
-    made.savefig(file, dpi=150)
+def curve(ax: Axes, k: int, x: ArrayLike, y: ArrayLike, label: str, colour: Any = None) -> None:
+    """Draw curve number k, with markers where its points are few; ``colour`` takes the place of the palette's."""
+    marker: dict[str, Any] = {"marker": style.MARKERS[k % len(style.MARKERS)], "ms": 5} if size(x) <= _FEW else {}
+    colour = style.CATEGORIES[k % len(style.CATEGORIES)] if colour is None else colour
+    ax.plot(x, y, color=colour, ls=_DASHES[k % len(_DASHES)], label=label, **marker)
 
 
 def patch(colour: str, label: str) -> Patch:

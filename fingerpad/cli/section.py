@@ -16,14 +16,6 @@ from fingerpad.scene.messages import SceneError
 from geometry import tags
 from geometry.profiles import GeometryError
 
-_COLOURS = {  # Okabe and Ito's, told apart with any colour vision
-    tags.STRATUM_CORNEUM: "#E69F00",
-    tags.VIABLE_EPIDERMIS: "#56B4E9",
-    tags.DERMIS: "#CC79A7",
-    tags.SUBCUTIS: "#F0E442",
-    tags.NAIL: "#999999",
-    tags.NAIL_BED: "#009E73",
-}
 _FINEST_EDGES = 60_000  # triangles of the whole finger up to which their edges are drawn
 
 
@@ -109,6 +101,7 @@ def _read(gmsh: Any) -> Section:
 def draw(file: Path, found: Section, scene: Scene) -> None:
     """Draw the mesh: the whole finger, some ridges, and one ridge's tip; layers in colour, axes in mm."""
     from fingerpad.cli import plot
+    from fingerpad.io.finger_picture import LAYER_COLOURS
 
     shape = scene.geometry
     period, deep = shape.ridge_wavelength, shape.sc_thickness + shape.ve_thickness
@@ -118,20 +111,19 @@ def draw(file: Path, found: Section, scene: Scene) -> None:
         (f"ridge 0, of {period * 1e3:.3g} mm", (1.5 * deep, 2 * deep)),
         (f"tip of ridge 0: facets of {size * 1e6:.3g} µm", (20 * size, 25 * size)),
     )
-    made, panels = plot.figure("", 3)
-    made.suptitle(f"Mesh of the unloaded finger: {len(found.triangles)} triangles, {found.ridges} ridges can touch")
-    x, y = found.points.T * 1e3
-    for ax, (title, view) in zip(panels, views, strict=True):
-        _fill(ax, x, y, found, view)
-        ax.set(xlabel="x (mm)", ylabel="height above the screen (mm)", aspect="equal", title=title)
-        ax.axhline(0, color="k", lw=2)
-        if view is not None:
-            left = 0.0 if x.min() > -1e-6 else -view[0] * 1e3
-            ax.set(xlim=(left, view[0] * 1e3), ylim=(-0.03 * view[1] * 1e3, view[1] * 1e3))
-    names = {tag: name for name, tag in tags.LAYERS.items()}
-    handles = [plot.patch(_COLOURS[tag], names[tag]) for tag in tags.LAYERS.values()]
-    made.legend(handles=handles, loc="outside lower center", ncols=len(handles))
-    plot.save(made, file)
+    title = f"Mesh of the unloaded finger: {len(found.triangles)} triangles, {found.ridges} ridges can touch\n"
+    with plot.panels(file, title, 3) as (figure, panels):
+        x, y = found.points.T * 1e3
+        for ax, (title, view) in zip(panels, views, strict=True):
+            _fill(ax, x, y, found, view)
+            ax.set(xlabel="x (mm)", ylabel="height (mm)", aspect="equal", title=title)
+            ax.axhline(0, color="k", lw=2)
+            ax.locator_params(nbins=5)
+            if view is not None:
+                left = 0.0 if x.min() > -1e-6 else -view[0] * 1e3
+                ax.set(xlim=(left, view[0] * 1e3), ylim=(-0.03 * view[1] * 1e3, view[1] * 1e3))
+        handles = [plot.patch(LAYER_COLOURS[tag], name) for name, tag in tags.LAYERS.items()]
+        figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
 
 
 def _fill(
@@ -143,11 +135,13 @@ def _fill(
         centre = found.points[triangles].mean(axis=1)
         inside = (np.abs(centre[:, 0]) < 1.2 * view[0]) & (centre[:, 1] < 1.2 * view[1])
         triangles, layer = triangles[inside], layer[inside]
-    tagged = list(tags.LAYERS.values())
-    colours = [_COLOURS[tag] for tag in tagged]
-    width = 0.25 if view is not None else 0.05 if len(triangles) < _FINEST_EDGES else 0.0
     from matplotlib.colors import ListedColormap
 
+    from fingerpad.io.finger_picture import LAYER_COLOURS
+
+    tagged = list(tags.LAYERS.values())
+    colours = [LAYER_COLOURS[tag] for tag in tagged]
+    width = 0.25 if view is not None else 0.05 if len(triangles) < _FINEST_EDGES else 0.0
     ax.tripcolor(
         x, y, triangles, facecolors=np.searchsorted(tagged, layer).astype(float), cmap=ListedColormap(colours),
         vmin=-0.5, vmax=len(tagged) - 0.5, edgecolors="k" if width else "none", linewidth=width,

@@ -1,12 +1,14 @@
 """Tables of numbers on the screen and in files."""
 
+import argparse
 import csv
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from fingerpad.cli.arguments import Parser, path, say, writable
 from fingerpad.io.files import replace
 
 
@@ -45,3 +47,35 @@ def write(file: Path, columns: Sequence[Column], rows: Sequence[Mapping[str, Any
     writer.writeheader()
     writer.writerows(rows)
     replace(file, out.getvalue())
+
+
+def add_files(parser: Parser, picture: str) -> None:
+    """Add the options of a picture and of a table in a file; ``picture`` says what the picture shows."""
+    parser.add_argument("--plot", type=path, metavar="PNG", help=picture)
+    parser.add_argument("--csv", type=path, metavar="CSV", help="table in SI units, unrounded")
+
+
+def check_files(args: argparse.Namespace) -> None:
+    """Refuse files of :func:`add_files` that cannot be written to.
+
+    Raises:
+        SceneError: the first of them.
+    """
+    for file in (args.plot, args.csv):
+        writable(file)
+
+
+def write_files(
+    args: argparse.Namespace,
+    columns: Sequence[Column],
+    rows: Sequence[dict[str, Any]],
+    draw: Callable[[Path, Sequence[dict[str, Any]]], None],
+) -> None:
+    """Write the files of :func:`add_files` that are wanted, and print their names."""
+    if args.csv:
+        write(args.csv, columns, rows)
+    if args.plot:
+        draw(args.plot, rows)
+    for file in (args.csv, args.plot):
+        if file:
+            say(f"Written: {file}")

@@ -102,24 +102,23 @@ def draw(file: Path, name: str, found: Found, fit: Fit) -> None:
 
     flat, um = found.map.detrended("curvature"), 1e6
     heights, spectrum = distribution(flat), power_spectrum(flat, window="hann")
-    figure, (area, shares, psd) = plot.figure(f"{name}: curvature removed", 3)
-    limit = float(np.abs(flat.heights).max()) * um
-    ends = (0, flat.size[0] * um, 0, flat.size[1] * um)
-    image = area.imshow(flat.heights.T * um, origin="lower", extent=ends, cmap="cividis", vmin=-limit, vmax=limit)
-    figure.colorbar(image, ax=area, label="height (µm)", shrink=0.8)
-    area.set(xlabel="x (µm)", ylabel="y (µm)")
-    z = np.linspace(-4, 4, 200) * heights.h_rms
-    middle = (heights.edges[1:] + heights.edges[:-1]) / 2
-    plot.curve(shares, 0, middle * um, heights.density / um, "map")
-    plot.curve(shares, 1, z * um, heights.gaussian(z) / um, f"Gaussian, {heights.h_rms * um:.3g} µm rms")
-    shares.set(xlabel="height (µm)", ylabel="probability density (1/µm)")
-    shares.set_ylim(0, 1.35 * float(heights.density.max()) / um)
-    ring = spectrum.radial()
-    kept = ring.psd > 0
-    psd.loglog(ring.q[kept], ring.psd[kept], "o", ms=4, color="0.5", label="map, Hann's window")
-    q = np.geomspace(*fit.q_range, 100)
-    plot.curve(psd, 1, q, fit.psd(q), f"fit: Hurst exponent {fit.hurst:.2f}")
-    psd.set(xlabel="wavevector q (1/m)", ylabel="power spectrum C (m⁴)")
-    for ax in (shares, psd):
-        ax.legend()
-    plot.save(figure, file)
+    with plot.panels(file, f"{name}: curvature removed", 3) as (figure, (area, shares, psd)):
+        limit = float(np.abs(flat.heights).max()) * um
+        ends = (0, flat.size[0] * um, 0, flat.size[1] * um)
+        image = area.imshow(flat.heights.T * um, origin="lower", extent=ends, cmap="cividis", vmin=-limit, vmax=limit)
+        figure.colorbar(image, ax=area, label="height (µm)", shrink=0.8)
+        area.set(xlabel="x (µm)", ylabel="y (µm)")
+        z = np.linspace(-4, 4, 200) * heights.h_rms
+        middle = (heights.edges[1:] + heights.edges[:-1]) / 2
+        plot.curve(shares, 0, middle * um, heights.density / um, "map")
+        plot.curve(shares, 1, z * um, heights.gaussian(z) / um, f"Gaussian, {heights.h_rms * um:.3g} µm rms")
+        shares.set(xlabel="height (µm)", ylabel="probability density (1/µm)")
+        shares.set_ylim(0, 1.35 * float(heights.density.max()) / um)
+        ring = spectrum.radial()
+        kept = ring.psd > 0
+        psd.loglog(ring.q[kept], ring.psd[kept], "o", ms=4, color="0.5", label="map, Hann's window")
+        q = np.geomspace(*fit.q_range, 100)
+        plot.curve(psd, 1, q, fit.psd(q), f"fit: Hurst exponent {fit.hurst:.2f}")
+        psd.set(xlabel="wavevector q (1/m)", ylabel="power spectrum C (m⁴)")
+        for ax in (shares, psd):
+            ax.legend()

@@ -4,10 +4,11 @@ Categories have Okabe and Ito's colours, magnitudes viridis, voltages a ramp of 
 """
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import chdir, contextmanager
 from pathlib import Path
 
-import matplotlib
+with chdir("/"):  # a matplotlibrc of the current folder is not obeyed, see fingerpad.startup
+    import matplotlib
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
@@ -17,7 +18,7 @@ BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#999999"
 CATEGORIES = (BLUE, VERMILION, GREEN, PURPLE, SKY, ORANGE, BLACK)
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 STATE = {"uncharged": SKY, "charged": BLUE, "full_slip": VERMILION}
-PRESSURE, ATTRACTION, SHEAR, GAP = BLACK, PURPLE, ORANGE, GREEN
+PRESSURE, ATTRACTION, SHEAR, GAP = BLACK, BLUE, ORANGE, GREEN
 MAGNITUDE = "viridis"
 WIDTH = 9.0  # in, of a page
 _LOOK = {

@@ -5,7 +5,7 @@ the scene reference, ``docs/scene.md``.
 """
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, Field, ValidationError, model_validator
@@ -15,6 +15,9 @@ from fingerpad.scene.table import Finite, Part
 from geometry.bounds import within
 from variational.attraction.insulator import insulator_thickness
 from variational.roughness.bam import BearingArea
+
+if TYPE_CHECKING:
+    from variational.materials.material import Material
 
 Poisson = Annotated[Finite, within(-0.9, 0.4999)]
 Modulus = Annotated[Finite, within(1.0, 1e12, "Pa")]
@@ -68,6 +71,19 @@ class Materials(Part):
             else given
             for name, given in data.items()
         }
+
+    def solids(self) -> "dict[str, Material]":
+        """Return the solid of each layer by the layer's key."""
+        from variational.materials.ogden import Ogden  # UFL: not for those who only read scenes
+        from variational.materials.saint_venant import SaintVenant
+
+        found: dict[str, Material] = {}
+        for layer in ("subcutis", "dermis", "viable_epidermis", "stratum_corneum"):
+            skin: Skin = getattr(self, layer)
+            found[layer] = Ogden(skin.shear_modulus, skin.alpha, skin.poisson, self.exponent)
+        found["nail"] = SaintVenant(self.nail.young, self.nail.poisson)
+        found["nail_bed"] = SaintVenant(self.nail_bed.young, self.nail_bed.poisson)
+        return found
 
 
 class Electric(Part):

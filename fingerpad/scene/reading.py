@@ -43,6 +43,22 @@ def read(path: Path) -> dict[str, Any]:
         raise SceneError(f"{name} has lists or tables that are nested too deep; {_DEPTH}") from None
 
 
+def read_scene(path: Path) -> dict[str, Any]:
+    """Return the data of a scene file; the file of a height map is looked for beside the scene file.
+
+    Raises:
+        SceneError: the file cannot be read, or holds a study.
+    """
+    data: dict[str, Any] = plain(read(path))
+    roughness = data.get("roughness")
+    topography = roughness.get("topography") if isinstance(roughness, dict) else None
+    if isinstance(topography, dict) and isinstance(topography.get("file"), str):
+        topography["file"] = str(path.parent / topography["file"])
+    if "sweep" in data:
+        raise SceneError(f"{path} has a table sweep, which makes it a study; run it by fingerpad sweep, or without it")
+    return data
+
+
 def _bytes(path: Path) -> bytes:
     """Return the first bytes of an ordinary file, one more than are allowed."""
     descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)  # a pipe must not make the program wait

@@ -134,7 +134,7 @@ class Continuation:
     def __init__(
         self,
         coupling: Coupling,
-        on_accept: Callable[[Target, float, Attempt], None] = lambda target, part, attempt: None,
+        on_accept: Callable[[Target, float, Attempt], bool | None] = lambda target, part, attempt: None,
         touch_depth: float = 5e-6,
         step_scale: float = 1.0,
     ) -> None:
@@ -142,7 +142,8 @@ class Continuation:
 
         Args:
             coupling: solves at fixed loads.
-            on_accept: called with the target, the part of it reached and how, after each accepted step.
+            on_accept: called with the target, the part of it reached and how, after each accepted step; returns True
+                to stop there.
             touch_depth: how far the bone is lowered by displacement before force takes over (m).
             step_scale: factor on the largest steps of force, voltage and displacement.
         """
@@ -168,27 +169,35 @@ class Continuation:
 
     # -- targets ---------------------------------------------------------------------------------------
     def run(self, target: Target) -> None:
-        """Reach a target.
+        """Reach a target, or stop on the way where ``on_accept`` returns True.
 
         Raises:
             StepFailed: the load reached and why the next step was not.
         """
         if target.f_ext is not None and self._now.control.y is not None:
-            self._touch(target)
+            if not self._touch(target):
+                return
         self._reach(target)
 
-    def _touch(self, target: Target) -> None:
-        """Lower the bone by displacement until the screen bears it: without contact, force control is singular."""
+    def _touch(self, target: Target) -> bool:
+        """Lower the bone by displacement until the screen bears it: without contact, force control is singular.
+
+        Returns:
+            Whether the screen bears it; False where ``on_accept`` stopped the path.
+        """
         start = self._now.control.y or 0.0
         depth = self.touch_depth
         while self.solver.reaction[1] <= 0 or self.steps == 0:
-            self._reach(Target("touch", bone_height=start - depth))
+            if not self._reach(Target("touch", bone_height=start - depth)):
+                return False
             depth += self.touch_depth
         self.solver.control.y = None
         self.solver.control.force = float(self.solver.reaction[1])
         self._now = AcceptedState.of(self.coupling)
+        return True
 
-    def _reach(self, target: Target) -> None:
+    def _reach(self, target: Target) -> bool:
+        """Reach a target; return False where ``on_accept`` stopped the path before."""
         way = _Way(self._now, target)
         largest = way.largest_step(self.step_scale)
         part, step, uncut, cut = 0.0, largest, 0, 0
@@ -219,13 +228,15 @@ class Continuation:
                         raise StepFailed(self._describe(target, part, failure)) from failure
             self._accept()
             part += step
-            self.on_accept(target, part, attempt)
+            if self.on_accept(target, part, attempt):
+                return False
             if target.until_full_slip and self.slip[1]:
-                return
+                return True
             uncut, cut = (0, cut + 1) if attempt.cutbacks else (uncut + 1, 0)
             step = within
             if attempt.factorisations <= _FEW or uncut >= _UNCUT:
                 step, uncut = min(2 * step, largest), 0
+        return True
 
     def _describe(self, target: Target, part: float, failure: NotConverged) -> str:
         c = self._now.control

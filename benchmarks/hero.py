@@ -1,0 +1,150 @@
+"""The picture that opens the README: finger, one ridge with air gap and attraction, friction over voltage.
+
+environment/run python3 -m benchmarks.hero FOLDER    keep the numbers of a default run's folder, then draw
+environment/run python3 -m benchmarks.pages hero     draw from docs/hero.json, without a run
+"""
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import ConnectionPatch, Polygon
+from numpy.typing import NDArray
+
+from benchmarks.harness import DOCS, keep, kept, made
+from fingerpad.io import style
+from fingerpad.io.finger_picture import LAYER_COLOURS, interfaces
+from geometry import tags
+
+Array = NDArray[np.float64]
+FORCES = (25, 75, 150)  # N/m, of the curves of friction
+RIDGE = 8  # the enlarged one
+_MM, _UM, _KPA = 1e3, 1e6, 1e-3
+_FINE = 0.02  # mm, between the points of a drawn outline
+
+
+def main(folder: str) -> None:
+    """Keep the numbers of a default run with those of docs/ladder.json, and draw."""
+    summary = json.loads((Path(folder) / "summary.json").read_text(encoding="utf-8"))
+    with np.load(Path(folder) / "finger_slide.npz") as a:
+        xy, outlines = _MM * (a["x"] + a["u"]), []
+        for tag in tags.LAYERS.values():
+            edges = interfaces(a["triangles"][a["tag"] == tag], a["tag"][a["tag"] == tag])[1]
+            outlines += [{"layer": int(tag), "points": _rows(_thinned(xy[loop]))} for loop in _loops(edges)]
+    with np.load(Path(folder) / "surface_slide.npz") as a:
+        ridge = {name: a[f"end_{name}"][a["end_ridge"] == RIDGE] for name in ("x", "y", "p", "p_el", "d_eq")}
+    compared = json.loads((DOCS / "ladder.json").read_text(encoding="utf-8"))  # full runs, contact size 10 µm
+    compared = compared.get("numbers", compared)
+    friction = {
+        str(f): [[u, compared[f"{f} N/m, {u} V"]["3"]["summary"]["slip_mu_app"]] for u in range(0, 201, 50)]
+        for f in FORCES
+    }
+    along = {name: _rows([float(f"{v:.6g}") for v in values]) for name, values in ridge.items()}
+    keep("hero", {"finger": outlines, "ridge": along, "friction": friction}, made([summary]))
+    draw(DOCS)
+
+
+def _rows(values: list[Any]) -> list[list[Any]]:
+    """Return a list in short rows, each a line of the file."""
+    return [values[k : k + 20] for k in range(0, len(values), 20)]
+
+
+def _loops(edges: Any) -> list[list[int]]:
+    """Return the closed chains of boundary edges, pairs of vertices, as vertices in order."""
+    beside: dict[int, list[int]] = {}
+    for a, b in [*edges.tolist(), *edges[:, ::-1].tolist()]:
+        beside.setdefault(a, []).append(b)
+    loops = []
+    while any(beside.values()):
+        here = next(vertex for vertex, others in beside.items() if others)
+        loops.append([here])
+        while beside[here]:
+            there = beside[here].pop()
+            beside[there].remove(here)
+            loops[-1].append(there)
+            here = there
+    return loops
+
+
+def _thinned(points: Array) -> list[list[float]]:
+    """Return the points of an outline (mm) that are not too close to the one before."""
+    last, thinned = np.full(2, np.inf), []
+    for point in points:
+        if not np.hypot(*(point - last)) <= _FINE:
+            last = point
+            thinned.append([round(float(c), 3) for c in point])
+    return thinned
+
+
+def draw(docs: Path) -> Path:
+    """Draw docs/hero.png from docs/hero.json; return its path."""
+    numbers = kept("hero", docs).numbers
+    ridge = {name: np.concatenate(values) for name, values in numbers["ridge"].items()}
+    with style.look():
+        figure = style.figure(3.5)
+        whole, near, friction = figure.subplots(1, 3, width_ratios=[1.55, 1, 1.05])
+        _draw_finger(whole, numbers["finger"])
+        centre = float(ridge["x"][ridge["p"] > 0].mean())
+        _draw_ridge(near, ridge, centre)
+        whole.plot(_MM * centre, 0.1, "o", ms=13, mfc="none", mec="black", mew=1.5, zorder=5)
+        look: dict[str, Any] = {"axesA": whole, "axesB": near, "color": "0.4", "ls": "--"}
+        for corner in (0, 1):
+            ends = (_MM * centre, 0.1), (0, corner)
+            figure.add_artist(ConnectionPatch(*ends, "data", "axes fraction", **look))
+        _draw_friction(friction, numbers["friction"])
+        style.save(figure, docs / "hero.png")
+    return docs / "hero.png"
+
+
+def _draw_finger(ax: Axes, outlines: list[dict[str, Any]]) -> None:
+    ax.set_title("A fingertip slides on a touchscreen", weight="bold")
+    for outline in outlines:
+        ax.add_patch(Polygon(np.concatenate(outline["points"]), fc=LAYER_COLOURS[outline["layer"]], ec="black", lw=0.4))
+    ax.axhspan(-1.6, 0, color="0.35", lw=0)
+    ax.text(-3.6, -0.85, "touchscreen", color="white", ha="center", va="center", fontsize=9)
+    ax.text(1.5, 7.5, "bone", ha="center", va="center")
+    for start, end, colour in (((12, 2.8), (16.6, 2.8), style.VERMILION), ((1.5, 17.3), (1.5, 13.4), style.BLACK)):
+        ax.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "lw": 3.5, "color": colour})
+    ax.text(14.2, 3.6, "sliding", ha="center", color=style.VERMILION)
+    ax.text(2.4, 15.6, "75 N/m", va="center")
+    ax.set(xlim=(-9.5, 17), ylim=(-1.6, 17.5), aspect="equal", xlabel="x (mm)", ylabel="height (mm)")
+
+
+def _draw_ridge(ax: Axes, ridge: dict[str, Array], centre: float) -> None:
+    x, gap, pull = _UM * (ridge["x"] - centre), _UM * np.maximum(ridge["y"], ridge["d_eq"]), _KPA * ridge["p_el"]
+    ax.set_title("Voltage attracts a ridge", weight="bold")
+    ax.fill_between(x, gap, 20, color=LAYER_COLOURS[tags.STRATUM_CORNEUM], alpha=0.45, lw=0)
+    ax.plot(x, gap, color="black", lw=1)
+    ax.axhspan(-2.5, 0, color="0.35", lw=0)
+    ax.text(0, -1.3, "touchscreen, 200 V", color="white", ha="center", va="center", fontsize=9)
+    for place in np.arange(-60.0, 61.0, 12.0).tolist():
+        at = float(np.interp(place, x, gap))
+        arrow = {"arrowstyle": "-|>", "lw": 1.8, "color": style.ATTRACTION, "shrinkA": 0, "shrinkB": 0}
+        ax.annotate("", (place, at), (place, at + 0.1 * float(np.interp(place, x, pull))), arrowprops=arrow)
+    ax.text(0, 6.4, f"attraction\n{pull.max():.0f} kPa", ha="center", color=style.ATTRACTION)
+    ax.text(0, 9.9, "skin", ha="center")
+    ax.text(0, 0.75, f"air gap {_UM * np.median(ridge['d_eq']):.1f} µm", ha="center", va="center")
+    ax.set(xlim=(-100, 100), ylim=(-2.5, 11.5), xlabel="x (µm)", ylabel="height (µm)")
+
+
+def _draw_friction(ax: Axes, friction: dict[str, list[list[float]]]) -> None:
+    ax.set_title("Friction doubles", weight="bold")
+    for force, points in friction.items():
+        u, mu = np.array(points).T
+        shown = force == "75"
+        ax.plot(u, mu, color="black" if shown else "0.65", lw=2 if shown else 1.2, zorder=2)
+        words = f"{mu[-1]:.2f} at\n{force} N/m" if shown else f"{force} N/m"
+        weight = "bold" if shown else "normal"
+        ax.text(215, mu[-1], words, va="center", color="black" if shown else "0.4", weight=weight, fontsize=9)
+        if shown:
+            ax.scatter(u, mu, c=[style.voltage(each) for each in u], s=42, zorder=3)
+            ax.text(0, mu[0] - 0.07, f"{mu[0]:.2f}", weight="bold", fontsize=9)
+    ax.set(xlim=(-10, 320), ylim=(0, 0.8), xlabel="voltage (V)", ylabel="friction coefficient $f_T / f_{ext}$ (–)")
+    ax.set_xticks([0, 100, 200])
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

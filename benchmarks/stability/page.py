@@ -1,0 +1,202 @@
+"""The stability map as a page: one picture, counts of outcomes, and the known failures run by run."""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm, to_hex, to_rgb
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch, Rectangle
+
+from benchmarks.harness import kept, page, picture, table
+from benchmarks.stability import plan
+from benchmarks.stability.case import Case
+from benchmarks.stability.loop import loop
+from benchmarks.stability.plan import DEFAULT, Axis, Chart, Named, Panel
+from fingerpad.io.style import MAGNITUDE, ORANGE, SKY, VERMILION
+from variational.roughness.bam import BearingArea
+
+Row = Mapping[str, Any]
+Rows = Mapping[Case, Row]
+COLOURS = {"converged": SKY, "continuation": ORANGE, "failed": VERMILION}
+SYMBOLS = {"converged": "●", "continuation": "▲", "failed": "✕"}
+NAMES = {"converged": "converged", "continuation": "through continuation", "failed": "failed"}
+# The floor of the closure is no part of what the fixed points are compared for.
+CLOSURE = BearingArea(h_0=0.514e-6, p_floor=1.0)
+_LOOP_POINTS = [(p, u) for u in (50.0, 100.0, 150.0, 200.0) for p in (500.0, 2e3, 5e3, 20e3)]
+_HOW = """One ridge of the layered finger is pressed by a force, charged and dragged until it slips everywhere; three
+ridges for the snap-off. The lateral faces move sideways with the bone and freely up and down, as if the neighbours
+were equal. A force of 4.4 N/m a ridge then gives the finger's contact length and friction. Errors are relative to a
+run with a contact size of 1.25 µm, P2 elements, the default penalty and the same physical parameters. Each run has a
+process of its own and a limit of processor time. {solves} solves, references included, took {minutes:.0f} minutes of
+one core.
+
+{symbols}. *Through continuation*: a step succeeded only by pseudo-transient continuation. Iterations are Newton's
+over the whole history. *Load* is the one in which a run ended. The other numbers are of the last accepted state."""
+_DEFAULT = """Newton's method alone reaches full slip at the default. The skin penetrates the screen by less than a
+tenth of the air gap (150 nm), and the contact length is right to one per cent. A ten times softer penalty exceeds
+that depth, and its contact length is six per cent too long. A ten times stiffer one costs no more, but its contact
+length is worse on facets of the same size. P1 elements are too stiff. The last row shows what the reference owes to
+its penalty."""
+_LOOP = """The loop over the scales is repeated here for one uniform ridge, started 1 % off its solution. Keyed on the
+external pressure, with pressure and attraction one sweep out of phase, it diverges where its gain exceeds 1/2. Keyed
+on the contact pressure, as the program does, it converges everywhere in contact (here without its secant steps)."""
+
+
+def percent(value: float | None) -> str | None:
+    """Return a relative number as per cent; below a millionth it is zero."""
+    if value is None:
+        return None
+    return "0" if abs(value) < 1e-6 else f"{100 * value:.2g}" if abs(value) < 1 else f"{100 * value:.0f}"
+
+
+# -- tables --------------------------------------------------------------------------------------------------
+_COLUMNS = ["run", "outcome", "load", "iterations", "factorisations", "cut steps", "failed solves that met J ≤ 0"]
+_COLUMNS += ["penetration (nm)", "f_T (N/m)", "contact length (µm)"]
+_ERRORS = ["error in f_T (%)", "error in contact length (%)", "normal force (N/m)", "error in it (%)"]
+
+
+def named_table(named: Named, rows: Rows) -> str:
+    """Return a group of runs, one a row."""
+    lines = []
+    for words, case in named.cases:
+        if (o := rows.get(case)) is None:
+            lines.append([words, "not run", *[None] * (len(_COLUMNS) - 2 + len(_ERRORS) * named.referenced)])
+            continue
+        reason = f": {o['reason']}" if o["status"] == "failed" else ""
+        inverted = ", ".join(f"{count} in {layer}" for layer, count in o["inverted"].items()) or "0"
+        line = [words, f"{SYMBOLS[o['status']]} {NAMES[o['status']]}{reason}", o["load"], o["newton"]]
+        line += [o["factorisations"], o["cutbacks"], inverted, f"{o['penetration'] * 1e9:.3g}", o["f_t"]]
+        line.append(f"{o['contact_length'] * 1e6:.2f}")
+        if named.referenced:
+            line += [percent(o.get("error_f_t")), percent(o.get("error_contact_length"))]
+            line += [o.get("f_ext"), percent(o.get("error_f_ext"))]
+        lines.append(line)
+    return table(_COLUMNS + (_ERRORS if named.referenced else []), lines)
+
+
+def counts_table(charts: Iterable[Chart], rows: Rows) -> str:
+    """Return how many runs of each chart and formulation ended how."""
+    lines = []
+    for chart in charts:
+        for panel in chart.panels:
+            count = Counter(rows[case]["status"] if case in rows else "not run" for case in panel.cases())
+            ends = [count[status] for status in (*NAMES, "not run")]
+            lines.append([chart.title, panel.title, sum(ends), *ends])
+    return table(["varied", "formulation or element", "runs", *NAMES.values(), "not run"], lines)
+
+
+def loop_table() -> str:
+    """Return the scalar fixed points."""
+    lines = []
+    for p, u in _LOOP_POINTS:
+        found = loop(CLOSURE, p, u)
+        ends = ["diverges" if n is None else n for n in (found.by_external, found.by_contact)]
+        lines.append([f"{p / 1e3:g}", f"{u:g}", f"{found.gain:.2f}", *ends])
+    return table(["p_ext (kPa)", "U (V)", "gain", "sweeps, keyed on p_ext", "sweeps, keyed on p_c"], lines)
+
+
+# -- picture -------------------------------------------------------------------------------------------------
+def _tick(axis: Axis, value: float) -> str:
+    return f"{value / axis.unit:.6g}".replace("e+", "e")
+
+
+def _cell(ax: Axes, place: tuple[int, int], colour: str, text: str, default: bool) -> None:
+    ax.add_patch(Rectangle(place, 1, 1, facecolor=colour, edgecolor="white", lw=1.5))
+    if default:
+        inner = (place[0] + 0.06, place[1] + 0.06)
+        ax.add_patch(Rectangle(inner, 0.88, 0.88, fill=False, ec="black", lw=1.8, zorder=3))
+    red, green, blue = to_rgb(colour)
+    ink = "black" if 0.3 * red + 0.59 * green + 0.11 * blue > 0.45 else "white"
+    ax.text(place[0] + 0.5, place[1] + 0.5, text, ha="center", va="center", color=ink, fontsize=8, linespacing=1.1)
+
+
+def _map(ax: Axes, panel: Panel, rows: Rows, title: str, cell: Callable[[Row], tuple[str, str]]) -> None:
+    for i, y in enumerate(panel.y.values):
+        for k, x in enumerate(panel.x.values):
+            case = panel.case(x, y)
+            colour, text = cell(rows[case]) if case in rows else ("#EEEEEE", "not run")
+            _cell(ax, (k, i), colour, text, case == panel.base and case.element == DEFAULT.element)
+    ax.set(title=title, xlim=(0, len(panel.x.values)), ylim=(0, len(panel.y.values)))
+    ax.set(xlabel=panel.x.label, ylabel=panel.y.label)
+    for axis, which in ((panel.x, ax.xaxis), (panel.y, ax.yaxis)):
+        which.set_ticks([k + 0.5 for k in range(len(axis.values))], [_tick(axis, v) for v in axis.values])
+        which.set_tick_params(length=0)
+    for spine in ax.spines.values():
+        spine.set_visible(False)
+
+
+def outcome_cell(o: Row) -> tuple[str, str]:
+    """Return colour and text of a cell: how a run ended, its iterations, and the load of one that failed."""
+    text = f"{SYMBOLS[o['status']]}\n{o['newton']}" + (f"\n{o['load']}" if o["status"] == "failed" else "")
+    return COLOURS[o["status"]], text
+
+
+def value_cell(name: str, low: float, high: float, scale: float) -> Callable[[Row], tuple[str, str]]:
+    """Return what gives colour and text of a cell: a number, its size on a logarithmic ramp."""
+    norm, colours = LogNorm(low, high, clip=True), matplotlib.colormaps[MAGNITUDE]
+
+    def cell(o: Row) -> tuple[str, str]:
+        if o["status"] == "failed" or o.get(name) is None:
+            return "#EEEEEE", SYMBOLS["failed"]
+        number = scale * o[name]
+        return to_hex(colours(norm(max(abs(number), low)))), f"{number:.0f}" if abs(number) >= 10 else f"{number:.2g}"
+
+    return cell
+
+
+def paint(figure: Figure, rows: Rows) -> None:
+    """Draw the eight maps that the choice of the default rests on."""
+    charts = {chart.name: chart.panels for chart in plan.charts()}
+    by_parameter, elements = charts["size_parameter"], {panel.title: panel for panel in charts["nu_size"]}
+    axes = figure.subplots(2, 4)
+    outcomes = [
+        (axes[0, 0], charts["voltage_force"][0], "A  penalty: outcome"),
+        (axes[0, 1], by_parameter[0], "B  penalty: outcome"),
+        (axes[0, 2], by_parameter[1], "C  augmented Lagrangian: outcome"),
+        (axes[0, 3], by_parameter[2], "D  Nitsche, θ = 0: outcome"),
+        (axes[1, 0], charts["step_voltage"][0], "E  penalty: outcome"),
+    ]
+    for ax, panel, title in outcomes:
+        _map(ax, panel, rows, title, outcome_cell)
+    _map(axes[1, 1], by_parameter[0], rows, "F  penalty: penetration (nm)", value_cell("penetration", 0.1, 1e4, 1e9))
+    error = value_cell("error_contact_length", 0.01, 100, 100)
+    _map(axes[1, 2], by_parameter[0], rows, "G  penalty: error in contact length (%)", error)
+    _map(axes[1, 3], elements["P2"], rows, "H  P2 elements: error in contact length (%)", error)
+    keys = [Patch(color=COLOURS[s], label=f"{SYMBOLS[s]} {NAMES[s]}, with Newton iterations") for s in COLOURS]
+    keys.append(Patch(fill=False, ec="black", lw=1.8, label="default"))
+    figure.legend(handles=keys, loc="outside lower center", ncols=4, frameon=False)
+
+
+# -- page ----------------------------------------------------------------------------------------------------
+def draw(docs: Path) -> Path:
+    """Write docs/stability.md and docs/stability.png from docs/stability.json."""
+    found = kept("stability", docs)
+    numbers = found.numbers
+    rows = {Case(**row["case"]): row for row in numbers["runs"]}
+    charts = plan.charts()
+    ends = Counter(rows[c]["status"] for c in charts[0].panels[0].cases() if c in rows)
+    finding = (
+        f"With its default settings the solver follows {ends['converged'] + ends['continuation']} of "
+        f"{ends.total()} pairs of voltage and force to full slip ({ends['continuation']} by pseudo-transient "
+        f"continuation, {ends['failed']} not; 0 to 400 V, 0.5 to 30 N/m a ridge). The penalty method converges over "
+        "five decades of its stiffness. The augmented Lagrangian and Nitsche's methods fail over a part of theirs."
+    )
+    symbols = ", ".join(f"{SYMBOLS[s]} {NAMES[s]}" for s in NAMES)
+    caption = "Outcome (A–E), penetration (F) and error in the contact length (G, H) over pairs of parameters"
+    body = [
+        picture(docs / "stability.png", (17, 9), lambda figure: paint(figure, rows), caption),
+        f"## The default and its neighbours\n\n{_DEFAULT}\n\n{named_table(plan.neighbours(), rows)}",
+        f"## How many runs ended how\n\n{counts_table(charts, rows)}",
+        "## Known failures, reproduced",
+        *(f"### {n.name.capitalize()}\n\n{n.says}\n\n{named_table(n, rows)}" for n in plan.named()),
+        f"### The fixed point near the fold\n\n{_LOOP}\n\n{loop_table()}",
+    ]
+    how = _HOW.format(solves=numbers["solves"], minutes=numbers["seconds"] / 60, symbols=symbols.capitalize())
+    command = "environment/run python3 -m benchmarks.stability"
+    return page(
+        docs / "stability.md", "Where the solver converges", finding, how, body, command, found.made, ["stability"]
+    )

@@ -1,0 +1,112 @@
+"""Cases run in processes of their own, each outcome a line of JSON as soon as it is there.
+
+A map that is stopped has lost the runs in hand; started again it goes on.
+"""
+
+import json
+from collections.abc import Callable, Iterable
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from benchmarks.stability.case import Case, Outcome
+from fingerpad.runs import processes
+from fingerpad.runs.processes import Pool
+
+# Of an outcome, what the page shows.
+_SHOWN = ["status", "reason", "load", "newton", "factorisations", "cutbacks", "inverted", "penetration", "f_t"]
+_SHOWN += ["contact_length", "f_ext"]
+
+
+class Runs:
+    """Outcomes of cases in a file, one line each.
+
+    Attributes:
+        outcomes: by case.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Read what is there; a last line that was cut short is left out."""
+        self.path, self.outcomes = path, dict[Case, Outcome]()
+        path.parent.mkdir(parents=True, exist_ok=True)
+        for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else []:
+            try:
+                entry = json.loads(line)
+            except json.JSONDecodeError:
+                continue
+            self.outcomes[Case(**entry["case"])] = Outcome(**entry["outcome"])
+
+    def add(self, case: Case, outcome: Outcome) -> None:
+        """Keep an outcome."""
+        self.outcomes[case] = outcome
+        with self.path.open("a", encoding="utf-8") as file:
+            # First ends a line that was cut short; blank ones are skipped.
+            file.write("\n" + json.dumps({"case": case.changed, "outcome": asdict(outcome)}) + "\n")
+
+    def missing(self, cases: Iterable[Case]) -> list[Case]:
+        """Return the cases that have not been run, each once, in order."""
+        return [case for case in dict.fromkeys(cases) if case not in self.outcomes]
+
+    def error(self, case: Case, name: str) -> float | None:
+        """Return the relative error of a quantity, with its sign; None without a run or a reference that ended well."""
+        here, finest = self.outcomes.get(case), self.outcomes.get(case.reference)
+        if here is None or finest is None or "failed" in (here.status, finest.status):
+            return None
+        exact = getattr(finest, name)
+        return float((getattr(here, name) - exact) / abs(exact)) if exact else None
+
+    def numbers(self, cases: Iterable[Case]) -> dict[str, Any]:
+        """Return what the page shows of cases that have been run, ready for JSON."""
+        rows = []
+        for case in cases:
+            if (outcome := self.outcomes.get(case)) is not None:
+                errors = {
+                    f"error_{name}": self.error(case, name)
+                    for name, told in (("f_t", case.slide), ("contact_length", True), ("f_ext", case.indentation))
+                    if told
+                }
+                rows.append({"case": case.changed} | {name: getattr(outcome, name) for name in _SHOWN} | errors)
+        seconds = sum(outcome.seconds for outcome in self.outcomes.values())
+        return {"solves": len(self.outcomes), "seconds": seconds, "runs": rows}
+
+
+def solve(case: Case, limit: float) -> Outcome:
+    """Run a case in a process of its own; whatever ends the process is an outcome.
+
+    Args:
+        case: what to run.
+        limit: seconds of processor time, the same on a busy machine, after which the process ends.
+    """
+    end = processes.run("benchmarks.stability.solve", [json.dumps(case.changed), str(limit)], limit)
+    if end.reason:
+        return Outcome("failed", end.reason, end.message, seconds=0.0 if end.reason.startswith("CRASH") else limit)
+    try:
+        return Outcome(**json.loads(end.stdout.splitlines()[-1]))
+    except (IndexError, TypeError, json.JSONDecodeError):
+        return Outcome("failed", "CRASH", "no outcome printed")
+
+
+def run_all(
+    cases: Iterable[Case],
+    runs: Runs,
+    jobs: int,
+    limit: float,
+    hours: float,
+    report: Callable[[Case, Outcome, int], None] = lambda case, outcome, left: None,
+) -> int:
+    """Run what is missing; return the number of cases that were not run for want of time.
+
+    Args:
+        cases: in the order in which they are started.
+        runs: is written after each run.
+        jobs: processes at a time.
+        limit: seconds of processor time for one run.
+        hours: after which no further run is started.
+        report: called with each case, its outcome and the number of those left.
+    """
+
+    def done(case: Case, outcome: Outcome, left: int) -> None:
+        runs.add(case, outcome)
+        report(case, outcome, left)
+
+    return Pool[Case, Outcome](lambda case: solve(case, limit), jobs, hours).run(runs.missing(cases), done)

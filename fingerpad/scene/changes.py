@@ -1,0 +1,57 @@
+"""From a scene and changes of some keys to the data of another scene; element sizes of a coarse start."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from fingerpad.scene.contradictions import DEFAULT_HISTORY
+from fingerpad.scene.parameters import FORMULATION_KEYS
+from fingerpad.scene.reading import plain
+
+if TYPE_CHECKING:
+    from fingerpad.scene.scene import Scene
+
+_START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}  # m, but for the growth
+_START_AT_SITES = 10e-6  # m; coarser elements do not resolve the tips of 6 µm: halving them does not show the error
+
+
+def changed(scene: "Scene", changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the data of a scene with changes, without the keys that the changes make meaningless.
+
+    Args:
+        scene: the present one.
+        changes: values by key, as for :meth:`fingerpad.scene.Scene.replace`.
+    """
+    present = plain(scene)
+    if "accuracy" in changes and scene.accuracy is not None:
+        coarse = start(scene.accuracy.tolerances())
+        present["mesh"] = {key: size for key, size in present.get("mesh", {}).items() if coarse.get(key) != size}
+    if changes.get("history") is not None:
+        present = {key: value for key, value in present.items() if key not in DEFAULT_HISTORY}
+    contact, formulation = changes.get("contact"), scene.contact.formulation
+    if isinstance(contact, Mapping) and contact.get("formulation", formulation) != formulation:
+        present["contact"] = {
+            key: value for key, value in present.get("contact", {}).items() if key not in FORMULATION_KEYS
+        }
+    return _merged(present, changes)
+
+
+def _merged(present: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a table with changes: tables are merged, all else is replaced."""
+    found = dict(present)
+    for key, value in changes.items():
+        both = isinstance(value, Mapping) and isinstance(found.get(key), Mapping)
+        found[key] = _merged(found[key], value) if both else value
+    return found
+
+
+def with_coarse_start(data: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the data of a scene; with an accuracy, sizes that are not given are those of :func:`start`."""
+    mesh, accuracy = data.get("mesh", {}), data.get("accuracy")
+    if not (isinstance(mesh, dict) and isinstance(accuracy, dict) and accuracy):
+        return data
+    return {**data, "mesh": start(accuracy) | mesh}
+
+
+def start(asked: Mapping[str, Any]) -> dict[str, float]:
+    """Return the element sizes from which a scene starts that asks for accuracies by quantity."""
+    return _START | ({"receptor": _START_AT_SITES} if asked.get("sed") is not None else {})

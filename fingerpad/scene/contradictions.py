@@ -1,0 +1,90 @@
+"""Keys of a scene that contradict each other although each is within its own bounds."""
+
+from typing import TYPE_CHECKING
+
+from fingerpad.scene.load_names import first_clash
+from fingerpad.scene.messages import show
+
+if TYPE_CHECKING:
+    from fingerpad.scene.scene import Scene
+
+DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
+"""Keys of the default loads, which a history replaces."""
+_LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
+
+
+def refuse_contradictions(scene: "Scene") -> None:
+    """Refuse the first contradiction between keys.
+
+    Raises:
+        ValueError: the keys, their values and the remedy, in one sentence.
+    """
+    _refuse_accuracy(scene)
+    _refuse_endless_gap(scene)
+    if scene.history is not None:
+        _refuse_history(scene)
+        _refuse_floating(scene)
+
+
+def _refuse_accuracy(scene: "Scene") -> None:
+    """Refuse an accuracy whose states cannot be moved to another mesh, or of sites that are not there."""
+    if scene.accuracy is None:
+        return
+    if scene.numerics.element == "P2-P1":
+        raise ValueError(
+            "accuracy is given and numerics.element is 'P2-P1', whose pressure cannot be carried to another mesh; "
+            "take 'P2'"
+        )
+    if scene.accuracy.sed is not None and not scene.output.receptors:
+        raise ValueError(
+            f"accuracy.sed is {show(scene.accuracy.sed)} and output.receptors is false, without which there are no "
+            "sites; leave out one of the two"
+        )
+
+
+def _refuse_endless_gap(scene: "Scene") -> None:
+    """Refuse a roughness that holds the air gap of an unloaded ridge at more than a metre."""
+    gap = scene.roughness.largest_gap(scene.h_0)
+    if not gap < _LARGEST_GAP:
+        raise ValueError(
+            f"roughness.p_floor is {show(scene.roughness.p_floor)}, where the air gap would be held at {gap:.3g} m; "
+            f"it must be below {_LARGEST_GAP:g} m: take a larger p_floor, or a smaller gamma or h_rms"
+        )
+
+
+def _refuse_history(scene: "Scene") -> None:
+    """Refuse a history beside keys of the default loads, without a first height, or with two loads of one name."""
+    history = scene.history or ()
+    for name in DEFAULT_HISTORY:
+        if name in scene.model_fields_set:
+            raise ValueError(
+                f"{name} is {show(getattr(scene, name))} and history is given too; "
+                "with a history each load states its own values"
+            )
+    first = history[0]
+    if first.f_ext is None and first.bone_height is None:
+        raise ValueError(
+            f"history[0].name is {show(first.name)}, with neither f_ext nor bone_height; "
+            "the first load must give one of them"
+        )
+    clash = first_clash([load.name for load in history])
+    if clash is not None:
+        one, other = (show(history[k].name) for k in clash)
+        raise ValueError(
+            f"history[{clash[1]}].name is {other} and history[{clash[0]}].name is {one}; each load must have a "
+            "name of its own, also where spaces become _ and letters have no case, since files are named by it"
+        )
+
+
+def _refuse_floating(scene: "Scene") -> None:
+    """Refuse loads that leave the bone neither held nor pressed nor attracted."""
+    f_ext, voltage = None, 0.0
+    for k, load in enumerate(scene.history or ()):
+        if load.f_ext is not None or load.bone_height is not None:
+            f_ext = load.f_ext
+        voltage = voltage if load.voltage is None else load.voltage
+        if f_ext == 0 and voltage == 0:
+            raise ValueError(
+                f"history[{k}].name is {show(load.name)}, which ends at f_ext 0 and voltage 0, where nothing holds "
+                "the skin on the screen; one of the two must be greater than 0, or a bone_height be given"
+            )
