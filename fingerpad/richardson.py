@@ -92,8 +92,8 @@ def to_refine(parameters: Mapping[str, MeshParameter], allowed: Mapping[str, flo
     """Return the parameters to halve once more on the way to errors within what is allowed, by name.
 
     For each quantity above its limit: as few parameters as suffice by their orders, those with the largest shares
-    first, and none whose share is below an equal part. Each is halved once, since the orders hold for small changes, and an
-    unnecessarily fine mesh costs more than a further round.
+    first, and none whose share is below an equal part. Each is halved once, since the orders hold for small changes,
+    and an unnecessarily fine mesh costs more than a further round.
 
     Args:
         parameters: mesh parameters that can be halved, with the changes by halving them.
