@@ -38,11 +38,11 @@ pages:
 	$(run) python3 -m benchmarks.pages
 
 verify:
-	$(run) python3 benchmarks/verify.py
+	$(run) python3 -m benchmarks.verification
 
 paper:
 	$(run) python3 -m benchmarks.paper
 
 chart:
-	$(run) python3 benchmarks/errors.py
-	$(run) python3 benchmarks/chart.py
+	$(run) python3 -m benchmarks.errors
+	$(run) python3 -m benchmarks.chart

@@ -1,219 +1,281 @@
-"""Does the error estimate find the error, and is the accuracy asked for the one that is got?
+"""Error estimate and requested accuracy against known errors.
 
-environment/run python3 benchmarks/accuracy.py [--jobs 2] [--draw]
+environment/run python3 -m benchmarks.accuracy [--jobs 2] [--draw]     after benchmarks.errors; some hours
 
-Whole loops: scenes of which an accuracy is asked, ten of them drawn at random (benchmarks/untuned.py), run as a user
-would, against what their states tend to on meshes refined further (benchmarks/limits.py). Beneath them the estimate by
-itself (benchmarks/effectivity.py), whose runs benchmarks/errors.py makes. Writes docs/accuracy.md.
+Whole runs: scenes with an ``[accuracy]``, ten of them drawn at random, against their limits on finer meshes
+(benchmarks/limits.py). Beside them the estimate for one mesh parameter at a time, from docs/errors.json, and for
+Hertz's contact. Writes docs/accuracy.json, which fixes the factors of safety of fingerpad/richardson.py, and
+docs/accuracy.md.
 """
 
+import itertools
 import sys
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from benchmarks import arguments, calibration, limits, untuned
-from benchmarks.convergence import Limit
-from benchmarks.effectivity import HIGH, LOW, cell, hertz_table, knob_tables, tally
-from benchmarks.errors import DEFAULT, LEVELS, folder_of_limits
-from fingerpad.io.files import replace
-from fingerpad.io.states import WORDS
-from fingerpad.runs.batch import result, sweep
-from fingerpad.scene import Scene
+import numpy as np
 
-_STATES = {"press": WORDS["uncharged"], "normal": WORDS["charged"], "slip": WORDS["full_slip"]}
-_SHORT = {"mu_app": "µ_app", "contact_length": "contact length", "sed": "SED"}
-_CHOSEN = ("contact", "growth", "receptor")
-_TEN = {"mu_app": 0.01, "contact_length": 0.03}
-_SITES = {"sed": 0.05}
-_DEFAULT = ({"mu_app": 0.01}, _TEN, {"contact_length": 0.01}, _SITES)  # asked of the default scene
+from benchmarks import harness
+from benchmarks.calibration import HERTZ, WHOLE, Case, coverage, coverages, kept, table, tally
+from benchmarks.convergence import Limit, limit
+from benchmarks.errors import DEFAULT, LEVELS, STATES, stiffer
+from fingerpad.accuracy.rigid_screen import ORDER
+from fingerpad.model.check import check
+from fingerpad.model.touching import by_rule
+from fingerpad.richardson import MORE, ONCE, MeshParameter
+from fingerpad.runs.batch import Summary
+from fingerpad.scene import Scene, SceneError, from_data, start
+from fingerpad.scene.parameters import Accuracy
+
 _LIMIT = 7200.0  # s of processor time for one scene
-_HEADER = f"""# Does the error estimate find the error?
-
-Made by `environment/run python3 benchmarks/accuracy.py`; do not edit. *Estimate*: what the run estimates of its own
-discretisation error, without the factors of safety with which it prints and refines (last section). *Error*: the
-distance from the limit, over the same screen: the penalty's share is no part of it. *Effectivity*: estimate over error,
-wanted between {LOW:g} and {HIGH:g}; one in brackets is of an error below its own bar, which says nothing. Numbers are
-per cent of the limit."""
-_LOOPS = """## Accuracy asked for
-
-The default scene as it is comes with its estimate from coarser meshes, as every run does. Each other scene is run with
-an `[accuracy]` and nothing else about its mesh but which ridges can touch, by the rule of thumb of
-`fingerpad/model/touching.py`, as in all benchmarks. The limit is that of its states solved again on meshes of one
-family down to a contact size of 1.25 µm, with its error bar. Cost: all factorisations × unknowns (path, estimate, and
-coarser paths that were lost), over those of the default scene's whole run on its own mesh. Ten scenes were drawn at
-random from a quarter about the default finger's lengths, materials and roughness (one seed, `benchmarks/untuned.py`),
-and each is asked twice: for friction and contact length, and for energy densities. *Likely*: the error is within what
-was allowed, but not by its bar; counted as met. Runs are kept, so that a cost is that of the version which ran it: most
-states were carried from mesh to mesh before their skin was put down to the screen (`variational/solvers/transfer.py`),
-and all before bodies were settled under their skin (`variational/solvers/continuation.py`). What was asked for had to
-be met by the estimate alone then; it is now by the estimate with its factors of safety, so that the same scene may be
-refined further."""
+_SHORT = {"mu_app": "µ_app", "f_t": "f_T", "contact_length": "contact length", "sed": "SED"}
+_TEN = ({"mu_app": 0.01, "contact_length": 0.03}, {"sed": 0.05})  # requested of each scene drawn
+_DEFAULT = ({"mu_app": 0.01}, _TEN[0], {"contact_length": 0.01}, _TEN[1])  # of the default scene
+_PARAMETERS = {"contact": "contact size (µm)", "growth": "growth", "receptor": "sites (µm)"}
+SEED, COUNT = 2023, 10
+_RANGES = {"f_ext": (10.0, 120.0), "voltage": (0.0, 200.0), "friction": (0.15, 0.5)}  # N/m, V
+_QUARTER = (
+    *("geometry.sc_thickness", "geometry.ridge_amplitude", "geometry.bone_width", "geometry.dermis_thickness"),
+    *("materials.subcutis.shear_modulus", "materials.stratum_corneum.shear_modulus"),
+    *("roughness.h_rms", "roughness.young", "electric.eps_sc"),
+)
 
 
-@dataclass(frozen=True)
-class Judged:
-    """A quantity of a run with an accuracy, against its limit; all but the name relative to the limit."""
-
-    name: str
-    allowed: float | None
-    estimate: float
-    error: float
-    bar: float
-
-    @property
-    def met(self) -> str:
-        """Whether the error is within what was allowed; ``likely`` if its bar leaves that open, empty if none was."""
-        if self.allowed is None:
-            return ""
-        if self.error > self.allowed:
-            return "no"
-        return "yes" if self.error + self.bar <= self.allowed else "likely"
-
-    @property
-    def effectivity(self) -> float:
-        """Estimate over error."""
-        return self.estimate / self.error if self.error else float("inf")
+# -- scenes --------------------------------------------------------------------------------------------------
+def _value(key: str) -> float:
+    value: Any = Scene()
+    for part in key.split("."):
+        value = getattr(value, part)
+    return float(value)
 
 
-def judged(summary: Mapping[str, Any], ends: Mapping[str, Limit]) -> list[Judged]:
-    """Return the quantities of friction and contact, and the worst energy density of a state.
+def drawn() -> dict[str, Scene]:
+    """Return :data:`COUNT` scenes by number, force, voltage and friction; always the same.
 
-    The latter not where an accuracy was asked for, but not of energy densities: their sites are coarse then.
+    Force, voltage and friction are drawn evenly from their ranges, other parameters within a quarter of their default.
+    A finger that cannot be built is drawn again.
     """
-    found, quantities = [], summary["accuracy"]["quantities"]
-    asked = any(q["allowed"] is not None for q in quantities.values())
-    for name, q in quantities.items():
-        if name not in ends or name == "slip_f_t" or ("_sed_" in name and asked and q["allowed"] is None):
+    random, found = np.random.default_rng(SEED), dict[str, Scene]()
+    while len(found) < COUNT:
+        values = {key: random.uniform(*span) for key, span in _RANGES.items()}
+        values |= {key: _value(key) * random.uniform(0.75, 1.25) for key in _QUARTER}
+        data: dict[str, Any] = {}
+        for key, value in values.items():
+            *tables, last = key.split(".")
+            place = data
+            for name in tables:
+                place = place.setdefault(name, {})
+            place[last] = float(f"{value:.3g}")
+        scene = by_rule(from_data(data))
+        try:
+            check(scene)
+        except SceneError:
             continue
-        end = ends[name]
-        of = abs(end.value)
-        if "_sed_" in name:  # over the largest
-            sites = f"{name.split('_')[0]}_sed_"
-            of = max(abs(each.value) for other, each in ends.items() if other.startswith(sites))
-        allowed = None if q["allowed"] is None else q["allowed"] / of
-        estimate = q.get("estimate", q["error"])  # runs from before there were factors of safety have the error alone
-        found.append(Judged(name, allowed, estimate / of, abs(q["value"] - end.value) / of, end.bar / of))
-    worst = list[Judged]()
-    for state in _STATES:
-        there = [row for row in found if row.name.startswith(f"{state}_sed_")]
-        worst += sorted(there, key=lambda row: row.error)[-1:]
-    return [row for row in found if "_sed_" not in row.name or row in worst]
-
-
-def spent(summary: Mapping[str, Any]) -> tuple[float, float]:
-    """Return factorisations times unknowns, and processor time (s), of all solves and of starts that were lost."""
-    a, lost = summary["accuracy"], summary.get("failed_starts", [])
-    work = a["unknowns_times_factorisations"] + sum(start["unknowns"] * start["factorisations"] for start in lost)
-    return work, a["processor_seconds"] + sum(start["processor_seconds"] for start in lost)
-
-
-def of_default() -> dict[str, Scene]:
-    """Return the default scene with the accuracies that are asked of it, by name."""
-    return {_words(asked): untuned.asked(DEFAULT, **asked) for asked in _DEFAULT}
-
-
-def loops() -> dict[str, tuple[Scene, Scene]]:
-    """Return by name the scenes with an accuracy, and without as their limits are of."""
-    found = {"default scene as it is": (DEFAULT, DEFAULT)}
-    found |= {f"default scene, {asked}": (scene, DEFAULT) for asked, scene in of_default().items()}
-    for asked in (_TEN, _SITES):
-        for name, scene in untuned.scenes().items():
-            found[f"{name}; {_words(asked)}"] = (untuned.asked(scene, **asked), scene)
+        found[f"{len(found) + 1}: {scene.f_ext:g} N/m, {scene.voltage:g} V, friction {scene.friction:g}"] = scene
     return found
 
 
-def _asked(scene: Scene) -> str:
-    return "" if scene.accuracy is None else _words(scene.accuracy.tolerances())
+def with_accuracy(scene: Scene, **tolerances: float) -> Scene:
+    """Return a scene with a requested accuracy, on the coarse mesh where its refinement starts."""
+    mesh = scene.mesh.model_copy(update=start(tolerances))
+    return scene.model_copy(update={"accuracy": Accuracy(**tolerances), "mesh": mesh})
 
 
-def _words(asked: Mapping[str, float]) -> str:
-    return ", ".join(f"{_SHORT[name]} {100 * value:g} %" for name, value in asked.items())
+def _words(request: Mapping[str, float]) -> str:
+    return ", ".join(f"{_SHORT[name]} {100 * value:g} %" for name, value in request.items())
 
 
-def _known(plain: Scene, out: Path) -> dict[str, Any] | None:
-    return limits.kept(plain, LEVELS, folder_of_limits(out))
+def loops() -> dict[str, tuple[Scene, str]]:
+    """Return by name the scenes with an accuracy, each with the name of the scene whose limit is its own."""
+    found = {"default scene as it is": (DEFAULT, "default scene")}
+    found |= {f"default scene; {_words(r)}": (with_accuracy(DEFAULT, **r), "default scene") for r in _DEFAULT}
+    plain = drawn()
+    return found | {f"{name}; {_words(r)}": (with_accuracy(plain[name], **r), name) for r in _TEN for name in plain}
 
 
-def loop_tables(out: Path) -> str:
-    """Return the tables of the scenes with an accuracy."""
-    base = result(DEFAULT, out)
-    whole = None if base is None else base["unknowns"] * base["factorisations"]
-    lines = ["| scene | quantity | allowed (%) | estimate (%) | error (%) | effectivity | met |", "|---" * 7 + "|"]
-    costs = ["| scene | contact (µm) | growth | sites (µm) | unknowns | solves | cost |", "|---" * 7 + "|"]
-    coarser = list[str]()  # whose limit is of fewer meshes
-    met, effectivities, asked_for = dict[str, list[bool]](), list[float](), list[float]()
-    for name, (scene, plain) in loops().items():
-        summary, known = result(scene, out), _known(plain, out)
-        if summary is None or known is None:
-            words = "not run yet" if summary is None else "its limit is not known"
-            lines.append(f"| {name} | {words} |" + " |" * 5)
-            continue
-        if "accuracy" not in summary or "failure" in summary:
-            lines.append(f"| {name} | {summary.get('failure', 'comes without an estimate')} |" + " |" * 4 + " no |")
-            if plain != DEFAULT:
-                met.setdefault(_asked(scene), []).append(False)
-            continue
-        coarser += [name] if len(known["levels"]) < LEVELS else []
-        rows = judged(summary, limits.limits(known))
-        good = [row.met != "no" for row in rows if row.met]
-        if plain != DEFAULT:
-            met.setdefault(_asked(scene), []).append(all(good))
-        for row in rows:
-            clear = row.error > row.bar
-            effectivities += [row.effectivity] if clear else []
-            asked_for += [row.effectivity] if clear and row.met else []
-            allowed = "" if row.allowed is None else f"{100 * row.allowed:.2g}"
-            error = f"{100 * row.error:.2g} ± {100 * row.bar:.1g}"
-            cells = [name, _title(row.name), allowed, f"{100 * row.estimate:.2g}", error]
-            cells += [cell(row.effectivity, clear), row.met]
-            lines.append("| " + " | ".join(cells) + " |")
-        a = summary["accuracy"]
-        cost = f"{spent(summary)[0] / whole:.2f}" if whole else "–"
-        sizes = [f"{a['mesh'][s] * 1e6:g}" if s != "growth" else f"{a['mesh'][s]:g}" for s in _CHOSEN]
-        unknowns = max(solve["unknowns"] for solve in a["solves"])
-        costs.append(f"| {name} | " + " | ".join([*sizes, str(unknowns), str(len(a["solves"])), cost]) + " |")
-    verdicts = [f"{asked} in {sum(good)} of {len(good)}" for asked, good in met.items()]
-    verdict = f"**Met in the scenes drawn and run whose limit is known: {'; '.join(verdicts) or 'none is'}.**"
-    verdict += f" {tally(effectivities)} Of what was asked for: {tally(asked_for)}"
-    if coarser:
-        verdict += (
-            f" A state was not found on the last mesh, so that the limit is of those before: {'; '.join(coarser)}."
-        )
-    return "\n\n".join([_LOOPS, verdict, "\n".join(lines), "What was chosen and what it cost:", "\n".join(costs)])
-
-
+# -- numbers -------------------------------------------------------------------------------------------------
 def _title(name: str) -> str:
     state, quantity = name.split("_", 1)
-    if quantity.startswith("sed_"):
-        return f"SED at ridge {quantity[4:]}, {_STATES[state]}"
-    return f"{_SHORT[quantity]}, {_STATES[state]}"
+    words = f"SED at ridge {quantity[4:]}" if quantity.startswith("sed_") else _SHORT[quantity]
+    return f"{words}, {STATES[state]}"
 
 
-def page(out: Path) -> str:
-    """Return the page of what has been run."""
-    return "\n\n".join([_HEADER, loop_tables(out), knob_tables(out), hertz_table()]) + "\n"
+def judged(scene: str, summary: Summary, ends: Mapping[str, Limit]) -> list[Case]:
+    """Return the cases of a whole run: friction, contact lengths, and the worst energy density of each state.
+
+    Energy densities are left out where an accuracy was requested of other quantities alone: their sites are coarse.
+    """
+    quantities, found = summary["accuracy"]["quantities"], dict[str, Case]()
+    request = any(q["allowed"] is not None for q in quantities.values())
+    # Contact and bulk; steps, which lengths and energies of normal contact depend on; the sites.
+    parameters = 2 + ("SED" in scene) + ("SED" in scene or "contact length" in scene)
+    once = not request or len(summary["accuracy"]["solves"]) == 1 + parameters
+    for name, q in quantities.items():
+        sites = "_sed_" in name
+        if name not in ends or name == "slip_f_t" or (sites and request and q["allowed"] is None):
+            continue
+        end, of = ends[name], abs(ends[name].value)
+        if sites:  # over the largest of the state
+            of = max(
+                abs(each.value) for other, each in ends.items() if other.startswith(name.split("sed_")[0] + "sed_")
+            )
+        estimate, error, bar = (100 / of * v for v in (q["estimate"], abs(q["value"] - end.value), end.bar))
+        allowed = None if q["allowed"] is None else 100 * q["allowed"] / of
+        found[name] = Case(WHOLE, scene, _title(name), once, estimate, error, bar, allowed)
+    worst = []
+    for state in STATES:
+        worst += sorted((n for n in found if n.startswith(f"{state}_sed_")), key=lambda n: found[n].error)[-1:]
+    return [case for name, case in found.items() if "_sed_" not in name or name in worst]
 
 
-def main(given: Sequence[str] | None = None) -> int:
-    """Run what is missing and write the page."""
-    parser = arguments.parser(__doc__)
-    parser.add_argument("--draw", action="store_true", help="run nothing, draw what is there")
-    args = parser.parse_args(given)
-    failed = list[str]()
-    if not args.draw:
-        wanted = loops()
-        sweep({name: scene for name, (scene, _) in wanted.items()}, args.out, args.jobs, _LIMIT)
-        folder = folder_of_limits(args.out)
-        known = limits.ask_all({"default scene": DEFAULT}, LEVELS, folder, 1)
-        known |= limits.ask_all(untuned.scenes(), LEVELS, folder, args.jobs, uncharged=False)
-        failed = [f"{name}: {found['failure']}" for name, found in known.items() if "failure" in found]
-    replace(args.docs / "accuracy.md", page(args.out))
-    calibration.write(args.docs)
-    print("\n".join([*failed, str(args.docs / "accuracy.md")]))
-    return 1 if failed else 0
+def spent(summary: Summary) -> tuple[float, float]:
+    """Return factorisations times unknowns, and processor time (s), of all solves and of starts that failed."""
+    a, lost = summary["accuracy"], summary.get("failed_starts", [])
+    work = a["unknowns_times_factorisations"] + sum(s["unknowns"] * s["factorisations"] for s in lost)
+    return work, a["processor_seconds"] + sum(s["processor_seconds"] for s in lost)
+
+
+def row(summary: Summary, base: float) -> dict[str, Any]:
+    """Return the mesh chosen by a run with an accuracy, and its cost; ``base`` is the work of the default scene."""
+    a, (work, seconds) = summary["accuracy"], spent(summary)
+    found = {name: a["mesh"][name] for name in _PARAMETERS} | {"solves": len(a["solves"])}
+    found |= {
+        "unknowns": max(s["unknowns"] for s in a["solves"]),
+        "cost": work / base,
+        "work": work,
+        "seconds": seconds,
+    }
+    return found | {"values": {name: q["value"] for name, q in a["quantities"].items()}}
+
+
+def of_parameter(name: str, rows: Sequence[Mapping[str, Any]]) -> Iterator[Case]:
+    """Yield the cases of a study of docs/errors.json, without the finest run, whose change makes the limit."""
+    for quantity in rows[0]["quantities"]:
+        if quantity in ("slip_mu_app", "unknowns", "factorisations") or "ridges" in quantity:
+            continue  # counts, and the quotient of f_T and a given force
+        found = [r["quantities"][quantity] for r in rows]
+        parts = [r["lengths"].get(quantity, r["quantities"][quantity]) for r in rows]
+        end = limit(found) if name == "contact" else Limit(found[-1], 0.0, None)
+        parameter, of = MeshParameter(), 100 / abs(end.value)
+        for k, (coarse, fine) in enumerate(itertools.pairwise(parts[:-1]), start=1):
+            parameter.see({quantity: coarse}, {quantity: fine})
+            at = rows[k]["value"] * (1e6 if name != "growth" else 1)
+            estimate, error = (of * value for value in (parameter.share(quantity), abs(found[k] - end.value)))
+            words = f"{_PARAMETERS[name]}: {at:g}"
+            yield Case(name, words, _title(quantity), k == 1, estimate, error, of * end.bar)
+
+
+def compute(args: Any) -> None:
+    """Run what is missing and keep the numbers."""
+    from benchmarks import hertz, limits
+
+    wanted, errors = loops(), harness.kept("errors", args.docs).numbers
+    summaries = harness.run({name: scene for name, (scene, _) in wanted.items()}, args, _LIMIT)
+    folder = args.out.parent / "limits"
+    ends = limits.ask_all({"default scene": DEFAULT}, LEVELS, folder, 1)
+    ends |= limits.ask_all(drawn(), LEVELS, folder, args.jobs, uncharged=False)
+    cases, runs = list[Case](), dict[str, Any]()
+    base = errors["default"]["unknowns"] * errors["default"]["factorisations"]
+    for name, (_, plain) in wanted.items():
+        summary = summaries[name]
+        if "failure" in summary:
+            runs[name] = {"failure": summary["failure"]}
+        elif "failure" in ends[plain]:
+            runs[name] = {"unknown": "the limit of this scene is not known"}
+        else:
+            cases += judged(name, summary, limits.limits(ends[plain]))
+            runs[name] = row(summary, base)
+    for name in _PARAMETERS:
+        cases += of_parameter(name, errors["studies"][name])
+    cases += hertz.cases()
+    numbers = {"cases": [asdict(case) for case in cases], "runs": runs}
+    harness.keep("accuracy", numbers, harness.made(summaries.values()), args.docs)
+
+
+# -- page ----------------------------------------------------------------------------------------------------
+_HOW = f"""The *error* is the distance from the limit of the scene's states, solved again on meshes down to a contact
+size of 1.25 µm (`benchmarks/limits.py`). Runs and limits have the same penalty, so that its effect is no part of the
+error. The *estimate* is the run's own, from other meshes (`fingerpad/richardson.py`). The *printed error* is the
+estimate times a factor of safety: {ONCE:g} for a size that was halved or doubled once, {MORE:g} for a size halved more
+often. A case is *covered* if the printed error is at least the error. Where a run has both sorts of sizes, the smaller
+factor is taken here, so that the run prints more. Cases whose error is smaller than its uncertainty are left out. A
+scene gives several cases, so that they are not independent. *Effectivity* is estimate over error; values in brackets
+are not significant: the error is smaller than its uncertainty. All numbers are per cent of the limit.
+
+Ten scenes were drawn at random (one seed): force, voltage and friction from their ranges, lengths, materials and
+roughness within a quarter of the default finger's. Each was run with two requests. *Likely* means that the error is
+within the request, but not by its uncertainty; such cases count as met. Cost is factorisations × unknowns of all
+solves, over those of the default scene's whole run. The kept runs are of several versions, in which the estimate alone
+had to meet a request. The program now requires the printed error to meet it, and so may refine further."""
+_RIGID = """Beside its error a run prints the effect of a rigid screen (`fingerpad/accuracy/rigid_screen.py`), from its
+states over a screen of twice the stiffness. The default scene at a contact size of 10 µm checks the law of order
+{order:g}: runs with 500 and 1500 MPa/mm predict the change at 5000 to a factor of {factor:.1f}."""
+_HERTZ = """The contact length of a cylinder is known but for 0.04 %. Its two edges move facet by facet, so that the
+change from one mesh to the next says little of the error of one contact. A finger has some thirty edges, whose errors
+partly cancel."""
+
+
+def _verdicts(runs: Mapping[str, Mapping[str, Any]], cases: Sequence[Case]) -> list[str]:
+    """Return how often each request was met in the scenes drawn; a run that failed did not meet it."""
+    good: dict[str, list[bool]] = {}
+    for name, each in runs.items():
+        if name.startswith("default") or "unknown" in each:
+            continue
+        mine = [case.met != "no" for case in cases if case.scene == name and case.met]
+        good.setdefault(name.split("; ")[1], []).append("failure" not in each and all(mine))
+    return [f"{request} in {sum(met)} of {len(met)} scenes" for request, met in good.items()]
+
+
+def _chosen(runs: Mapping[str, Mapping[str, Any]]) -> str:
+    rows = []
+    for name, r in runs.items():
+        if (words := r.get("failure", r.get("unknown"))) is not None:
+            rows.append([name, words, *[""] * 5])
+        else:
+            sizes = (f"{r[key] * (1 if key == 'growth' else 1e6):g}" for key in _PARAMETERS)
+            rows.append([name, *sizes, r["unknowns"], r["solves"], f"{r['cost']:.2f}"])
+    return harness.table(["scene", *_PARAMETERS.values(), "unknowns", "solves", "cost"], rows)
+
+
+def draw(docs: Path) -> Path:
+    """Draw the page from the kept numbers."""
+    numbers, cases = harness.kept("accuracy", docs), kept(docs)
+    n, bare, safe = coverage(cases)
+    of = {source: [case for case in cases if case.source == source] for source in (WHOLE, *_PARAMETERS, HERTZ)}
+    changes = stiffer(docs)
+    factor = max(max(predicted / change, change / predicted) for predicted, change in changes.values())
+    rigid = [[STATES[state], *(f"{1e3 * v:.3f}" for v in pair)] for state, pair in changes.items()]
+    verdicts = "; ".join(_verdicts(numbers.numbers["runs"], cases))
+    finding = (
+        f"The printed error of a run is at least the known error in {safe} of {n} cases ({100 * safe / n:.0f} %). "
+        f"Without its factors of safety the estimate covers {bare} ({100 * bare / n:.0f} %).\n\n"
+        f"A requested accuracy was met in the scenes drawn at random: {verdicts}."
+    )
+    parameters = [case for name in _PARAMETERS for case in of[name]]
+    body = [
+        "## Coverage",
+        coverages(cases),
+        "## Effect of a rigid screen",
+        _RIGID.format(order=ORDER, factor=factor),
+        harness.table(["contact length", "1500 to 5000 MPa/mm, predicted (mm)", "found (mm)"], rigid),
+        "## Whole runs",
+        tally(of[WHOLE]),
+        harness.folded("All cases of whole runs", table(of[WHOLE])),
+        harness.folded("Chosen meshes and their cost", _chosen(numbers.numbers["runs"])),
+        "## One mesh parameter at a time",
+        f"The default scene with one size changed. {tally(parameters)}",
+        harness.folded("All cases of one mesh parameter", table(parameters)),
+        "## Hertz's contact",
+        f"{_HERTZ} {tally(of[HERTZ])}",
+        harness.folded("All cases of Hertz's contact", table(of[HERTZ])),
+    ]
+    path, by, command = docs / "accuracy.md", numbers.made, "python3 -m benchmarks.accuracy"
+    return harness.page(
+        path, "Accuracy of the error estimate", finding, _HOW, body, command, by, ["accuracy", "errors"]
+    )
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(harness.main(__doc__, compute, draw))

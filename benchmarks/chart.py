@@ -1,82 +1,87 @@
-"""Error against work: one setting after the other, around the default scene.
+"""Error over work: one numerical setting after the other, around the default scene.
 
-environment/run python3 benchmarks/chart.py [--jobs 2] [--draw]     also: make chart
+environment/run python3 -m benchmarks.chart [--jobs 2] [--draw]     after benchmarks.errors, accuracy and models; hours
 
-Each run is the default scene (press, charge, slide to full slip) with a setting of its own; what else there is, and
-what error and work are, says benchmarks/points.py. Writes docs/chart.md, docs/chart.png, docs/chart_time.png and
-docs/chart.json; runs are kept in results/traces, so that drawing anew takes seconds.
+Each run is the default scene (press, charge, slide to full slip) with a setting of its own (benchmarks/points.py).
+Writes docs/chart.json, docs/chart.md and docs/chart.png.
 """
 
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from functools import partial
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from benchmarks import arguments, errors
+from benchmarks import errors, harness
 from benchmarks.convergence import Limit
-from benchmarks.paper.style import BLUE, GREEN, GREY, PURPLE, VERMILION, draw
 from benchmarks.points import (
     AGAIN,
     ALL,
-    ASKED,
     DEFAULT,
     KINDS,
-    LADDER,
-    MEASURES,
+    NO_PATH,
+    OTHER_MODEL,
     QUANTITIES,
-    RUNG_1,
-    STATES,
+    REDUCED,
+    REQUESTED,
     Point,
-    collect,
-    missing,
+    Reference,
+    runs,
     scenes,
+    without_path,
 )
-from fingerpad.io.files import replace, replace_json
-from fingerpad.runs.batch import sweep
 
 _LIMIT = 10800.0  # s of processor time for one run
-_TICKS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
-TARGETS = (5e-2, 1e-2, 2e-3)  # errors that the table tells the cost of
-PICTURES = {"work": "chart.png", "seconds": "chart_time.png"}
-_LOOKS = {
-    "contact size": (BLUE, "o"),
-    "growth": (VERMILION, "^"),
-    "size at the sites": (GREEN, "s"),
-    "all sizes": ("black", "P"),
-    "element": (PURPLE, "D"),
-    "formulation": ("#E69F00", "v"),
-    "solver": (GREY, "X"),
-    "steps": ("#56B4E9", "<"),
-}
-_ALL_AT = (0, 1)  # row and column of the panel
-OTHER_MODEL = "formulation"
-_STATES_ONLY = {ASKED: ("black", "1"), AGAIN: ("black", "2"), LADDER: ("black", "x")}  # no whole path
+MEASURES = {"work": "factorisations × unknowns", "seconds": "processor time"}
+TARGETS = (5e-2, 1e-2, 2e-3)  # errors whose cost is in the tables
 
 
-def known(points: Sequence[Point], quantity: str, measure: str) -> list[tuple[float, Point]]:
-    """Return the points that say something of a quantity, with what they cost, from cheap to dear."""
-    found = [(cost, p) for p in points if (cost := p.cost(quantity, measure)) is not None]
-    return sorted(found, key=lambda each: (each[0], each[1].errors[quantity]))
+# -- numbers -------------------------------------------------------------------------------------------------
+def compute(args: Any) -> None:
+    """Run what is missing and keep the numbers."""
+    wanted = {label: scene for (_, label), scene in scenes().items()}
+    summaries, reference = harness.run(wanted, args, _LIMIT), errors.known(args.docs)
+    points = [*runs(args.out, reference), *without_path(args.docs, reference)]
+    numbers = {
+        "reference": {name: vars(reference[name]) for name in QUANTITIES},
+        "points": [asdict(point) for point in points],
+        "lost": lost(summaries),
+    }
+    harness.keep("chart", numbers, harness.made(summaries.values()), args.docs)
 
 
-def whole(points: Sequence[Point]) -> list[Point]:
-    """Return the runs that have followed the whole path to their states."""
-    return [p for p in points if p.family not in _STATES_ONLY]
+def lost(summaries: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """Return the runs that did not reach full slip, with the reason."""
+    no_slip = "no steady full slip by the end of the slide"
+    return [f"{label}: {s.get('failure', no_slip)}" for label, s in summaries.items() if not s.get("full_slip")]
+
+
+# -- page ----------------------------------------------------------------------------------------------------
+def known(points: Sequence[Point], quantity: str, measure: str) -> list[tuple[float, float, Point]]:
+    """Return the points that answer for a quantity, with cost and error, from cheap to expensive."""
+    found = [(cost, p.error(quantity) or 0.0, p) for p in points if (cost := p.cost(quantity, measure)) is not None]
+    return sorted(found, key=lambda each: each[:2])
+
+
+def judged(points: Sequence[Point]) -> list[Point]:
+    """Return the runs along the whole path with the default's contact model.
+
+    Another formulation or penalty is another model: its difference may hide the mesh's error.
+    """
+    return [p for p in points if p.family not in (*NO_PATH, OTHER_MODEL)]
 
 
 def front(points: Sequence[Point], quantity: str, measure: str = "work") -> list[Point]:
-    """Return Pareto's front from cheap to dear: no other run of the model is both cheaper and nearer to the reference.
-
-    Runs with another formulation or penalty are of another model, whose difference may hide the mesh's error.
-    """
-    found = list[Point]()
-    for _, point in known([p for p in whole(points) if p.family != OTHER_MODEL], quantity, measure):
-        if not found or point.errors[quantity] < found[-1].errors[quantity]:
+    """Return Pareto's front from cheap to expensive: no other judged run is both cheaper and more accurate."""
+    found, least = list[Point](), np.inf
+    for _, error, point in known(judged(points), quantity, measure):
+        if error < least:
             found.append(point)
+            least = error
     return found
 
 
@@ -84,175 +89,179 @@ def _default(points: Sequence[Point]) -> Point:
     return next(p for p in points if p.label == DEFAULT)
 
 
-def _base(points: Sequence[Point], quantity: str, measure: str) -> float:
+def base(points: Sequence[Point], quantity: str, measure: str) -> float:
+    """Return the cost of the default scene.
+
+    Raises:
+        ValueError: it was not kept.
+    """
     cost = _default(points).cost(quantity, measure)
     if cost is None:
-        raise ValueError(
-            f"what the default scene took in {MEASURES[measure]} is not known; delete its run, run it again"
-        )
+        raise ValueError(f"the {MEASURES[measure]} of the default scene is not known; delete its run, run it again")
     return cost
 
 
-def _panel(ax: Axes, points: Sequence[Point], quantity: str, reference: Limit, measure: str) -> None:
-    base = _base(points, quantity, measure)
-
-    def at(some: Sequence[Point]) -> tuple[list[float], list[float]]:
-        pairs = [(cost / base, p.errors[quantity]) for cost, p in known(some, quantity, measure)]
-        return [x for x, _ in pairs], [y for _, y in pairs]
-
-    ax.axhspan(1e-6, reference.bar / abs(reference.value), color="0.9", lw=0)
-    for point in points:
-        if point.label == RUNG_1 and quantity in point.errors:
-            ax.axhline(point.errors[quantity], color="black", ls=":", lw=0.8)
-    points = [p for p in points if p.label != RUNG_1]
-    ax.step(*at(front(points, quantity, measure)), "k-", where="post", lw=0.8)
-    for family, (colour, marker) in (_LOOKS | _STATES_ONLY).items():
-        size = 8 if family in _STATES_ONLY else 5
-        ax.plot(*at([p for p in points if p.family == family and p.label != DEFAULT]), marker, color=colour, ms=size)
-    ax.plot(*at([_default(points)]), "*", color=BLUE, mec="black", mew=0.5, ms=13)
-    ax.set(xscale="log", yscale="log")
-    ax.set_xticks(_TICKS, [f"{tick:g}" for tick in _TICKS])
-    ax.minorticks_off()
-    shown = [p.errors[quantity] for _, p in known(points, quantity, measure)]
-    ax.set_ylim(max(0.5 * min(shown), 1e-5), 2 * max(shown))
-    ax.set(title=_words(quantity).replace(", ", "\n", 1))
+def cheapest(some: Sequence[Point], quantity: str, measure: str, own: float, target: float) -> str:
+    """Return the cheapest of some points within an error, with its cost over ``own``."""
+    good = [(p.label, cost / own) for cost, error, p in known(some, quantity, measure) if error <= target]
+    return f"{good[0][0]}: {good[0][1]:.2g}" if good else "none"
 
 
-def paint(figure: Figure, points: Sequence[Point], reference: Mapping[str, Limit], measure: str) -> None:
-    """Draw a panel for each quantity in each state; f_T is that of full slip, beside it are all and the legend."""
-    axes = figure.subplots(len(KINDS), len(STATES))
-    for row, kind in enumerate(KINDS):
-        for column, state in enumerate(STATES):
-            ax, quantity = axes[row, column], ALL if (row, column) == _ALL_AT else f"{state}_{kind}"
-            if quantity not in reference:
-                ax.axis("off")
-                continue
-            _panel(ax, points, quantity, reference[quantity], measure)
-    for ax in axes[-1]:
-        ax.set_xlabel(f"{MEASURES[measure]} / the default's")
-    for ax in (axes[0, 1], axes[1, 0], axes[2, 0]):
-        ax.set_ylabel("relative error")
-    legend, words = axes[0, 0], {ASKED: ASKED, AGAIN: "states solved again, finer and finer", LADDER: "rung 2"}
-    handles = [legend.plot([], [], m, color=c, label=family)[0] for family, (c, m) in _LOOKS.items()]
-    handles += legend.plot([], [], "*", color=BLUE, mec="black", ms=12, label="default scene")
-    handles += legend.plot([], [], "k-", lw=0.8, label="Pareto's front")
-    for family, (colour, marker) in _STATES_ONLY.items():
-        handles += legend.plot([], [], marker, color=colour, ms=8, label=words[family])
-    handles += legend.plot([], [], "k:", lw=0.8, label="rung 1, at once")
-    handles.append(legend.fill_between([], [], color="0.9", label="below the reference's error bar"))
-    legend.legend(handles=handles, loc="upper left", ncols=2, bbox_to_anchor=(0.0, 1.0))
-
-
-def _cheapest(points: Sequence[Point], quantity: str, measure: str, base: float) -> list[str]:
-    cells = []
-    for target in TARGETS:
-        good = [(cost, p) for cost, p in known(points, quantity, measure) if p.errors[quantity] <= target]
-        cells.append(f"{good[0][1].label}: {good[0][0] / base:.2g}" if good else "none")
-    return cells
-
-
-def costs(points: Sequence[Point], reference: Mapping[str, Limit], measure: str) -> str:
-    """Return a table of what errors cost: the cheapest run for each, and its cost over the default's."""
-    base = _default(points)
-    targets = " | ".join(f"{100 * t:g} %" for t in TARGETS)
-    lines = [f"| | reference's bar | {targets} | default's error | on the front |", "|---" * (len(TARGETS) + 4) + "|"]
+def costs(points: Sequence[Point], some: Sequence[Point], reference: Reference, measure: str) -> str:
+    """Return the table of the cheapest of some points for each error; beside runs with a path the default's error."""
+    rows, default, path = [], _default(points), DEFAULT in (p.label for p in some)
     for quantity in (*QUANTITIES, ALL):
-        end = reference[quantity]
-        bar = end.bar / abs(end.value)
-        runs = [p for p in whole(points) if p.family != OTHER_MODEL]
-        cells = _cheapest(runs, quantity, measure, _base(points, quantity, measure))
-        off = "not resolved" if base.errors[quantity] < bar else "no"
-        on = "yes" if base in front(points, quantity, measure) else off
-        cells = [_words(quantity), f"{100 * bar:.2g} %", *cells, f"{100 * base.errors[quantity]:.2g} %", on]
-        lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines)
+        own, bar = base(points, quantity, measure), 100 * _bar(reference[quantity])
+        rows.append([_words(quantity), *(cheapest(some, quantity, measure, own, target) for target in TARGETS)])
+        if path:
+            on = "yes" if default in front(points, quantity, measure) else "no"
+            rows[-1] += [f"{100 * (default.error(quantity) or 0):.2g} ± {bar:.1g} %", on]
+    head = ["quantity", *(f"{100 * t:g} %" for t in TARGETS)]
+    return harness.table(head + ["error of the default", "on the front"] * path, rows)
 
 
-def costs_of_states(points: Sequence[Point], measure: str) -> str:
-    """Return the same of the points that have a state or two and no path."""
-    some = [p for p in points if p.family in _STATES_ONLY]
-    lines = ["| | " + " | ".join(f"{100 * t:g} %" for t in TARGETS) + " |", "|---" * (len(TARGETS) + 1) + "|"]
-    for quantity in (*QUANTITIES, ALL):
-        cells = _cheapest(some, quantity, measure, _base(points, quantity, measure))
-        lines.append("| " + " | ".join([_words(quantity), *cells]) + " |")
-    return "\n".join(lines)
+def _bar(end: Limit) -> float:
+    return end.bar / abs(end.value)
 
 
 def _words(quantity: str) -> str:
     state, kind = quantity.split("_", 1)
-    return "all of these, the largest error" if quantity == ALL else f"{KINDS[kind]}, {STATES[state]}"
+    return "largest error of all quantities" if quantity == ALL else f"{KINDS[kind]}, {errors.STATES[state]}"
 
 
-_HEADER = """# What accuracy costs
-
-Made by `make chart`; do not edit. The default scene with one setting after the other changed, around a contact size of
-10 µm unless said otherwise. An error is the relative distance from the limit of [errors.md](errors.md), whose error bar
-is grey: what lies in the grey is not resolved. Work is the number of factorisations up to the state times the number of
-unknowns; processor time has the set-up in it, and shared its machine with other runs. *Not resolved*: cheaper runs come
-out nearer, but the default's error is below the bar. Energy densities at the sites do not feel the contact size, so
-that runs with a coarser one are cheaper than the default there, which is for all quantities at once: the last row is of
-the largest of these errors.
-
-The front and the first tables are of the runs that follow the whole path of the loads with the default's penalty, which
-the reference has. Another formulation or penalty is another model, drawn but not judged: a softer screen's longer
-contact hides the mesh's shorter one. What has two or three states alone is drawn beside the front as well: an accuracy
-asked for (all of its solves and the estimate are in its cost), states solved again on finer and finer meshes (each with
-its path and the coarser meshes), and the rungs of [the ladder](ladder.md), of which the first knows the uncharged
-contact length from full runs.
-The data: [chart.json](chart.json).
-"""
-_TABLES = {
-    "work": "The cheapest run for an error, and its factorisations × unknowns over those of the default scene:",
-    "seconds": "The same by processor time:",
+_MARKS = {  # kind of setting: its families, colour, marker
+    "mesh sizes": (("contact size", "growth", "size at the sites", "all sizes"), harness.BLUE, "o"),
+    "element": (("element",), harness.PURPLE, "D"),
+    "solver or steps": (("solver", "steps"), harness.GREY, "X"),
+    "without the path": ((REQUESTED, AGAIN), harness.GREEN, "^"),
+    "smooth finger": ((REDUCED,), harness.ORANGE, "s"),
 }
+_PANELS = ("slip_f_t", "normal_contact_length", "slip_sed_0", ALL)
 
 
-def write(
-    points: Sequence[Point],
-    total: int,
-    reference: Mapping[str, Limit],
-    docs: Path,
-    absent: Sequence[str] = (),
-) -> None:
-    """Write page, pictures and data."""
-    reference = {
-        **reference,
-        ALL: Limit(1.0, max(reference[q].bar / abs(reference[q].value) for q in QUANTITIES), None),
-    }
-    for measure, name in PICTURES.items():
-        paint_all = partial(paint, points=points, reference=reference, measure=measure)
-        draw(docs / name, (12, 10), paint_all)
-    runs = whole(points)
-    names = {quantity: "; ".join(p.label for p in front(points, quantity)) for quantity in (*QUANTITIES, ALL)}
-    fronts = "\n".join(f"- {_words(quantity)}: {labels}" for quantity, labels in names.items())
-    parts = [_HEADER, f"{len(runs)} of {total} runs.", *(f"Not there: {words}." for words in absent)]
-    for measure, words in _TABLES.items():
-        parts += [f"![Relative error over {MEASURES[measure]}]({PICTURES[measure]})"]
-        parts += [words, costs(points, reference, measure)]
-        parts += ["The same without the path of the loads:", costs_of_states(points, measure)]
-    parts.append(f"Pareto's fronts over factorisations × unknowns, from cheap to dear:\n\n{fronts}")
-    replace(docs / "chart.md", "\n\n".join(parts) + "\n")
-    data = {"reference": {q: vars(reference[q]) for q in QUANTITIES}, "points": [asdict(p) for p in points]}
-    replace_json(docs / "chart.json", data)
+def _panel(ax: Axes, points: Sequence[Point], quantity: str, bar: float) -> None:
+    own = base(points, quantity, "work")
+
+    def at(some: Sequence[Point]) -> tuple[list[float], list[float]]:
+        pairs = [(cost / own, error) for cost, error, _ in known(some, quantity, "work") if cost]
+        return [x for x, _ in pairs], [y for _, y in pairs]
+
+    ax.axhspan(1e-9, bar, color="0.9", lw=0)
+    best = front(points, quantity)
+    ax.step(*at(best), "k-", where="post", lw=0.9, label="front")
+    for words, (families, colour, marker) in _MARKS.items():
+        some = [p for p in points if p.family in families and p.label != DEFAULT]
+        ax.plot(*at(some), marker, color=colour, ms=6, label=words)
+    ax.plot(*at([_default(points)]), "*", color=harness.VERMILION, mec="black", mew=0.5, ms=14, label="default")
+    ax.set(xscale="log", yscale="log", title=_words(quantity), xlim=(0.04, 9))
+    ticks = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0)
+    ax.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    ax.minorticks_off()
+    shown = at([p for p in points if p.family != OTHER_MODEL])[1]
+    ax.set_ylim(max(0.5 * min(shown), bar / 5), 2 * max(shown))
+    ax.grid(alpha=0.3)
 
 
-def main(given: Sequence[str] | None = None) -> int:
-    """Run what is missing and write the page."""
-    parser = arguments.parser(__doc__)
-    parser.add_argument("--draw", action="store_true", help="run nothing, draw what is there")
-    args = parser.parse_args(given)
-    wanted = scenes()
-    if not args.draw:
-        sweep({f"{family}: {label}": scene for (family, label), scene in wanted.items()}, args.out, args.jobs, _LIMIT)
-    reference = errors.reference(args.out)
-    if not reference:
-        parser.error("the reference is missing; run benchmarks/errors.py first")
-    points = collect(args.out, args.docs, reference)
-    write(points, len(wanted), reference, args.docs, missing(args.out))
-    ran = len(whole(points))
-    print(f"{ran} of {len(wanted)} runs; {args.docs / 'chart.md'}")
-    return 0 if ran == len(wanted) else 1
+def paint(figure: Figure, points: Sequence[Point], reference: Reference) -> None:
+    """Draw error over work for friction, a contact length, an energy density and the largest of all errors."""
+    axes = figure.subplots(2, 2)
+    for ax, quantity in zip(axes.flat, _PANELS, strict=True):
+        _panel(ax, points, quantity, _bar(reference[quantity]))
+    for ax in axes[1]:
+        ax.set_xlabel("work / work of the default scene")
+    for ax in axes[:, 0]:
+        ax.set_ylabel("relative error")
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=7)
+
+
+_HOW = """Each run is the default scene (75 N/m, 200 V, slid to full slip) with one setting changed, around a contact
+size of 10 µm unless its name gives another one. The *error* is the relative distance from the limit of
+[errors.md](errors.md). *Work* is the number of factorisations up to the state of the quantity, times the number of
+unknowns. Processor time includes the set-up, on a machine shared with other runs. The *front* has the runs for which no
+other run is both cheaper and more accurate. It compares runs along the whole load path with the default's penalty.
+
+Another formulation or penalty is another model and is not judged: the longer contact over a softer screen hides the
+shorter one of a coarse mesh. Energy densities at the Merkel sites hardly depend on the contact size, so that runs with
+a coarser contact are cheaper than the default there."""
+_WITHOUT = """These answers have one to three states and no path. A requested accuracy costs all of its solves. A state
+solved again costs its coarse path and the coarser meshes, too. Of the reduced models ([models.md](models.md)),
+`cylinders` takes the uncharged contact length from full runs."""
+
+
+def _finding(points: Sequence[Point]) -> str:
+    default, everything = _default(points), [*QUANTITIES, ALL]
+    on = sum(default in front(points, quantity) for quantity in everything)
+    aims = ((ALL, 0.05), ("slip_f_t", 0.01), ("slip_f_t", 0.002))
+    best = [cheapest(judged(points), q, "work", base(points, q, "work"), target) for q, target in aims]
+    finding = (
+        f"The default settings give all quantities to {100 * (default.error(ALL) or 0):.2g} %. For {on} of "
+        f"{len(everything)} quantities no other run is both cheaper and more accurate.\n\nLess accuracy costs less. "
+        "The cheapest settings, with their work over the default's, are:\n\n"
+        f"- for all quantities within 5 %: {best[0]},\n- for the friction within 1 %: {best[1]},\n"
+        f"- for the friction within 0.2 %: {best[2]}."
+    )
+    linear = next((p.errors for p in points if p.label == "P1"), None)
+    if linear is None:
+        return finding
+    length, sed = linear["normal_contact_length"], linear["slip_sed_0"]
+    return finding + (
+        f"\n\nLinear elements (P1) are cheaper still, but wrong by {100 * length:.0f} % in the contact length and by "
+        f"{100 * sed:.0f} % in the energy density."
+    )
+
+
+def _other_models(points: Sequence[Point]) -> str:
+    rows = []
+    for p in points:
+        if p.family == OTHER_MODEL:
+            cells = (f"{100 * p.errors[q]:.2g} %" for q in ("slip_f_t", "normal_contact_length", "slip_contact_length"))
+            rows.append([p.label, f"{p.work['slip'] / base(points, ALL, 'work'):.2g}", *cells])
+    head = [
+        "formulation or penalty",
+        "work",
+        *map(_words, ("slip_f_t", "normal_contact_length", "slip_contact_length")),
+    ]
+    return harness.table(head, rows)
+
+
+def draw(docs: Path) -> Path:
+    """Draw page and picture from the kept numbers."""
+    kept = harness.kept("chart", docs)
+    points = [Point(**each) for each in kept.numbers["points"]]
+    reference = {name: Limit(**each) for name, each in kept.numbers["reference"].items()}
+    reference[ALL] = Limit(1.0, max(map(_bar, reference.values())), None)
+    states = [p for p in points if p.family in NO_PATH]
+    fronts = {quantity: "; ".join(p.label for p in front(points, quantity)) for quantity in (*QUANTITIES, ALL)}
+    lists = "\n".join(f"- {_words(quantity)}: {labels}" for quantity, labels in fronts.items())
+    caption = (
+        "The default scene (star) lies on the front of error over work or close to it. Grey: below the uncertainty of "
+        "the limit."
+    )
+    ran, lost_ones = len(points) - len(states), kept.numbers["lost"]
+    work, time = ([costs(points, some, reference, m) for some in (judged(points), states)] for m in MEASURES)
+    body = [
+        harness.picture(docs / "chart.png", (9, 7), lambda figure: paint(figure, points, reference), caption),
+        "## Cheapest run for an error",
+        "A number is the work over that of the default scene.",
+        work[0],
+        harness.folded("The same by processor time", time[0]),
+        "## Without the path",
+        _WITHOUT,
+        work[1],
+        harness.folded("The same by processor time", time[1]),
+        "## Other formulations and penalties",
+        "Differences from the limit over the default's penalty.",
+        _other_models(points),
+        harness.folded("Fronts over work, from cheap to expensive", lists),
+        "## Runs",
+        f"{ran} of {ran + len(lost_ones)} runs reached full slip.",
+        *(f"Not reached: {words}" for words in lost_ones),
+    ]
+    names = ["chart", "errors"]
+    return harness.page(
+        docs / "chart.md", "Error over work", _finding(points), _HOW, body, "make chart", kept.made, names
+    )
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(harness.main(__doc__, compute, draw))

@@ -1,15 +1,15 @@
-r"""What a sequence of meshes says about its limit.
+r"""Limit of a quantity under mesh refinement, from its values on meshes of halved size.
 
 With values :math:`f_k` on meshes of size :math:`h_k`, each half of the one before, the last three give
 
 .. math:: p = \log_2 \frac{f_1 - f_0}{f_2 - f_1}, \qquad f = f_2 + \frac{f_2 - f_1}{2^p - 1}
 
 and Roache's grid convergence index the error bar, :math:`1.25\,|f - f_2|` (Roache 1994, doi 10.1115/1.2910291). An
-order above 2, that of the strains of quadratic elements, is taken for an accident of the last change: p is 2 then, and
-the bar that of the change which p = 2 would have left of the one before, :math:`(f_1 - f_0) / 4`. Where the changes
-hardly shrink (an order below 1/2), or not with the same sign, there is none to extrapolate with; the last value is then
-the estimate. The bar is three times, the index's factor for what is not known, the last change where they shrink from
-side to side, else the larger of the last two.
+order above 2, that of the strains of quadratic elements, is an accident of the last change: p is 2 then, and the bar
+that of the change which p = 2 would have left of the one before, :math:`(f_1 - f_0) / 4`. Changes that hardly shrink
+(an order below 1/2) or change sign give no order; the limit is the last value then. Its bar is three times the last
+change if the changes alternate and shrink, else three times the larger of the last two: the index's factor for two
+meshes.
 """
 
 from collections.abc import Sequence
@@ -18,12 +18,12 @@ from dataclasses import dataclass
 import numpy as np
 
 _SAFETY, _UNSAFE = 1.25, 3.0
-_LOWEST, _HIGHEST = 0.5, 2.0  # orders with which is extrapolated
+_LOWEST, _HIGHEST = 0.5, 2.0  # orders used for extrapolation
 
 
 @dataclass(frozen=True)
 class Limit:
-    """What a quantity tends to."""
+    """Limit of a quantity."""
 
     value: float
     bar: float
@@ -33,7 +33,7 @@ class Limit:
 
 
 def limit(values: Sequence[float]) -> Limit:
-    """Estimate the limit of values on meshes that are halved.
+    """Estimate the limit of values on meshes of halved size.
 
     Args:
         values: from the coarsest to the finest, at least three.

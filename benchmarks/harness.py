@@ -18,12 +18,10 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-from matplotlib.axis import Axis
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from fingerpad.cli.arguments import positive
+from fingerpad.io import style
 from fingerpad.io.files import replace
 from fingerpad.runs.batch import Summary, sweep
 from fingerpad.scene import Scene
@@ -32,11 +30,9 @@ ROOT = Path(__file__).resolve().parents[1]
 DOCS, RESULTS = ROOT / "docs", ROOT / "results"
 PACKAGES = ("geometry", "variational", "fingerpad")
 _LINE = 400  # characters of a record that is kept on one line
-
-# Okabe and Ito's colours, told apart by colour-blind readers.
-BLACK, BLUE, VERMILION, GREEN = "#000000", "#0072B2", "#D55E00", "#009E73"
-ORANGE, SKY, PURPLE, GREY = "#E69F00", "#56B4E9", "#CC79A7", "#999999"
-_STYLE = {"font.size": 10, "axes.titlesize": 10, "legend.fontsize": 8, "lines.linewidth": 1.4, "savefig.dpi": 130}
+# Names of the palette for the studies.
+BLACK, BLUE, GREEN, GREY = style.BLACK, style.BLUE, style.GREEN, style.GREY
+ORANGE, PURPLE, SKY, VERMILION = style.ORANGE, style.PURPLE, style.SKY, style.VERMILION
 
 
 # -- runs ----------------------------------------------------------------------------------------------------
@@ -65,6 +61,20 @@ def run(scenes: Mapping[str, Scene], args: argparse.Namespace, limit: float, mod
         model: as for :func:`fingerpad.runs.batch.sweep`.
     """
     return sweep(scenes, args.out, args.jobs, limit, model)
+
+
+def main(
+    description: str | None,
+    compute: Callable[[argparse.Namespace], None],
+    draw: Callable[[Path], Path],
+    given: Sequence[str] | None = None,
+) -> int:
+    """Run the command of a study: compute and keep the numbers, unless ``--draw`` is given, then draw the page."""
+    args = parser(description).parse_args(given)
+    if not args.draw:
+        compute(args)
+    print(draw(args.docs))
+    return 0
 
 
 # -- numbers -------------------------------------------------------------------------------------------------
@@ -141,9 +151,11 @@ def _text(data: Any, indent: str = "") -> str:
     line = json.dumps(data, ensure_ascii=False)
     if not data or not isinstance(data, list | dict) or len(line) <= _LINE:
         return line
-    inner, (left, right) = indent + " ", "{}" if isinstance(data, dict) else "[]"
-    named = data.items() if isinstance(data, dict) else [(None, value) for value in data]
-    parts = [("" if k is None else f"{json.dumps(k, ensure_ascii=False)}: ") + _text(v, inner) for k, v in named]
+    inner = indent + " "
+    if isinstance(data, list):
+        left, right, parts = "[", "]", [_text(value, inner) for value in data]
+    else:
+        left, right, parts = "{", "}", [f'"{key}": {_text(value, inner)}' for key, value in data.items()]
     return f"{left}\n{inner}" + f",\n{inner}".join(parts) + f"\n{indent}{right}"
 
 
@@ -177,11 +189,12 @@ def _same(a: Any, b: Any, relative: float) -> bool:
 
 
 def _leaves(data: Any, place: str = "") -> Iterator[tuple[str, Any]]:
-    pairs = data.items() if isinstance(data, Mapping) else enumerate(data) if isinstance(data, list) else None
-    if pairs is None:
+    if isinstance(data, list):
+        data = dict(enumerate(data))
+    if not isinstance(data, Mapping):
         yield place, data
         return
-    for key, value in pairs:
+    for key, value in data.items():
         yield from _leaves(value, f"{place}/{key}")
 
 
@@ -236,18 +249,8 @@ def picture(path: Path, size: tuple[float, float], paint: Callable[[Figure], Non
         caption: one sentence that says what the picture shows.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    with matplotlib.rc_context(_STYLE):
-        figure = Figure(figsize=size, layout="constrained")
+    with style.look():
+        figure = style.figure(size[1], size[0])
         paint(figure)
         figure.savefig(path)
     return f"![{caption}]({path.name})\n\n*{caption}*"
-
-
-def voltage_colour(voltage: float, largest: float = 200.0) -> tuple[float, ...]:
-    """Return the colour of a voltage (V) on the one ramp of all pictures: dark at 0 V, light at the largest."""
-    return tuple(matplotlib.colormaps["viridis"](0.9 * voltage / largest))
-
-
-def counts(axis: Axis) -> None:
-    """Give an axis of counts ticks at integers."""
-    axis.set_major_locator(MaxNLocator(integer=True))

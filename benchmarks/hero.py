@@ -27,7 +27,7 @@ _FINE = 0.02  # mm, between the points of a drawn outline
 
 
 def main(folder: str) -> None:
-    """Keep the numbers of a default run with those of docs/ladder.json, and draw."""
+    """Keep the numbers of a default run with those of docs/models.json, and draw."""
     summary = json.loads((Path(folder) / "summary.json").read_text(encoding="utf-8"))
     with np.load(Path(folder) / "finger_slide.npz") as a:
         xy, outlines = _MM * (a["x"] + a["u"]), []
@@ -36,10 +36,9 @@ def main(folder: str) -> None:
             outlines += [{"layer": int(tag), "points": _rows(_thinned(xy[loop]))} for loop in _loops(edges)]
     with np.load(Path(folder) / "surface_slide.npz") as a:
         ridge = {name: a[f"end_{name}"][a["end_ridge"] == RIDGE] for name in ("x", "y", "p", "p_el", "d_eq")}
-    compared = json.loads((DOCS / "ladder.json").read_text(encoding="utf-8"))  # full runs, contact size 10 µm
-    compared = compared.get("numbers", compared)
+    scenes = kept("models").numbers["scenes"]  # full runs, contact size 10 µm
     friction = {
-        str(f): [[u, compared[f"{f} N/m, {u} V"]["3"]["summary"]["slip_mu_app"]] for u in range(0, 201, 50)]
+        str(f): [[u, scenes[f"{f} N/m, {u} V"]["full"]["summary"]["slip_mu_app"]] for u in range(0, 201, 50)]
         for f in FORCES
     }
     along = {name: _rows([float(f"{v:.6g}") for v in values]) for name, values in ridge.items()}

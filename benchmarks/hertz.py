@@ -1,26 +1,27 @@
-"""Hertz's line contact on meshes that are halved: a contact length whose error is known exactly.
+"""Hertz's line contact on meshes of halved size: a contact length whose error is known.
 
 The cylinder of benchmarks/verification/normal_contact.py, pressed to half-widths that end anywhere in a facet. Its
-length in contact has two edges, mirror images of one another, where the finger's has some thirty. How far each is off
-depends on where in a facet it should be: near an edge the pressure falls with the root of the distance, which has no
-length of its own, so that the facets' is the only one (the penalty's falls with it).
+contact has two edges, mirror images of one another; a finger's has some thirty. An edge moves facet by facet: near an
+edge the pressure falls with the root of the distance, so that the facet is the only length there.
 """
 
-import numpy as np
-from numpy.typing import NDArray
+import itertools
+from collections.abc import Iterator
 
+import numpy as np
+
+from benchmarks.calibration import HERTZ, Case
 from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, NU, RADIUS, SPAN, YOUNG
 from benchmarks.verification.over_screen import formulations, over_screen
+from fingerpad.richardson import MeshParameter
 from geometry.bodies import pad
 from variational.materials.saint_venant import SaintVenant
 from variational.problem import Interface
 from variational.solvers.continuation import Target
 
-Array = NDArray[np.float64]
 HALF_WIDTHS = tuple(part * HALF_WIDTH for part in (0.817, 0.893, 0.961, 1.049, 1.137))
 FACETS = (5, 10, 20, 40)  # to HALF_WIDTH
 BAR = (HALF_WIDTH / SPAN) ** 2  # relative: the body is a block, not a half-space
-PLACES = 12  # of an edge in a facet
 _REACH = 1.4  # of the facets that can touch, over HALF_WIDTH
 
 
@@ -34,11 +35,13 @@ def contact_length(a: float, facets: int) -> float:
     return float(run.observer.ridge_loads(run.surface_state).length[0])
 
 
-def places(facets: int) -> Array:
-    """Return half-widths (m) about :data:`HALF_WIDTH` that end all over a facet, evenly; shape (PLACES,)."""
-    return HALF_WIDTH + HALF_WIDTH / facets * (np.arange(PLACES) / PLACES - 0.5)
-
-
-def edge_error(a: float, facets: int) -> float:
-    """Return how far an edge of the contact is beyond its place, in lengths of a facet; negative if short of it."""
-    return (contact_length(a, facets) / 2 - a) / (HALF_WIDTH / facets)
+def cases() -> Iterator[Case]:
+    """Yield the cases; a minute of computation."""
+    name = "contact_length"
+    for a in HALF_WIDTHS:
+        found, parameter = [contact_length(a, facets) for facets in FACETS], MeshParameter()
+        for k, (coarse, fine) in enumerate(itertools.pairwise(found), start=1):
+            parameter.see({name: coarse}, {name: fine})
+            scene = f"half-width {1e3 * a:.3f} mm, {a / HALF_WIDTH * FACETS[k]:.1f} facets"
+            estimate, error = (100 / (2 * a) * value for value in (parameter.share(name), abs(fine - 2 * a)))
+            yield Case(HERTZ, scene, "contact length", k == 1, estimate, error, 100 * BAR)

@@ -1,15 +1,13 @@
-"""What scenes tend to: states of a coarse path solved again on meshes with all sizes halved together.
+"""Limits of scenes under refinement: states of a coarse path, solved again on meshes with all sizes halved.
 
-python3 -m benchmarks.limits SCENE.json LEVELS LIMIT [uncharged]
+python3 -m benchmarks.limits SCENE.json LEVELS LIMIT [uncharged]     one scene, prints JSON
 
-One scene, as :func:`ask` starts it; JSON on standard output.
-
-The path is run on the coarse mesh that an ``[accuracy]`` starts from. Its states (normal contact, full slip, and
-uncharged contact where it is asked for) are solved again on each of :func:`meshes`, by halves since a state put onto
-elements a quarter of its own is far from equilibrium, and from the first of these on the scene's own. Full slip knows
-no path, so that it is that of the whole run there; normal contact keeps the friction history of the path, which the
-comparison of the scene's own mesh with a whole run on it tells the worth of (``docs/errors.md``). Where a state is not
-found on a mesh after the third, the limit is that of the meshes before, with the larger bar that they have.
+The path is followed on the coarse mesh that an ``[accuracy]`` starts from. Its states are solved again on each of
+:func:`meshes`: by halves, since a state put onto elements a quarter of its own is far from equilibrium. From the first
+of these meshes the states are also solved again on the scene's own mesh. Full slip does not depend on the load path, so
+that it is that of a whole run. Normal contact keeps the friction history of the coarse path; the comparison of the own
+mesh with a whole run on it shows by how much (``docs/errors.md``). Where a state is not found on a mesh after the
+third, the limit is that of the meshes before, with their larger bar.
 """
 
 import json
@@ -28,7 +26,7 @@ from fingerpad.model.options import plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.model.steps import Step
 from fingerpad.runs.batch import key, progress
-from fingerpad.runs.processes import Pool, limit_processor_time, run
+from fingerpad.runs.processes import End, Pool, limit_processor_time, run
 from fingerpad.scene import Scene, from_data, start
 from geometry.parameters import MeshSize
 from variational.solvers.continuation import StepFailed
@@ -41,55 +39,59 @@ _LIMIT = 14400.0  # s of processor time for one scene
 
 
 def meshes(mesh: MeshSize, levels: int) -> list[MeshSize]:
-    """Return meshes of one family, each with half the sizes of the one before, that touch where a given one can."""
+    """Return meshes of one family, each with half the sizes of the one before, with the touching ridges of ``mesh``."""
     first = mesh.model_copy(update=_FIRST)
     return [first.model_copy(update={s: getattr(first, s) / 2**n for s in _HALVED}) for n in range(levels)]
 
 
 def kept(scene: Scene, levels: int, folder: Path) -> dict[str, Any] | None:
-    """Return what was solved of a scene, None if nothing was."""
+    """Return the kept output, None if there is none."""
     file = folder / f"{key(scene)}-{levels}.json"
     return dict(json.loads(file.read_text(encoding="utf-8"))) if file.exists() else None
-
-
-def ask(scene: Scene, levels: int, folder: Path, uncharged: bool) -> dict[str, Any]:
-    """Solve a scene in a process of its own, if need be with its uncharged contact, and keep what it says.
-
-    Returns:
-        ``path``, ``own`` (the scene's mesh) and ``levels``, each a mesh, its cost and its values; or ``failure``.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    file = folder / f"{key(scene)}.scene.json"
-    file.write_text(json.dumps(scene.parameters()), encoding="utf-8")
-    given = [str(file), str(levels), str(_LIMIT), *(["uncharged"] if uncharged else [])]
-    end = run("benchmarks.limits", given, _LIMIT)
-    if end.reason:
-        return {"failure": f"{end.reason}: {end.message}"}
-    replace(folder / f"{key(scene)}-{levels}.json", end.stdout)
-    return dict(json.loads(end.stdout))
 
 
 def ask_all(
     scenes: Mapping[str, Scene], levels: int, folder: Path, jobs: int, uncharged: bool = True
 ) -> dict[str, dict[str, Any]]:
-    """Solve what has not been solved of scenes by name, with a progress bar; see :func:`ask`."""
-    found = {name: kept(scene, levels, folder) for name, scene in scenes.items()}
-    missing = [name for name, known in found.items() if known is None]
+    """Solve the scenes that are not kept yet, each in a process of its own, and keep their output.
 
-    def done(name: str, known: dict[str, Any], left: int) -> None:
-        found[name] = known
-        words = known.get("failure", "done")
+    Args:
+        scenes: press, charge and slide, by name.
+        levels: number of meshes.
+        folder: of the results.
+        jobs: processes at a time.
+        uncharged: whether uncharged normal contact is solved again, too.
+
+    Returns:
+        By name: ``path``, ``own`` (the scene's mesh) and ``levels``, each a mesh, its cost and its values; or
+        ``failure``.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    found = {name: known for name, scene in scenes.items() if (known := kept(scene, levels, folder)) is not None}
+    missing = [name for name in scenes if name not in found]
+
+    def job(name: str) -> End:
+        file = folder / f"{key(scenes[name])}.scene.json"
+        file.write_text(json.dumps(scenes[name].parameters()), encoding="utf-8")
+        given = [str(file), str(levels), str(_LIMIT), *(["uncharged"] if uncharged else [])]
+        return run("benchmarks.limits", given, _LIMIT)
+
+    def done(name: str, end: End, left: int) -> None:
+        if not end.reason:
+            replace(folder / f"{key(scenes[name])}-{levels}.json", end.stdout)
+        found[name] = {"failure": f"{end.reason}: {end.message}"} if end.reason else dict(json.loads(end.stdout))
+        words = found[name].get("failure", "done")
         bar.console.print(f"limit of {name}: {words}", highlight=False, markup=False, soft_wrap=True)
         bar.advance(task)
 
     with progress() as bar:
         task = bar.add_task("limits", total=len(missing))
-        Pool[str, dict[str, Any]](lambda name: ask(scenes[name], levels, folder, uncharged), jobs).run(missing, done)
-    return {name: known for name, known in found.items() if known is not None}
+        Pool[str, End](job, jobs).run(missing, done)
+    return found
 
 
 def limits(found: Mapping[str, Any]) -> dict[str, Limit]:
-    """Return what the quantities tend to as the meshes are refined; of at least three of them."""
+    """Return the limits of the quantities under refinement; of at least three meshes."""
     levels = [level["values"] for level in found["levels"]]
     return {name: limit([values[name] for values in levels]) for name in levels[-1]}
 
@@ -102,8 +104,8 @@ def _path(scene: Scene, uncharged: bool, comm: MPI.Comm) -> Solve:
         keeper.see(step)
 
     def on_load() -> None:
-        if "press" not in keeper.states and uncharged:
-            keeper.keep("press")
+        if "uncharged" not in keeper.states and uncharged:
+            keeper.keep("uncharged")
 
     for contact in _STARTS:
         sizes = start({}) | {"receptor": 2 * _FIRST["receptor"], "contact": contact}
@@ -133,20 +135,12 @@ def _solve(scene: Scene, levels: int, uncharged: bool) -> dict[str, Any]:
         print(mesh, solves[-1].unknowns, solves[-1].factorisations, file=sys.stderr)
     own = solve_again(scene, plan(scene), solves[1].states, comm)
 
-    def told(solve: Solve) -> dict[str, Any]:
-        ridges = {
-            f"{PREFIXES.get(name, name)}_ridges_in_contact": s.state.ridges_in_contact
-            for name, s in solve.states.items()
-        }
-        return {
-            "mesh": solve.mesh.model_dump(),
-            "unknowns": solve.unknowns,
-            "factorisations": solve.factorisations,
-            "processor_seconds": solve.processor_seconds,
-            "values": solve.values() | ridges,
-        }
+    def summary(solve: Solve) -> dict[str, Any]:
+        ridges = {f"{PREFIXES[name]}_ridges_in_contact": s.state.ridges_in_contact for name, s in solve.states.items()}
+        cost = {name: getattr(solve, name) for name in ("unknowns", "factorisations", "processor_seconds")}
+        return {"mesh": solve.mesh.model_dump()} | cost | {"values": solve.values() | ridges}
 
-    return {"path": told(path), "own": told(own), "levels": [told(solve) for solve in solves[1:]]}
+    return {"path": summary(path), "own": summary(own), "levels": [summary(solve) for solve in solves[1:]]}
 
 
 def _main(arguments: Sequence[str]) -> None:

@@ -13,9 +13,17 @@ from benchmarks.harness import DOCS
 
 # Each has a function draw(docs), which writes the page's files into a folder and returns the path of the page.
 PAGES = {
+    "accuracy": "benchmarks.accuracy",
+    "chart": "benchmarks.chart",
+    "errors": "benchmarks.errors",
     "hero": "benchmarks.hero",
+    "models": "benchmarks.models",
     "paper": "benchmarks.paper.page",
+    "peers": "benchmarks.peers.page",
+    "sensitivity": "benchmarks.sensitivity",
     "stability": "benchmarks.stability.page",
+    "topography": "benchmarks.topography",
+    "verification": "benchmarks.verification.page",
 }
 
 

@@ -1,16 +1,13 @@
 """A finished run as arrays."""
 
 import csv
-from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.io import states
 from fingerpad.runs.batch import key, result
 from fingerpad.scene import Scene
 
@@ -69,27 +66,28 @@ class Run:
         count = len(np.unique(columns["ridge"]))
         return {k: v.reshape(-1, count) if k != "ridge" else v[:count] for k, v in columns.items()}
 
+    def row(self, prefix: str) -> int:
+        """Return the row of a state of :mod:`fingerpad.io.states` in :attr:`steps`.
+
+        Args:
+            prefix: ``uncharged``, ``normal`` or ``slip``, as in ``summary.json``.
+        """
+        return int(np.flatnonzero(self.steps["step"] == self.summary[f"{prefix}_step"])[0])
+
     @property
     def pressed(self) -> int:
-        """Row of normal contact before the voltage: the last step of the load ``press``."""
-        return int(np.flatnonzero(np.array(self.loads) == "press")[-1])
+        """Row of uncharged normal contact."""
+        return self.row("uncharged")
 
     @property
     def normal(self) -> int:
-        """Row of normal contact, see :mod:`fingerpad.io.states`."""
-        columns = [self.steps[name] for name in ("bone_x", "ridges_in_contact")]
-        rows: list[Any] = [SimpleNamespace(bone_x=x, ridges_in_contact=n) for x, n in zip(*columns, strict=True)]
-        return self._row("normal", lambda: len(states.before_sliding(rows)) - 1)
+        """Row of charged normal contact."""
+        return self.row("normal")
 
     @property
     def slip(self) -> int:
-        """Row of full slip, see :mod:`fingerpad.io.states`."""
-        return self._row("slip", lambda: int(np.flatnonzero(self.steps["all_slip"])[0]))
-
-    def _row(self, state: str, otherwise: Callable[[], int]) -> int:
-        """Return the row of a state, by another rule for runs of versions whose summary does not name its step."""
-        step = self.summary.get(f"{state}_step")
-        return otherwise() if step is None else int(np.flatnonzero(self.steps["step"] == step)[0])
+        """Row of full slip."""
+        return self.row("slip")
 
     def on_ridges(self, row: int, name: str) -> tuple[Array, Array]:
         """Return numbers and a value of the ridges in contact in a row of :attr:`steps`."""

@@ -1,29 +1,24 @@
-"""What each open choice moves: the default scene with one assumption or parameter changed at a time.
+"""What the assumptions change: the default scene with one assumption or parameter changed at a time.
 
-environment/run python3 benchmarks/sensitivity.py [--jobs 2] [--contact-size 10e-6] [--draw]
+environment/run python3 -m benchmarks.sensitivity [--jobs 2] [--draw]     some hours
 
-Friction, contact length, its reduction by sliding, and strain energy density at the central Merkel site, as a table
-and tornado plots in docs/sensitivity.md. Runs are kept in results/traces by a hash of their parameters.
+Friction, contact length, its reduction by sliding, and the energy density at the central Merkel site. Writes
+docs/sensitivity.json and docs/sensitivity.md.
 """
 
 import sys
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from matplotlib.figure import Figure
-
-from benchmarks import arguments, traces
-from benchmarks.paper.style import BLUE, VERMILION, draw
+from benchmarks import harness
 from benchmarks.runs import Run
-from fingerpad.cli.arguments import positive
-from fingerpad.io.files import replace
 from fingerpad.model.check import check
 from fingerpad.model.touching import by_rule
-from fingerpad.runs.batch import result, sweep
 from fingerpad.scene import Scene, SceneError, from_data
 
+_LIMIT = 3600.0  # s of processor time for one run
+SIZE = 10e-6  # m, contact size
 _LAYERS = ("subcutis", "dermis", "viable_epidermis", "stratum_corneum")
 _DEFAULTS = Scene()
 
@@ -38,17 +33,12 @@ def _poisson(value: float) -> dict[str, Any]:
     return {"materials": {layer: {"poisson": value} for layer in _LAYERS}}
 
 
-# Elements of 20 um at the Merkel sites leave the energy density there too low by much the same part in all scenes, but
-# not where the depth of the sites is what is changed: these scenes have finer ones, and are compared with one that has.
-SITES, DEPTH = "elements at the Merkel sites", "depth of the Merkel sites"
-_FINE_SITES = {"mesh": {"receptor": 5e-6}}
-
 # What is changed: one or two ways of changing it. A ridge with the second coefficient c has 1 + 4 c times the curvature
 # at its tip that a sinusoid of its height has.
 CHOICES: Mapping[str, Mapping[str, dict[str, Any]]] = {
-    "ridge's tip": {
-        "half as curved": {"geometry": {"ridge_profile": [1.0, -0.125]}},
-        "half again as curved": {"geometry": {"ridge_profile": [1.0, 0.125]}},
+    "curvature of a ridge's tip": {
+        "half": {"geometry": {"ridge_profile": [1.0, -0.125]}},
+        "one and a half": {"geometry": {"ridge_profile": [1.0, 0.125]}},
     },
     "bone's width": _scaled("geometry", "bone_width"),
     "bone's height": _scaled("geometry", "bone_height"),
@@ -57,143 +47,100 @@ CHOICES: Mapping[str, Mapping[str, dict[str, Any]]] = {
     "E_SC of the roughness": _scaled("roughness", "young"),
     "h_rms": _scaled("roughness", "h_rms"),
     "permittivity of the stratum corneum": _scaled("electric", "eps_sc"),
-    "µ0": {"0.2": {"friction": 0.2}, "0.3": {"friction": 0.3}},
+    "friction coefficient µ0": {"0.2": {"friction": 0.2}, "0.3": {"friction": 0.3}},
     "exponent of the stretches": {"+α": {"materials": {"exponent": "abaqus"}}},
     "Poisson's ratio": {"0.46": _poisson(0.46), "0.49": _poisson(0.49)},
     "p_floor": {"0.5 kPa": {"roughness": {"p_floor": 500.0}}, "2 kPa": {"roughness": {"p_floor": 2000.0}}},
-    "L_R of Eq. 4": {"where y < d_eq": {"contact": {"length": "gap"}}},
-    SITES: {"5 µm": _FINE_SITES},
-    DEPTH: {
-        "10 µm": {"geometry": {"merkel_offset": 10e-6}} | _FINE_SITES,
-        "40 µm": {"geometry": {"merkel_offset": 40e-6}} | _FINE_SITES,
-    },
-    "200 V": {"peak to peak, 100 V": {"voltage": 100.0}},
+    "length L_R of Eq. 4": {"where y < d_eq": {"contact": {"length": "gap"}}},
+    "depth of the Merkel sites": {f"{d * 1e6:g} µm": {"geometry": {"merkel_offset": d}} for d in (10e-6, 40e-6)},
+    "200 V read as amplitude": {"peak to peak, 100 V": {"voltage": 100.0}},
 }
-QUANTITIES = ("µ_app", "L_R, normal (mm)", "reduction of L_R (%)", "SED at the central site (J/m³)")
+QUANTITIES = ("µ_app", "contact length", "reduction of it by sliding", "SED at the central site")
 
 
-@dataclass(frozen=True)
-class Change:
-    """A choice made otherwise, and what the quantities become."""
-
-    choice: str
-    way: str
-    values: tuple[float, ...]
-
-
-def scene(size: float, changed: Mapping[str, Any]) -> Scene:
-    """Return the default scene at a contact size (m), some of it changed."""
-    mesh = {"contact": size, "receptor": traces.SITES} | changed.get("mesh", {})
-    return by_rule(from_data({**changed, "mesh": mesh}))
-
-
-def scenes(size: float) -> dict[tuple[str, str], Scene]:
+def scenes() -> dict[tuple[str, str], Scene]:
     """Return all scenes by choice and way, the default one first.
 
     Raises:
-        SceneError: a changed finger that cannot be built, with the choice.
+        SceneError: a changed finger cannot be built; with the choice.
     """
-    found = {("default", ""): scene(size, {})}
-    for choice, ways in CHOICES.items():
-        for way, changed in ways.items():
-            found[choice, way] = scene(size, changed)
-            try:
-                check(found[choice, way])
-            except SceneError as error:
-                raise SceneError(f"{choice} {way}: {error}") from None
+    changes: dict[tuple[str, str], dict[str, Any]] = {("default", ""): {}} | {
+        (c, way): data for c, ways in CHOICES.items() for way, data in ways.items()
+    }
+    found = {key: by_rule(from_data({"mesh": {"contact": SIZE}} | data)) for key, data in changes.items()}
+    for (choice, way), scene in found.items():
+        try:
+            check(scene)
+        except SceneError as error:
+            raise SceneError(f"{choice} {way}: {error}") from None
     return found
 
 
-def values(run: Run) -> tuple[float, ...]:
-    """Return the quantities of a run that reached full slip."""
+def values(run: Run) -> list[float]:
+    """Return µ_app, the contact length in charged normal contact (mm), its reduction (%) and the SED (J/m^3)."""
     steps, normal, slip = run.steps, run.normal, run.slip
     length = steps["contact_length"]
     centre = int((len(run.receptors["ridge"]) - 1) // 2)
-    return (
-        float(steps["mu_app"][slip]),
-        float(length[normal]) * 1e3,
-        100 * float(1 - length[slip] / length[normal]),
-        float(run.receptors["merkel_sed"][slip, centre]),
+    reduction = 100 * float(1 - length[slip] / length[normal])
+    sed = float(run.receptors["merkel_sed"][slip, centre])
+    return [float(steps["mu_app"][slip]), float(length[normal]) * 1e3, reduction, sed]
+
+
+def compute(args: Any) -> None:
+    """Run what is missing and keep the numbers."""
+    wanted = scenes()
+    summaries = harness.run({f"{c} {way}".strip(): scene for (c, way), scene in wanted.items()}, args, _LIMIT)
+    failures = {key: s["failure"] for key, s in summaries.items() if "failure" in s}
+    found = {
+        key: values(Run(each, args.out)) for key, each in wanted.items() if f"{key[0]} {key[1]}".strip() not in failures
+    }
+    default = found.pop(("default", ""))
+    numbers = {
+        "default": default,
+        "mesh": {"contact": SIZE, "receptor": _DEFAULTS.mesh.receptor},
+        "changes": [{"choice": c, "way": way, "values": v, "base": default} for (c, way), v in found.items()],
+        "lost": [f"{key}: {failure}" for key, failure in failures.items()],
+    }
+    harness.keep("sensitivity", numbers, harness.made(summaries.values()), args.docs)
+
+
+# -- page ----------------------------------------------------------------------------------------------------
+_HOW = """The default scene was run to full slip at 75 N/m and 200 V, with one thing changed at a time. The contact size
+is {contact:g} µm and the size at the Merkel sites {receptor:g} µm. The default gives µ_app {0:.4g}, a contact length of
+{1:.4g} mm in charged normal contact, a reduction of it by {2:.3g} % in full slip, and an energy density (SED) of
+{3:.4g} J/m³ in full slip. The reduction's change is in percentage points."""
+_FINE = """The rows on the depth of the sites have elements of 5 µm there and are compared with a run with the
+same elements, whose SED is {0:.0f} J/m³."""
+
+
+def changed(change: Mapping[str, Any]) -> list[float]:
+    """Return the changes of the quantities: per cent, and percentage points of the reduction."""
+    pairs = list(zip(change["values"], change["base"], strict=True))
+    return [v - b if k == 2 else 100 * (v / b - 1) for k, (v, b) in enumerate(pairs)]
+
+
+def draw(docs: Path) -> Path:
+    """Draw the page from the kept numbers."""
+    kept = harness.kept("sensitivity", docs)
+    numbers, rows = kept.numbers, [(c["choice"], c["way"], changed(c)) for c in kept.numbers["changes"]]
+    most = {choice: max(abs(d[0]) for c, _, d in rows if c == choice) for choice, _, _ in rows}
+    rows.sort(key=lambda row: -most[row[0]])
+    first = [f"{choice} ({most[choice]:.1f} %)" for choice in list(dict.fromkeys(c for c, _, _ in rows))[:4]]
+    none = [choice for choice, change in most.items() if change < 0.05]
+    finding = f"The apparent friction depends most on these choices: {', '.join(first)}. "
+    finding += f"It does not depend on {', '.join(none)}." if none else ""
+    sizes = {name: 1e6 * size for name, size in numbers["mesh"].items()}
+    fine = [c["base"][3] for c in numbers["changes"] if c["base"] != numbers["default"]]
+    head = ["choice", "changed to", *(f"{q} ({'points' if k == 2 else '%'})" for k, q in enumerate(QUANTITIES))]
+    body = ["## Changes", harness.table(head, ([c, way, *(f"{x:+.1f}" for x in d)] for c, way, d in rows))]
+    body += [_FINE.format(fine[0])] * bool(fine) + [f"Not reached: {words}" for words in numbers["lost"]]
+    path, how, command = (
+        docs / "sensitivity.md",
+        _HOW.format(*numbers["default"], **sizes),
+        "python3 -m benchmarks.sensitivity",
     )
-
-
-def collect(out: Path, size: float) -> list[Change]:
-    """Return what has been run; the default is the first."""
-    found = []
-    for (choice, way), each in scenes(size).items():
-        try:
-            found.append(Change(choice, way, values(Run(each, out))))
-        except FileNotFoundError:
-            continue
-    return found
-
-
-def failures(out: Path, size: float) -> list[str]:
-    """Return the runs that failed, and how."""
-    found = {f"{choice} {way}": result(each, out) or {} for (choice, way), each in scenes(size).items()}
-    return [f"{name}: {summary['failure']}" for name, summary in found.items() if "failure" in summary]
-
-
-def tornado(figure: Figure, changes: Sequence[Change]) -> None:
-    """Draw a bar for each choice and quantity, the choice that moves friction most at the top."""
-    default, others = changes[0], changes[1:]
-    names = list(dict.fromkeys(c.choice for c in others))
-    finer = next((c for c in others if c.choice == SITES), None)
-
-    def span(name: str, k: int) -> dict[str, float]:
-        """Return how far the ways of a choice move a quantity; per cent of it, or what it is in per cent itself."""
-        compared = finer.values if finer is not None and name == DEPTH else default.values
-        base = compared[k] if k != 2 else 100.0
-        return {c.way: 100 * (c.values[k] - compared[k]) / base for c in others if c.choice == name}
-
-    names.sort(key=lambda name: max(abs(v) for v in span(name, 0).values()))
-    axes = figure.subplots(1, len(QUANTITIES), sharey=True)
-    for k, (ax, quantity) in enumerate(zip(axes, QUANTITIES, strict=True)):
-        for row, name in enumerate(names):
-            for way, value in span(name, k).items():
-                first = way == next(iter(CHOICES[name]))
-                ax.barh(row, value, color=BLUE if first else VERMILION, height=0.7, alpha=0.85)
-        ax.axvline(0, color="black", lw=0.8)
-        ax.set_title(quantity)
-        ax.set_xlabel("change (percentage points)" if k == 2 else "change (%)")
-    axes[0].set_yticks(range(len(names)), names)
-
-
-def write(changes: Sequence[Change], lost: Sequence[str], total: int, size: float, docs: Path) -> None:
-    """Write page and picture from what has been run, and what of it did not reach full slip."""
-    head = ["choice", "changed to", *QUANTITIES]
-    lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
-    lines += [f"| {c.choice} | {c.way} | " + " | ".join(f"{v:.4g}" for v in c.values) + " |" for c in changes]
-    parts = [
-        f"# What the open choices move\n\nMade by `environment/run python3 benchmarks/sensitivity.py`; do not edit. "
-        f"75 N/m, 200 V, contact size {size * 1e6:g} µm, one thing changed at a time; {len(changes)} of {total} runs.",
-        "\n".join(lines),
-        *(f"Not reached: {words}." for words in lost),
-    ]
-    if len(changes) > 1 and changes[0].choice == "default":
-        draw(docs / "sensitivity.png", (12, 5.5), lambda figure: tornado(figure, changes))
-        parts.append("![Tornado plots: the first way blue, the second one red](sensitivity.png)")
-        parts.append("*Blue: the first way of the table, red: the second.*")
-    replace(docs / "sensitivity.md", "\n\n".join(parts) + "\n")
-
-
-def main(given: Sequence[str] | None = None) -> int:
-    """Run what is missing and write the page."""
-    parser = arguments.parser(__doc__)
-    parser.add_argument("--contact-size", type=positive(float), default=10e-6, help="m")
-    parser.add_argument("--draw", action="store_true", help="run nothing, draw what is there")
-    args = parser.parse_args(given)
-    try:
-        wanted = scenes(args.contact_size)
-    except SceneError as error:
-        parser.error(str(error))
-    if not args.draw:
-        sweep({f"{choice} {way}".strip(): each for (choice, way), each in wanted.items()}, args.out, args.jobs)
-    changes = collect(args.out, args.contact_size)
-    write(changes, failures(args.out, args.contact_size), len(wanted), args.contact_size, args.docs)
-    print(f"{len(changes)} of {len(wanted)} runs; {args.docs / 'sensitivity.md'}")
-    return 0 if len(changes) == len(wanted) else 1
+    return harness.page(path, "What the assumptions change", finding, how, body, command, kept.made, ["sensitivity"])
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(harness.main(__doc__, compute, draw))

@@ -1,35 +1,31 @@
-"""Fig. 3's counterpart from synthetic surfaces: heights, their distribution, their spectrum, and what a spot misses.
+"""What a small map of the skin misses: heights, spectrum and bias of spots cut out of synthetic surfaces.
 
-environment/run python3 benchmarks/topography.py [--surfaces 20] [--docs DIR]
+environment/run python3 -m benchmarks.topography [--draw]     a minute
 
-The measured maps of the paper are not public. A surface of its parameters is made, eight spots of 100 um are cut out
-and analysed as section 3.1 says; then many spots, for the bias. Writes docs/topography.md and docs/topography.png.
+The measured maps of the paper's Fig. 3 are not public. A surface of its parameters is made, eight spots of 100 um are
+cut out and analysed as section 3.1 does; then many spots, for the bias. Writes docs/topography.json,
+docs/topography.md and docs/topography.png.
 """
 
-import argparse
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict
 from pathlib import Path
-from typing import NamedTuple, get_args
+from typing import Any, NamedTuple, get_args
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
-from numpy.typing import ArrayLike, NDArray
 
-from fingerpad.cli.arguments import positive
-from fingerpad.io.files import replace
-from fingerpad.io.style import BLUE, GREEN, ORANGE, VERMILION
+from benchmarks import harness
 from variational.roughness.selfaffine import SelfAffine
 from variational.roughness.spectrum import PowerSpectrum, power_spectrum, roughness_table
-from variational.roughness.topography import Distribution, HeightMap, Trend, distribution, polynomials
+from variational.roughness.topography import HeightMap, Trend, distribution, polynomials
 
-_ROOT = Path(__file__).resolve().parents[1]
 _UM = 1e6
 SIDE, SPOT, SPOTS = 800e-6, 100e-6, 8  # m; the paper's spots
-FINE, COARSE = 2048, 512  # pixels along the side: for the picture, for the many
+SURFACES = 20  # that the many spots are cut from
+FINE, COARSE = 2048, 512  # pixels along the side: for one surface, for the many
 WINDOWS = (50e-6, 100e-6, 200e-6, 400e-6)  # m
 TRENDS: tuple[Trend, ...] = get_args(Trend)
 READINGS = (SelfAffine(plateau=True), SelfAffine(plateau=False))
@@ -85,183 +81,200 @@ def biases(kind: SelfAffine, surfaces: int, n: int = COARSE) -> dict[tuple[float
     }
 
 
-def _map(ax: Axes, figure: Figure, spot: HeightMap) -> None:
-    ends = (0, spot.size[0] * _UM, 0, spot.size[1] * _UM)
-    limit = float(np.abs(spot.heights).max()) * _UM
-    image = ax.imshow(spot.heights.T * _UM, origin="lower", extent=ends, cmap="cividis", vmin=-limit, vmax=limit)
-    figure.colorbar(image, ax=ax, label="height (µm)", shrink=0.8, pad=0.03)
-    ax.set(xlabel="x (µm)", ylabel="y (µm)", title="A  One spot, curvature removed")
-
-
-def _histogram(ax: Axes, heights: Distribution) -> None:
-    ax.stairs(heights.density / _UM, heights.edges * _UM, fill=True, color=ORANGE, alpha=0.6, label=f"{SPOTS} spots")
-    z = np.linspace(-4, 4, 200) * heights.h_rms
-    label = f"Gaussian, $h_{{rms}}$ = {heights.h_rms * _UM:.2f} µm"
-    ax.plot(z * _UM, heights.gaussian(z) / _UM, color=BLUE, lw=2, label=label)
-    ax.set(xlabel="height (µm)", ylabel="probability density (1/µm)", title="B  Heights")
-    ax.set_ylim(0, 1.45 * float(heights.density.max()) / _UM)
-    ax.legend(frameon=False, loc="upper center")
-
-
-def _spectra(ax: Axes, whole: PowerSpectrum, cut: PowerSpectrum) -> None:
-    for spectrum, marker, colour, label in (
-        (whole, "o", "0.6", "whole surface, 800 µm"),
-        (cut, "s", GREEN, f"{SPOTS} spots, 100 µm"),
-    ):
-        ring = spectrum.radial()
-        kept = ring.q < 2 * spectrum.q_range[1]
-        ax.loglog(ring.q[kept], ring.psd[kept], marker, color=colour, ms=5, label=label)
-    high = 2 * whole.q_range[1]
-    printed, other = READINGS
-    q = np.geomspace(2 * np.pi / SIDE, high, 200)
-    ax.loglog(q, printed.psd(q), color=BLUE, lw=2, label="Eq. 8 as printed: plateau below $q_0$")
-    q, top = np.geomspace(other.q_0, high, 200), float(other.psd(other.q_0))
-    q, psd = np.append(other.q_0, q), np.append(top / 300, other.psd(q))
-    ax.loglog(q, psd, "--", color=VERMILION, lw=2, label="$4\\pi H$ in Eq. 8: nothing below $q_0$")
-    fit = cut.fit()
-    q = np.array(fit.q_range)
-    # Moved down: on the points it would hide what it is fitted to.
-    ax.loglog(q, fit.psd(q) / 30, "k-.", lw=1.5, label=f"fit to the spots, ÷ 30: $H$ = {fit.hurst:.2f}")
-    ax.set(ylim=(1e-32, 10 * top), xlabel="wavevector q (1/m)", ylabel="$C_{2D}$ (m⁴)", title="C  Power spectrum")
-    above = ax.secondary_xaxis("top", functions=(_wavelength, _wavelength))
-    above.set_xlabel("wavelength (µm)")
-    above.xaxis.set_major_formatter("{x:g}")
-    ax.legend(frameon=False, fontsize=10, loc="lower left")
-
-
-def _wavelength(q: ArrayLike) -> NDArray[np.float64]:
-    """Return the wavelength (µm) of q (1/m), and the other way round; Matplotlib also asks for q = 0."""
-    return np.asarray(2 * np.pi * _UM / np.maximum(q, 1e-3))
-
-
-def draw(path: Path, surface: HeightMap, flat: Sequence[HeightMap]) -> None:
-    """Draw a spot, the heights of all spots and the spectra."""
-    with matplotlib.rc_context({"font.size": 11, "axes.titlesize": 12, "axes.titlelocation": "left"}):
-        figure = Figure(figsize=(15, 5.2), layout=ConstrainedLayoutEngine(wspace=0.06))
-        first, second, third = figure.subplots(1, 3, width_ratios=(1.2, 0.85, 1.25))
-        _map(first, figure, flat[0])
-        _histogram(second, distribution(*flat))
-        _spectra(third, power_spectrum(surface), power_spectrum(*flat, window="hann"))
-        figure.savefig(path, dpi=110)
-
-
-def _row(values: Sequence[object]) -> str:
-    return "| " + " | ".join(map(str, values)) + " |"
-
-
-def _bias_table(found: dict[tuple[float, Trend], Bias]) -> str:
-    rows = [_row(["window (µm)", *(f"{trend} removed" for trend in TRENDS)]), "|---" * (len(TRENDS) + 1) + "|"]
-    for w in WINDOWS:
-        cells = [tuple(v * _UM for v in found[w, trend]) for trend in TRENDS]
-        rows.append(_row([f"{w * _UM:g}", *(f"{m:.2f} ± {s:.2f} ({e:.2f})" for m, s, e in cells)]))
-    return "\n".join(rows)
-
-
-def _scatter(values: Sequence[float], digits: str) -> str:
-    return f"{np.mean(values):{digits}} ± {np.std(values):{digits}}"
-
-
-def _fit_table(surfaces: int) -> str:
-    """Return what the fits of single surfaces and of the spots of a surface find."""
-    rows = [_row(["map", "H", "λ0 (µm)", "h_rms of the fit (µm)", "roll-off seen"]), "|---" * 5 + "|"]
+def fits(surfaces: int) -> list[dict[str, Any]]:
+    """Return the fits of single surfaces and of the spots of a surface: mean and scatter over surfaces."""
     made = [READINGS[0].surface((COARSE, COARSE), (SIDE, SIDE), seed) for seed in range(surfaces)]
+    found = []
     for window in (SIDE, *reversed(WINDOWS[1:])):
-        fits = []
+        mine = []
         for surface in made:
             cut = [surface] if window == SIDE else [s.detrended("curvature") for s in spots(surface, window)][:SPOTS]
-            fits.append(power_spectrum(*cut, window="none" if window == SIDE else "hann").fit())
-        seen = sum(f.resolved for f in fits)
-        hurst = _scatter([f.hurst for f in fits], ".3f")
-        wavelength = [f.wavelength * _UM for f in fits]
-        length = _scatter(wavelength, ".0f") if seen else f"≥ {np.mean(wavelength):.0f}"
-        h_rms = _scatter([f.h_rms(plateau=True) * _UM for f in fits], ".2f")
-        name = f"{window * _UM:g} µm, periodic" if window == SIDE else f"spots of {window * _UM:g} µm"
-        rows.append(_row([name, hurst, length, h_rms, f"{seen} of {surfaces}"]))
-    return "\n".join(rows)
+            mine.append(power_spectrum(*cut, window="none" if window == SIDE else "hann").fit())
+        quantities = {
+            "hurst": [f.hurst for f in mine],
+            "wavelength": [f.wavelength for f in mine],
+            "h_rms": [f.h_rms(plateau=True) for f in mine],
+        }
+        row = {key: [float(np.mean(v)), float(np.std(v))] for key, v in quantities.items()}
+        found.append({"window": window, "resolved": sum(f.resolved for f in mine)} | row)
+    return found
 
 
-def page(flat: Sequence[HeightMap], table: dict[str, float], surfaces: int) -> str:
-    """Return the page."""
-    heights, fit = distribution(*flat), power_spectrum(*flat, window="hann").fit()
-    longest, shortest = (2 * np.pi / q * _UM for q in fit.q_range)
-    found = {kind: biases(kind, surfaces) for kind in READINGS}
-    plateau, none = (found[kind][SPOT, "curvature"] for kind in READINGS)
-    printed = READINGS[0]
-    wanted, share = printed.h_rms * _UM, 1 / (1 + printed.hurst)
-    return f"""# Topography of a ridge
-
-Made by `environment/run python3 benchmarks/topography.py`; do not edit. The maps measured for Fig. 3 of the paper are
-not public: these are synthetic Gaussian surfaces of its parameters, h_rms {wanted:g} µm, H = {printed.hurst:g},
-λ0 = {printed.wavelength * _UM:g} µm, over {SIDE * _UM:g} µm × {SIDE * _UM:g} µm. `variational/roughness/` analyses
-measured maps the same way.
-
-![A spot's heights; the heights of eight spots and a Gaussian; spectra and both readings of Eq. 8](topography.png)
-
-Eight spots of 100 µm × 100 µm, curvature removed as in section 3.1: h_rms {heights.h_rms * _UM:.2f} µm, skewness
-{heights.skewness:.2f}, kurtosis {heights.kurtosis:.2f}, largest distance from the Gaussian's cumulative distribution
-{heights.distance:.3f}. Their mean spectrum (Hann's window) gives H = {fit.hurst:.2f}, fitted between wavelengths of
-{longest:.0f} µm and {shortest:.1f} µm. `roughness_table` makes of the spots what a scene needs:
-
-    [roughness]
-    h_rms = {table["h_rms"]:.3g}
-    wavelength = {table["wavelength"]:.3g}
-
-## Two readings of Eq. 8
-
-With h_rms² = (1/2π) ∫ q C dq the printed prefactor 4πH/(1+H) belongs to a spectrum that is constant below
-q0 = 2π/λ0 = {printed.q_0:.3g} 1/m. From q0 up it holds {share:.0%} of the variance, {wanted * share**0.5:.2f} µm rms.
-If no wavelength is longer than λ0 the prefactor is 4πH. (The paper's q0 of 6.3e5 1/m is ten times too large.)
-
-## What a spot misses
-
-The rms height (µm) of spots cut out of a surface of {wanted:g} µm rms: mean ± scatter from spot to spot over
-{surfaces} surfaces, in brackets the root of the expected mean square, summed from the spectrum without any surface.
-
-Plateau below q0, wavelengths up to {SIDE * _UM:g} µm:
-
-{_bias_table(found[printed])}
-
-Nothing below q0:
-
-{_bias_table(found[READINGS[1]])}
-
-So a spot of 100 µm of a surface of {wanted:g} µm rms has {plateau.mean * _UM:.2f} ± {plateau.scatter * _UM:.2f} µm once
-its curvature is removed **if the surface has the plateau** that the printed prefactor assumes; without one it has
-{none.mean * _UM:.2f} ± {none.scatter * _UM:.2f} µm. The other way round, spots that show {wanted:g} µm without their
-curvature lie on a surface of {wanted * printed.h_rms / plateau.expected:.1f} µm rms (plateau, λ0 = 100 µm). The model
-takes {wanted:g} µm, measured on spots, for h_rms in Eqs. 8 to 15.
-
-## What a fit finds
-
-Plateau and power law fitted to {surfaces} surfaces with a plateau and to {SPOTS} spots (four of 400 µm) of each,
-curvature removed: mean ± scatter over surfaces, pixels of {SIDE / COARSE * _UM:.2g} µm.
-
-{_fit_table(surfaces)}
-
-With Hann's window a fit starts at half the spot's length: longer modes are mixed by the window and thinned by the
-detrending. So spots of 100 µm and of 200 µm cannot show a roll-off at 100 µm. The paper's λ0 = 100 µm is the length of
-its spots, and `roughness_table` takes that length too when no roll-off is seen; the fit's own is a lower bound. The
-window averages C over neighbouring modes, which lifts the steep low end of the spectrum and so H: the more, the fewer
-pixels a spot has.
-"""
+def _rings(spectrum: PowerSpectrum) -> dict[str, list[float]]:
+    """Return the radial mean of a spectrum: wavevectors (1/m) and C (m^4)."""
+    ring = spectrum.radial()
+    kept = ring.q < 2 * spectrum.q_range[1]
+    return {"q": [float(q) for q in ring.q[kept]], "psd": [float(c) for c in ring.psd[kept]]}
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Make the surfaces, draw and write."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--surfaces", type=positive(int), default=20, help="surfaces the spots are cut from")
-    parser.add_argument("--docs", type=Path, default=_ROOT / "docs", help="folder of the page and its picture")
-    args = parser.parse_args(arguments)
+def compute(args: Any) -> None:
+    """Make the surfaces and keep the numbers."""
     surface = READINGS[0].surface((FINE, FINE), (SIDE, SIDE), seed=1)
     cut = list(spots(surface, SPOT))[::2]
     flat = [spot.detrended("curvature") for spot in cut]
-    args.docs.mkdir(parents=True, exist_ok=True)
-    draw(args.docs / "topography.png", surface, flat)
-    text = page(flat, roughness_table(*cut), args.surfaces)
-    replace(args.docs / "topography.md", text)
-    print(args.docs / "topography.md")
-    return 0
+    heights, spectrum = distribution(*flat), power_spectrum(*flat, window="hann")
+    fit = spectrum.fit()
+    numbers = {
+        "surfaces": SURFACES,
+        "heights": {key: float(getattr(heights, key)) for key in ("h_rms", "skewness", "kurtosis", "distance")},
+        "fit": {"hurst": fit.hurst, "q_range": list(fit.q_range)},
+        "table": roughness_table(*cut),
+        "spectra": {"surface": _rings(power_spectrum(surface)), "spots": _rings(spectrum)},
+        "bias": [
+            asdict(kind) | {"window": window, "trend": trend, **found._asdict()}
+            for kind in READINGS
+            for (window, trend), found in biases(kind, SURFACES).items()
+        ],
+        "fits": fits(SURFACES),
+    }
+    harness.keep("topography", numbers, harness.made(), args.docs)
+
+
+# -- page ----------------------------------------------------------------------------------------------------
+_HOW = """The maps measured for Fig. 3 of the paper are not public. Synthetic Gaussian surfaces stand for them, with the
+paper's parameters: h_rms {wanted:g} µm, H = {hurst:g}, λ0 = {wavelength:g} µm, over 800 µm × 800 µm.
+`variational/roughness/` analyses measured maps the same way. (The paper's q0 of 6.3e5 1/m is ten times too large.)
+
+With h_rms² = (1/2π) ∫ q C dq the prefactor 4πH/(1+H) printed in Eq. 8 belongs to a spectrum that is constant below
+q0 = 2π/λ0 = {q_0:.3g} 1/m, the *plateau*. From q0 up this spectrum holds {share:.0%} of the
+variance, {part:.2f} µm rms. Without wavelengths above λ0 the prefactor is 4πH."""
+_SPOTS = """Eight spots of 100 µm × 100 µm, curvature removed as in section 3.1, have h_rms {h_rms:.2f} µm,
+skewness {skewness:.2f} and kurtosis {kurtosis:.2f}. Their cumulative distribution differs from a Gaussian's by
+{distance:.3f} at most. Their mean spectrum (Hann's window) gives H = {hurst:.2f}, fitted between wavelengths of
+{longest:.0f} µm and {shortest:.1f} µm. `roughness_table` makes of these spots the table of a scene:
+
+    [roughness]
+    h_rms = {scene_h_rms:.3g}
+    wavelength = {scene_wavelength:.3g}"""
+_BIAS = """Rms height (µm) of spots of a surface of {wanted:g} µm rms: mean ± scatter from spot to spot
+over {surfaces} surfaces. In brackets is the root of the expected mean square, summed from the spectrum."""
+_FITS = """Plateau and power law were fitted to {surfaces} surfaces with a plateau and to {spots} spots of each (four of
+400 µm), curvature removed: mean ± scatter over surfaces, pixels of {pixel:.2g} µm."""
+_FITTED = """With Hann's window a fit starts at half the spot's length: the window mixes longer modes and detrending
+weakens them. So spots of 100 µm and of 200 µm cannot show a roll-off at 100 µm. The paper's λ0 = 100 µm is the length
+of its spots. `roughness_table` takes this length, too, when no roll-off is found; the fit's own is a lower bound. The
+window averages C over neighbouring modes. This lifts the steep low end of the spectrum and so H: the more, the fewer
+pixels a spot has."""
+
+
+def _chosen(numbers: Mapping[str, Any], plateau: bool, trend: str) -> list[dict[str, Any]]:
+    return [b for b in numbers["bias"] if b["plateau"] == plateau and b["trend"] == trend]
+
+
+def _bias_table(numbers: Mapping[str, Any], plateau: bool) -> str:
+    rows = []
+    for k, window in enumerate(WINDOWS):
+        found = [_chosen(numbers, plateau, trend)[k] for trend in TRENDS]
+        cells = (f"{b['mean'] * _UM:.2f} ± {b['scatter'] * _UM:.2f} ({b['expected'] * _UM:.2f})" for b in found)
+        rows.append([f"{window * _UM:g}", *cells])
+    return harness.table(["window (µm)", *(f"{trend} removed" for trend in TRENDS)], rows)
+
+
+def _fit_table(numbers: Mapping[str, Any]) -> str:
+    rows = []
+    for row in numbers["fits"]:
+        whole = row["window"] == SIDE
+        words = f"{row['window'] * _UM:g} µm, periodic" if whole else f"spots of {row['window'] * _UM:g} µm"
+        (h, dh), (w, dw), (rms, drms) = (row[key] for key in ("hurst", "wavelength", "h_rms"))
+        length = f"{w * _UM:.0f} ± {dw * _UM:.0f}" if row["resolved"] else f"≥ {w * _UM:.0f}"
+        resolved = f"{row['resolved']} of {numbers['surfaces']}"
+        rows.append([words, f"{h:.3f} ± {dh:.3f}", length, f"{rms * _UM:.2f} ± {drms * _UM:.2f}", resolved])
+    return harness.table(["map", "H", "λ0 (µm)", "h_rms of the fit (µm)", "roll-off found"], rows)
+
+
+def _spectrum(ax: Axes, numbers: Mapping[str, Any]) -> None:
+    """Draw the spectra over Eq. 8 as printed, in which they would coincide with it."""
+    printed, other = READINGS
+    marks = (("surface", "o", harness.GREY, "whole surface, 800 µm"), ("spots", "s", harness.GREEN, "8 spots, 100 µm"))
+    for key, marker, colour, label in marks:
+        q, psd = (np.array(numbers["spectra"][key][name]) for name in ("q", "psd"))
+        ax.plot(q, psd / printed.psd(q), marker, color=colour, ms=5, label=label)
+    ends = np.array([2 * np.pi / SIDE, numbers["spectra"]["spots"]["q"][-1]])
+    ax.plot(ends, [1, 1], color=harness.BLUE, label="Eq. 8 as printed, with plateau")
+    ratio = float(other.psd(2 * other.q_0) / printed.psd(2 * other.q_0))
+    ax.plot(
+        [other.q_0, other.q_0, ends[1]],
+        [0, ratio, ratio],
+        "--",
+        color=harness.VERMILION,
+        label="4πH, nothing below $q_0$",
+    )
+    ax.set(
+        xscale="log", ylim=(0, 3.2), xlabel="wavevector q (1/m)", ylabel="$C$ / $C$ of Eq. 8", title="Power spectrum"
+    )
+    ax.legend(loc="upper right")
+
+
+def _bias(ax: Axes, numbers: Mapping[str, Any], wanted: float) -> None:
+    """Draw the rms height of spots over their size, bars: scatter from spot to spot."""
+    curves: list[tuple[Trend, bool]] = [*((trend, True) for trend in TRENDS), ("curvature", False)]
+    colours = (harness.GREY, harness.SKY, harness.BLUE, harness.BLUE)
+    for k, ((trend, plateau), colour) in enumerate(zip(curves, colours, strict=True)):
+        found = _chosen(numbers, plateau, trend)
+        window = np.array([b["window"] for b in found]) * _UM * (1 + 0.05 * (k - 1))
+        rms, bar = (np.array([b[key] for b in found]) * _UM for key in ("mean", "scatter"))
+        look: dict[str, Any] = {} if plateau else {"ls": "--", "mfc": "white"}
+        label = f"{trend} removed" + ("" if plateau else ", no plateau")
+        ax.errorbar(window, rms, bar, color=colour, capsize=2, marker="o", label=label, **look)
+    ax.axhline(wanted, color="black", lw=1, ls=":", label="whole surface")
+    ax.set(
+        xscale="log", ylim=(0, 4), xlabel="size of the spot (µm)", ylabel="rms height (µm)", title="What a spot misses"
+    )
+    ax.set_xticks([w * _UM for w in WINDOWS], [f"{w * _UM:g}" for w in WINDOWS])
+    ax.minorticks_off()
+    ax.legend(loc="lower right")
+
+
+def draw(docs: Path) -> Path:
+    """Draw page and picture from the kept numbers."""
+    kept = harness.kept("topography", docs)
+    numbers, printed = kept.numbers, READINGS[0]
+    wanted, share = printed.h_rms * _UM, 1 / (1 + printed.hurst)
+    plateau, none = (_chosen(numbers, each, "curvature")[WINDOWS.index(SPOT)] for each in (True, False))
+    below = wanted * printed.h_rms / plateau["expected"]
+    shown, shown_without = (f"{b['mean'] * _UM:.2f} ± {b['scatter'] * _UM:.2f} µm" for b in (plateau, none))
+    finding = (
+        f"A map of 100 µm × 100 µm shows only part of the roughness. Of a surface of {wanted:g} µm rms, it has {shown} "
+        "once its curvature is removed, if the surface has the plateau that the prefactor printed in Eq. 8 assumes. "
+        f"Without a plateau it has {shown_without}.\n\n"
+        f"The other way round, spots that show {wanted:g} µm lie on a surface of {below:.1f} µm rms (plateau, λ0 = 100 "
+        f"µm). The model takes {wanted:g} µm, measured on spots, for h_rms in Eqs. 8 to 15."
+    )
+
+    def paint(figure: Figure) -> None:
+        left, right = figure.subplots(1, 2)
+        _spectrum(left, numbers)
+        _bias(right, numbers, wanted)
+
+    how = _HOW.format(
+        wanted=wanted, hurst=printed.hurst, wavelength=printed.wavelength * _UM, q_0=printed.q_0, share=share,
+        part=wanted * share**0.5,
+    )  # fmt: skip
+    longest, shortest = (2 * np.pi / q * _UM for q in numbers["fit"]["q_range"])
+    table = {f"scene_{key}": value for key, value in numbers["table"].items()}
+    of_spots = numbers["heights"] | {"h_rms": numbers["heights"]["h_rms"] * _UM}
+    spot = {"longest": longest, "shortest": shortest, "hurst": numbers["fit"]["hurst"]} | of_spots | table
+    caption = (
+        "Left: spectra over Eq. 8; spots lose the longest waves. Right: rms height of spots; bars are the scatter from "
+        "spot to spot."
+    )
+    surfaces = numbers["surfaces"]
+    body = [
+        harness.picture(docs / "topography.png", (9, 4), paint, caption),
+        "## What a spot misses",
+        _BIAS.format(wanted=wanted, surfaces=surfaces),
+        f"With the plateau:\n\n{_bias_table(numbers, True)}",
+        f"Without the plateau:\n\n{_bias_table(numbers, False)}",
+        "## Eight spots of one surface",
+        _SPOTS.format(**spot),
+        "## What a fit finds",
+        _FITS.format(surfaces=surfaces, spots=SPOTS, pixel=SIDE / COARSE * _UM),
+        _fit_table(numbers),
+        _FITTED,
+    ]
+    path, command = docs / "topography.md", "python3 -m benchmarks.topography"
+    return harness.page(path, "Topography of a ridge", finding, how, body, command, kept.made, ["topography"])
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(harness.main(__doc__, compute, draw))

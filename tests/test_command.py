@@ -272,19 +272,20 @@ def test_bad_ranges(text, message):
 
 # -- estimate ----------------------------------------------------------------------------------------------
 def kept(file: str) -> dict:
-    return json.loads((ROOT / "docs" / file).read_text(encoding="utf-8"))
+    return json.loads((ROOT / "docs" / file).read_text(encoding="utf-8"))["numbers"]
 
 
 def test_known_error_is_that_of_the_kept_runs():
-    """The figures printed are the largest differences of closed form and full runs in docs/ladder.json, rounded up."""
-    runs = kept("ladder.json")
+    """The figures printed are the largest differences of closed form and full runs in docs/models.json, rounded up."""
+    runs = kept("models.json")["scenes"]
     assert len(runs) == estimate.KNOWN_RUNS
     points = [tuple(float(part.split()[0]) for part in name.split(",")) for name in runs]
     assert estimate.KNOWN_FORCES == (min(f for f, _ in points), max(f for f, _ in points))
     assert estimate.KNOWN_VOLTAGES == (min(u for _, u in points), max(u for _, u in points))
     for key, known in estimate.KNOWN_ERROR.items():
         ratios = [
-            found["1"]["summary"][f"slip_{key}"] / found["3"]["summary"][f"slip_{key}"] for found in runs.values()
+            found["cylinders"]["summary"][f"slip_{key}"] / found["full"]["summary"][f"slip_{key}"]
+            for found in runs.values()
         ]
         worst = max(abs(ratio - 1) for ratio in ratios)
         assert worst <= known < worst + 1e-4
@@ -387,10 +388,10 @@ def test_check(tmp_path, capsys):
 
 
 def test_rule_of_the_cost_is_that_of_kept_runs():
-    """Shares, factors and time are the default run's of docs/chart.json; factorisations fit docs/ladder.json."""
+    """Shares, factors and time are the default run's of docs/chart.json; factorisations fit docs/models.json."""
     points = {point["label"]: point for point in kept("chart.json")["points"]}
     work = points["default"]["work"]
-    slip, charged, pressed = work["slip"], work["normal"], work["press"]
+    slip, charged, pressed = work["slip"], work["normal"], work["uncharged"]
     shares = {"force": pressed / slip, "voltage": (charged - pressed) / slip, "slide": (slip - charged) / slip}
     assert cost.SHARES == pytest.approx(shares, abs=0.01)
     at_10_um = points["10 µm"]["work"]["slip"]
@@ -399,10 +400,10 @@ def test_rule_of_the_cost_is_that_of_kept_runs():
     own = ("contact size", "growth", "all sizes", "element", "formulation", "solver", "steps")
     took = [p["seconds"]["slip"] / p["work"]["slip"] for p in points.values() if p["family"] in own and p["seconds"]]
     assert cost.SECONDS == pytest.approx(np.median(took), rel=0.02)
-    for name, found in kept("ladder.json").items():
+    for name, found in kept("models.json")["scenes"].items():
         f_ext, voltage = (float(part.split()[0]) for part in name.split(","))
         scene = from_data({"f_ext": f_ext, "voltage": voltage})
-        ratio = cost.expected(scene, plan(scene)).factorisations / found["3"]["cost"]["factorisations"]
+        ratio = cost.expected(scene, plan(scene)).factorisations / found["full"]["cost"]["factorisations"]
         assert 0.5 < ratio < 2, name
 
 

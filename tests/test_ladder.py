@@ -1,17 +1,13 @@
 """The ladder's rungs: one set of keys, forces in balance, sources named, and what they cannot answer refused."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from benchmarks import ladder as page
 from fingerpad.io.result import Result
-from fingerpad.io.states import PREFIXES
-from fingerpad.reduced import cylinders, ridge_cell
+from fingerpad.reduced import cylinders
 from fingerpad.runs import compare
-from fingerpad.runs.processes import End
 from fingerpad.scene import SceneError, from_data
 from variational.state import RESULTS
 
@@ -40,7 +36,7 @@ def test_friction_is_the_cone(default):
 
 
 def test_default_scene_is_near_the_full_model(default):
-    """The full run has mu_app 0.5230 and 1.580 mm at 10 um (docs/traces.md); rung 1 is 1.2 and 0.1 % off."""
+    """The full run has mu_app 0.5230 and 1.580 mm at 10 um (docs/models.md); rung 1 is 1.2 and 0.1 % off."""
     assert default.full_slip.mu_app == pytest.approx(0.5230, rel=0.02)
     assert default.full_slip.contact_length == pytest.approx(1.580e-3, rel=0.02)
 
@@ -151,49 +147,3 @@ def test_errors_of_a_run_stand_beside_its_values(tmp_path):
 def test_closed_form_has_no_discretisation_error(default):
     assert [state.error.known() for state in default.named.values()] == [{}, {}]
     assert any("no discretisation error" in note for note in default.notes)
-
-
-# -- the benchmark -----------------------------------------------------------------------------------------
-MORE = {"table_version": ridge_cell.VERSION}
-
-
-def test_answers_are_kept_and_failures_asked_again(monkeypatch, tmp_path):
-    """Of two scenes one fails: it says how, has no error, and is the only one that is run again."""
-    asked = []
-
-    def ask(scene, tables):
-        asked.append(scene.voltage)
-        if scene.voltage:
-            return End(1, "TIME_LIMIT", "not done", "")
-        return End(0, "", "", json.dumps({"summary": {"slip_mu_app": 0.25}, "cost": {}, "more": MORE}))
-
-    monkeypatch.setattr(page, "grid", lambda size: {(75.0, u): scene(voltage=u) for u in (0.0, 200.0)})
-    monkeypatch.setattr(page, "ask", ask)
-    file = tmp_path / "compare.json"
-    for _ in range(2):
-        known = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
-        page.collect(known, tmp_path / "runs", ["2"], 1, file)
-    assert asked == [0.0, 200.0, 200.0]
-    known = json.loads(file.read_text(encoding="utf-8"))
-    assert known["75 N/m, 200 V"]["2"] == {"failure": "TIME_LIMIT: not done"}
-    assert known["75 N/m, 0 V"]["2"]["summary"] == {"slip_mu_app": 0.25}
-    assert page.error(known["75 N/m, 200 V"], 2, "slip_mu_app") is None
-
-
-# -- the page ----------------------------------------------------------------------------------------------
-def test_lengths_in_the_program_are_the_runs():
-    """Those that rung 1 interpolates are the full runs' of docs/ladder.json, to the four digits they are kept with."""
-    known = json.loads((Path(page.__file__).parents[1] / "docs" / "ladder.json").read_text(encoding="utf-8"))
-    for state in ("charged", "full_slip"):
-        for k, f in enumerate(cylinders._FORCES):
-            run = known[page.name(f, 0.0)]["3"]["summary"]
-            assert cylinders._LENGTHS[state][k] == pytest.approx(run[f"{PREFIXES[state]}_contact_length"], abs=0.5e-7)
-            assert cylinders._RIDGES[state][k] == run[f"{PREFIXES[state]}_ridges_in_contact"]
-
-
-def test_errors_are_against_the_full_model():
-    """A rung that is not there, or a full run that is not, has none."""
-    found = {"1": {"summary": {"slip_mu_app": 0.5}}, "3": {"summary": {"slip_mu_app": 0.4}}}
-    assert page.error(found, 1, "slip_mu_app") == pytest.approx(0.25, rel=1e-12)
-    assert page.error(found, 2, "slip_mu_app") is None
-    assert page.error({"1": found["1"]}, 1, "slip_mu_app") is None

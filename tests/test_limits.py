@@ -1,4 +1,4 @@
-"""Limits of scenes: from which path, what is kept, and that all is asked for once."""
+"""Limits of scenes: their path, the kept output, and one solve for each scene."""
 
 import json
 from types import SimpleNamespace
@@ -28,7 +28,7 @@ class Path:
 
 
 class StateRecorder:
-    """Keeps nothing but the mesh it saw."""
+    """Keeps the contact size of its mesh alone."""
 
     def __init__(self, simulation):
         self.contact, self.states = simulation.contact, {}
@@ -53,7 +53,7 @@ def test_path_that_is_lost_is_followed_on_a_finer_mesh(path):
     assert Path.tried == [20e-6, 10e-6]
 
 
-@pytest.mark.parametrize(("uncharged", "kept"), [(True, {"press": 10e-6}), (False, {})])
+@pytest.mark.parametrize(("uncharged", "kept"), [(True, {"uncharged": 10e-6}), (False, {})])
 def test_uncharged_contact_is_kept_where_it_is_asked_for(path, uncharged, kept):
     limits._path(Scene(), uncharged, MPI.COMM_SELF)
     assert StateRecorder.kept == kept
@@ -71,8 +71,8 @@ def test_meshes_are_halved_in_all_sizes():
     assert second.touching_half_arc == first.touching_half_arc
 
 
-def test_what_is_known_is_not_asked_again(tmp_path, monkeypatch):
-    """A scene that failed is said to have, and asked again the next time; one that was solved is not."""
+def test_kept_scene_is_not_solved_again(tmp_path, monkeypatch):
+    """A scene that failed has its reason and is tried again the next time; one that was solved is not."""
     asked = []
 
     def run(module, arguments, limit):

@@ -9,14 +9,15 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from benchmarks.harness import DOCS, Made, keep, kept, voltage_colour
+from benchmarks.harness import DOCS, Made, keep, kept
 from benchmarks.paper import __main__ as command
-from benchmarks.paper import friction, micro, page, scenes, section, sed, tables
-from benchmarks.paper.statement import HOLDS, IN_PART, NOT, Statement, verdict
+from benchmarks.paper import friction, micro, page, scenes, section, sed
+from benchmarks.paper.statement import HOLDS, IN_PART, NOT, Statement, statement
 from benchmarks.runs import Run
 from benchmarks.traces import FORCES, VOLTAGES
+from fingerpad.io import style
 from fingerpad.runs.batch import key
-from fingerpad.scene import Scene, from_data
+from fingerpad.scene import Scene
 from geometry import tags
 
 MU_0 = 0.25
@@ -81,7 +82,7 @@ def test_markers_of_the_reductions_are_of_their_voltage(grid):
     markers = {line.get_color(): line for line in figure.axes[1].lines if line.get_linestyle() == "None"}
     for k, voltage in enumerate(VOLTAGES):
         stress = 1e-3 * grid["slip_f_t"][:, k] / grid["slip_contact_length"][:, k]
-        assert markers[voltage_colour(voltage)].get_xdata() == pytest.approx(stress, rel=1e-12)
+        assert markers[style.voltage(voltage)].get_xdata() == pytest.approx(stress, rel=1e-12)
 
 
 def test_waves_are_counted_by_voltage(grid):
@@ -173,7 +174,8 @@ def test_pictures_have_units(grid):
 
 
 def test_verdicts():
-    assert [verdict(True), verdict(False, True), verdict(False)] == [HOLDS, IN_PART, NOT]
+    found = [statement("wavy", "", {}, *given) for given in ((True,), (False, True), (False,))]
+    assert [s.verdict for s in found] == [HOLDS, IN_PART, NOT]
 
 
 def test_threshold_statements():
@@ -258,7 +260,29 @@ def test_missing_runs_are_named(tmp_path, capsys):
     assert "missing: Fig. 2, run" in capsys.readouterr().out
 
 
-# -- scenes, tables, page ------------------------------------------------------------------------------
+def test_grid_of_runs_is_collected(monkeypatch, tmp_path):
+    """Friction and lengths of all runs, and the waves of the path; runs without their fields are named."""
+
+    class Fields(SimpleNamespace):
+        def arrays(self, name):
+            raise FileNotFoundError(name)
+
+        receptors = property(lambda self: self.arrays("receptors"))
+
+    def run(scene, out):
+        found = state(scene.f_ext, scene.voltage, lost=0.03)
+        return Fields(scene=scene, **vars(found), on_ridges=lambda row, name: ([0], None), loads=["slide"] * 3)
+
+    monkeypatch.setattr(command, "Run", run)
+    numbers = command.collect(tmp_path, 10e-6)
+    assert np.shape(numbers["grid"]["slip_f_t"]) == (len(FORCES), len(VOLTAGES))
+    assert {s["figure"] for s in numbers["statements"]} == {"4, Eq. 14", "5, Eq. 15", "6", "7", "8"}
+    wavy = next(s for s in numbers["statements"] if "wavy" in s["paper"])
+    assert wavy["numbers"] == {f"rises_{u:g}": 0.0 for u in VOLTAGES}
+    assert numbers["missing"] == ["Fig. 2", "Fig. 9A", "Fig. 9B", "section 5"]
+
+
+# -- scenes, page - ------------------------------------------------------------------------------
 def test_sine_is_a_valid_scene():
     """From 0 V over the peak and back to 0 V, each reached before the finger slides on to full slip, ever farther."""
     loads = scenes.sine(10e-6).loads()[1:]
@@ -266,18 +290,6 @@ def test_sine_is_a_valid_scene():
     assert voltages == pytest.approx([scenes.PEAK * np.sin(np.pi * k / 12) for k in range(1, 13)], abs=1e-9)
     assert np.all(np.diff([load.bone_x for load in loads]) > 0)
     assert [load.until_full_slip for load in loads] == [True] + [False, True] * 12
-
-
-def test_every_parameter_has_a_source():
-    """What is called an assumption in its docstring is called one in the table."""
-    scene = from_data({})
-    for name in ("geometry", "materials", "electric", "roughness"):
-        for key_, _, source, told in tables.rows(getattr(scene, name), name):
-            assert told
-            if "*assumption*" in told.lower() and key_ not in ("roughness.beta", "materials.exponent"):
-                assert source == "*assumption*", key_
-    keys = {key_ for name in ("geometry", "roughness") for key_, *_ in tables.rows(getattr(scene, name), name)}
-    assert keys >= tables.ASSUMED
 
 
 def numbers_with(*statements, size=10e-6):

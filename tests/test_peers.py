@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.harness import Made, keep
 from benchmarks.peers import calculix_ridge, ours, page, profile
 from benchmarks.peers.cases import cases
 from benchmarks.peers.exchange import (
@@ -139,13 +140,18 @@ def test_tables_of_calculix():
 
 def test_differences_are_marked(answer, ridge):
     """A difference is flagged above the bar and only there; friction that vanishes by symmetry is not judged."""
-    one = page.row(answer, answer.states[1], ridge)
-    assert page.line(one, one).count("%") == 0
-    assert "**!**" not in page.line(replace(one, f_n=one.f_n * (1 + 0.9 * page.FORCE)), one)
-    assert page.line(replace(one, f_n=one.f_n * (1 + 1.1 * page.FORCE)), one).count("**!**") == 1
-    assert page.line(replace(one, peak=one.peak * (1 - 1.1 * page.SHAPE)), one).count("**!**") == 1
-    still = replace(one, f_t=0.0)
-    assert "**!**" not in page.line(replace(still, f_t=1e-6), still)
+    one = page.values(answer.states[1], ridge)
+
+    def text(k: int, part: float) -> str:
+        other = [value * (1 + part * (n == k)) for n, value in enumerate(one)]
+        row = {"program": "other", "values": other, "differences": page.differences(other, one)}
+        return " ".join(page.line(row))
+
+    assert "%" not in " ".join(page.line({"program": "fingerpad", "values": one}))
+    assert "**!**" not in text(0, 0.9 * page.FORCE)
+    assert text(0, 1.1 * page.FORCE).count("**!**") == 1
+    assert text(3, -1.1 * page.SHAPE).count("**!**") == 1
+    assert page.differences([1.0, 1e-6, 1.0, 1.0], [1.0, 1e-9, 1.0, 1.0])[1] is None
 
 
 def test_page(answer, ridge, tmp_path):
@@ -155,10 +161,22 @@ def test_page(answer, ridge, tmp_path):
     for program, found in (("ours", answer), ("getfem", other)):
         for name in cases():
             write_answer(found, page.answer_path(tmp_path, 40, name, "", program))
-    text = page.write(tmp_path, tmp_path / "docs").read_text()
+    keep("peers", page.numbers(tmp_path), Made("0.1.0", "abc1234", "2026-11-21"), tmp_path)
+    text = page.draw(tmp_path).read_text()
     assert "| GetFEM | 5.4 | this project |" in text
-    assert text.count("| fingerpad |") == 1 + 2 * len(answer.states)
-    assert (tmp_path / "docs/peers/tractions.png").stat().st_size > 1000
+    assert "| GetFEM | 0 | 0 | 0 | 0 |" in text
+    assert text.count("| fingerpad |") == 2 + 2 * len(answer.states)  # versions, iterations, states
+    assert (tmp_path / "peers.png").stat().st_size > 1000
+
+
+def test_largest_differences():
+    """Over all states by program, without sign; fingerpad itself has none."""
+    rows = [
+        {"program": "fingerpad", "values": [1.0] * 4},
+        {"program": "A", "values": [1.0] * 4, "differences": [0.01, None, -0.02, 0.0]},
+        {"program": "A", "values": [1.0] * 4, "differences": [-0.03, 0.5, 0.0, 0.0]},
+    ]
+    assert page.largest(rows) == [["A", "3 %", "50 %", "2 %", "0"]]
 
 
 def test_unknown_variant():

@@ -1,14 +1,14 @@
-"""The verification cases on small meshes, and the page made of them."""
-
-import json
+"""The verification cases on small meshes, and the page drawn from their numbers."""
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from scipy.integrate import quad
 
+from benchmarks.harness import DOCS, Made, keep, kept
 from benchmarks.verification import dugdale, page
 from benchmarks.verification.areas import AREAS
-from benchmarks.verification.case import Case, Outcome, Row
+from benchmarks.verification.case import Case, Curves, Outcome, Row
 
 CASES = [case for cases in AREAS.values() for case in cases]
 
@@ -18,7 +18,9 @@ def test_case(case):
     """Every number is within the tolerance that its row explains."""
     outcome = case.run(True)
     assert outcome.rows
-    assert [f"{row.quantity}: {row.ours} instead of {row.reference}" for row in outcome.rows if not row.holds] == []
+    assert [f"{row.quantity}: {row.computed} instead of {row.reference}" for row in outcome.rows if not row.holds] == []
+    if outcome.curves is not None:
+        outcome.curves.draw(Figure())
 
 
 def test_maugis_tractions():
@@ -68,17 +70,32 @@ def test_error(row, error, holds):
 
 
 def test_page(tmp_path):
-    """A number that is off is marked, a picture linked, and the data unrounded."""
+    """A number that is off is marked, and the kept numbers are unrounded."""
     good = Row("width (m)", 1.0000001, 1.0, 1e-3, "mesh", order=1.96)
     bad = Row("force (N)", 2.0, 1.0, 1e-3, "mesh")
     case = Case("Some case", "somebody", lambda small: Outcome(()))
-    drawn = Outcome((good, bad), lambda figure: figure.subplots().plot([0, 1]) and None)
-    page.write({"Area": [(case, drawn)]}, tmp_path)
-    text = (tmp_path / "verification.md").read_text(encoding="utf-8")
-    assert "1 of 2 numbers" in text
+    found = page.numbers({"Area": [(case, Outcome((good, bad)))]})
+    keep("verification", found, Made("0.1.0", "abc1234", "2026-11-21"), tmp_path)
+    text = page.draw(tmp_path).read_text(encoding="utf-8")
+    assert "1 of 2 computed numbers in 1 cases" in text
     assert "**!** 1 (rel.)" in text
     assert "1.96" in text
-    assert "](verification/some_case.png)" in text
-    assert (tmp_path / "verification" / "some_case.png").stat().st_size > 1000
-    data = json.loads((tmp_path / "verification" / "results.json").read_text(encoding="utf-8"))
-    assert data["Area"]["Some case"][0]["ours"] == 1.0000001
+    assert kept("verification", tmp_path).numbers["Area"][0]["rows"][0]["computed"] == 1.0000001
+
+
+def test_numbers_in_git_are_of_every_case():
+    """Each case is on the page, and each of its numbers holds."""
+    areas = kept("verification", DOCS).numbers
+    assert {area: [case["name"] for case in cases] for area, cases in areas.items()} == {
+        area: [case.name for case in cases] for area, cases in AREAS.items()
+    }
+    rows = [Row(**row) for cases in areas.values() for case in cases for row in case["rows"]]
+    assert [row.quantity for row in rows if not row.holds] == []
+
+
+def test_picture_shows_known_and_computed():
+    figure = Figure()
+    Curves("x (m)", "p (Pa)", {"Hertz": ([0, 1], [1, 0])}, {"penalty": ([0.5], [0.6])}).draw(figure)
+    (ax,) = figure.axes
+    assert [line.get_label() for line in ax.lines] == ["Hertz", "penalty, computed"]
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("x (m)", "p (Pa)")

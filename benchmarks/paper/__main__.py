@@ -32,7 +32,8 @@ def _path(run: Run) -> Array:
 
 def collect(out: Path, size: float) -> dict[str, Any]:
     """Return the numbers of the page from the runs there are; what is missing is named."""
-    statements, numbers = dict[str, list[Statement]](), {"contact_size": size, "missing": []}
+    statements = dict[str, list[Statement]]()
+    numbers: dict[str, Any] = {"contact_size": size, "missing": []}
     grid = scenes.grid(size)
 
     def at(force: float, voltage: float) -> Run:

@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from benchmarks.harness import GREY, voltage_colour
 from benchmarks.paper.scenes import MAP, TRANSITION, WIDTH
-from benchmarks.paper.statement import Statement, verdict
+from benchmarks.paper.statement import Statement, statement
 from benchmarks.runs import Run
+from fingerpad.io import style
 
 Array = NDArray[np.float64]
 Grid = Mapping[str, Array]
@@ -89,7 +89,7 @@ def paint(figure: Figure, grid: Grid, measured: Measured | None = None) -> None:
     left, right = figure.subplots(1, 2)
     found = reduction(grid)
     for k, voltage in enumerate(grid["voltage"]):
-        look = {"color": voltage_colour(voltage), "marker": "o", "ms": 4}
+        look = {"color": style.voltage(voltage), "marker": "o", "ms": 4}
         left.plot(grid["f_ext"], grid["slip_f_t"][:, k] / grid["f_ext"], label=f"{voltage:g} V", **look)
         right.plot(found.stress[:, k] / 1e3, 100 * found.lost[:, k], ls="none", **look)
     if measured is not None:
@@ -97,10 +97,10 @@ def paint(figure: Figure, grid: Grid, measured: Measured | None = None) -> None:
             mine = measured.voltage == voltage
             force, friction = measured.force[mine] / WIDTH, measured.friction[mine] / WIDTH
             label = f"{measured.label}, {voltage:g} V"
-            left.plot(force, friction / force, "*", ms=9, color=voltage_colour(voltage), mec="black", label=label)
+            left.plot(force, friction / force, "*", ms=9, color=style.voltage(voltage), mec="black", label=label)
     x = np.array([0, found.stress.max()])
     fit = f"fit through the origin, R² = {found.r_squared:.2f}"
-    right.plot(x / 1e3, 100 * found.slope * x, color=GREY, lw=2, zorder=0, label=fit)
+    right.plot(x / 1e3, 100 * found.slope * x, color=style.GREY, lw=2, zorder=0, label=fit)
     left.set(xlabel="external force $f_{ext}$ (N/m)", ylabel="apparent friction coefficient µ_app (–)", ylim=(0, None))
     left.set_title("A  Friction at full slip")
     right.set(xlabel="mean shear stress $f_T / L_R$ (kPa)", ylabel="contact length lost by sliding (%)")
@@ -125,11 +125,11 @@ def statements(grid: Grid, rises: Mapping[str, float]) -> list[Statement]:
 
 
 def _column(grid: Grid, voltage: float) -> int:
-    return list(grid["voltage"]).index(voltage)
+    return int(np.flatnonzero(grid["voltage"] == voltage)[0])
 
 
 def _row(grid: Grid, force: float) -> int:
-    return list(grid["f_ext"]).index(force)
+    return int(np.flatnonzero(grid["f_ext"] == force)[0])
 
 
 def _gain(grid: Grid, name: str, voltage: float) -> Array:
@@ -142,37 +142,33 @@ def _friction(grid: Grid) -> list[Statement]:
     gain, little = _gain(grid, "slip_f_t", _HIGH), _gain(grid, "slip_f_t", _LOW)
     mu_app = float(grid["slip_f_t"][_row(grid, MAP), _column(grid, _HIGH)] / MAP)
     return [
-        Statement(
-            "6",
-            "µ_app ≈ 0.55 at f_ext = 75 N/m with electroadhesion",
+        statement(
+            "mu_app",
             f"{mu_app:.4f} at 200 V",
             {"mu_app": mu_app},
-            verdict(abs(mu_app / 0.55 - 1) < 0.05, abs(mu_app / 0.55 - 1) < 0.2),
-            "the paper's figure gives no number to compare with at other forces",
+            abs(mu_app / 0.55 - 1) < 0.05,
+            abs(mu_app / 0.55 - 1) < 0.2,
         ),
-        Statement(
-            "6",
-            "high voltage raises F_T and µ_app by more than 100 %",
+        statement(
+            "raise",
             f"at 200 V by {_range(100 * (gain - 1), ' %')}; more than 100 % up to {f[gain > 2].max(initial=0):g} N/m",
-            {"least": float(gain.min()), "largest": float(gain.max())},
-            verdict(bool((gain > 2).all()), bool((gain > 2).any())),
-            "the larger the force, the less the attraction adds",
+            {"least": gain.min(), "largest": gain.max()},
+            (gain > 2).all(),
+            (gain > 2).any(),
         ),
-        Statement(
-            "6",
-            "below 50 V hardly any effect",
+        statement(
+            "little",
             f"at 50 V F_T rises by {_range(100 * (little - 1), ' %', 2)}",
-            {"largest": float(little.max())},
-            verdict(bool((little < 1.05).all()), bool((little < 1.05).any())),
-            "at the smallest forces more than 5 %",
+            {"largest": little.max()},
+            (little < 1.05).all(),
+            (little < 1.05).any(),
         ),
-        Statement(
-            "6",
-            "the effect is largest at small forces",
+        statement(
+            "small forces",
             f"F_T(200 V) / F_T(0 V) is {gain[0]:.3g} at {f[0]:g} N/m and {gain[-1]:.3g} at {f[-1]:g} N/m",
-            {"first": float(gain[0]), "last": float(gain[-1])},
-            verdict(bool((np.diff(gain) < 0).all()), bool(gain[0] > gain[-1])),
-            "not monotonic",
+            {"first": gain[0], "last": gain[-1]},
+            (np.diff(gain) < 0).all(),
+            gain[0] > gain[-1],
         ),
     ]
 
@@ -185,29 +181,26 @@ def _lengths(grid: Grid) -> list[Statement]:
     means = {state: grid[f"{state}_contact_length"][:, columns] / counts[state] for state in counts}
     lost, change = counts["normal"] - counts["slip"], means["slip"] / means["normal"] - 1
     return [
-        Statement(
-            "7",
-            "ridge contact length up to more than 20 % larger at 200 V",
+        statement(
+            "longer",
             f"in normal contact by {_range(100 * (normal - 1), ' %')}, sliding by {_range(100 * (sliding - 1), ' %')}",
-            {"normal": float(normal.max()), "sliding": float(sliding.max())},
-            verdict(bool(both.max() > 1.2 and (both > 1).all()), bool(both.max() > 1.2)),
-            "but not at every force",
+            {"normal": normal.max(), "sliding": sliding.max()},
+            both.max() > 1.2 and (both > 1).all(),
+            both.max() > 1.2,
         ),
-        Statement(
-            "7",
-            "the average ridge contact length is almost the same, normal or sliding",
+        statement(
+            "average",
             f"in sliding it changes by {_range(100 * change, ' %', 2)}",
-            {"least": float(change.min()), "largest": float(change.max())},
-            verdict(bool((abs(change) < 0.05).all()), bool((abs(change) < 0.05).mean() > 0.5)),
-            "where a ridge more or less is in contact its short length moves the average",
+            {"least": change.min(), "largest": change.max()},
+            (abs(change) < 0.05).all(),
+            (abs(change) < 0.05).mean() > 0.5,
         ),
-        Statement(
-            "7",
-            "one or two ridges fewer in contact in sliding",
+        statement(
+            "fewer",
             f"{lost.min():g} to {lost.max():g} fewer",
-            {"least": float(lost.min()), "largest": float(lost.max())},
-            verdict(bool(((lost == 1) | (lost == 2)).all()), bool(((lost == 1) | (lost == 2)).mean() > 0.5)),
-            "not at every force and voltage",
+            {"least": lost.min(), "largest": lost.max()},
+            ((lost == 1) | (lost == 2)).all(),
+            ((lost == 1) | (lost == 2)).mean() > 0.5,
         ),
     ]
 
@@ -217,36 +210,32 @@ def _reductions(grid: Grid, rises: Mapping[str, float]) -> list[Statement]:
     most = float(found.lost[_row(grid, TRANSITION)].max())
     loss = found.lost[:, [_column(grid, u) for u in (0.0, _HIGH)]].mean(axis=1)
     return [
-        Statement(
-            "8",
-            "contact length falls with tangential load by up to 12 %",
+        statement(
+            "falls",
             f"by up to {100 * most:.3g} % at {TRANSITION:g} N/m, {100 * found.lost.max():.3g} % over the grid",
-            {"at_120": most, "grid": float(found.lost.max())},
-            verdict(abs(most - 0.12) < 0.02, 0.06 < most < 0.18),
-            "like the slope of the linear fit, it depends on the ridges that leave",
+            {"at_120": most, "grid": found.lost.max()},
+            abs(most - 0.12) < 0.02,
+            0.06 < most < 0.18,
         ),
-        Statement(
-            "8",
-            "the reduction is about linear in f_T / L_R, whatever voltage and force",
+        statement(
+            "linear",
             f"slope {1e5 * found.slope:.3g} % per kPa, R² = {found.r_squared:.2f} over {found.stress.size} runs",
             {"slope": found.slope, "r_squared": found.r_squared},
-            verdict(found.r_squared > 0.9, found.r_squared > 0.5),
-            "ridges that come and go scatter it",
+            found.r_squared > 0.9,
+            found.r_squared > 0.5,
         ),
-        Statement(
-            "8",
-            "the curves are wavy, because ridges come and go",
+        statement(
+            "wavy",
             f"contact length rises in between in {', '.join(f'{n:g} steps at {u} V' for u, n in rises.items())}",
-            {f"rises_{u}": float(n) for u, n in rises.items()},
-            verdict(all(rises.values()), any(rises.values())),
-            "not at every voltage",
+            {f"rises_{u}": n for u, n in rises.items()},
+            all(rises.values()),
+            any(rises.values()),
         ),
-        Statement(
-            "8",
-            "the area lost is larger, in per cent, at small loads",
+        statement(
+            "area",
             f"{100 * loss[0]:.3g} % at {f[0]:g} N/m, {100 * loss[-1]:.3g} % at {f[-1]:g} N/m (mean of 0 and 200 V)",
-            {"first": float(loss[0]), "last": float(loss[-1])},
-            verdict(bool((np.diff(loss) < 0).all()), bool(loss[0] > loss[-1])),
-            "the loss follows the mean shear stress, which is smaller at small loads",
+            {"first": loss[0], "last": loss[-1]},
+            (np.diff(loss) < 0).all(),
+            loss[0] > loss[-1],
         ),
     ]

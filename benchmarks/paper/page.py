@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.harness import kept, page, picture, table
-from benchmarks.paper import friction, section, sed, tables
+from benchmarks.paper import friction, section, sed
 from benchmarks.paper.scenes import CENTRE, MAP, SECTION, SITES
 from benchmarks.paper.statement import HOLDS, IN_PART, NOT, Statement
 
@@ -20,8 +20,9 @@ parameters and options with two exceptions: elements of {contact:g} µm in the c
 
 *Normal contact* is the charged state before sliding. Ridges are numbered from 0 at the centre, positive towards the
 leading edge. The paper numbers its Merkel sites along the arc: ridge k is its M(k + {centre}). *SED* is the strain
-energy density. What the mesh leaves of error in such numbers is in [errors.md](errors.md); the error is largest in
-the energy densities at the Merkel sites."""
+energy density. [scene.md](scene.md) has all parameters and marks those that the paper leaves open. What the mesh
+leaves of error in such numbers is in [errors.md](errors.md); the error is largest in the energy densities at the
+Merkel sites."""
 _CAPTIONS = {
     "friction": "The attraction raises friction most at small forces (A). Sliding shortens the contact about in "
     "proportion to the mean shear stress, with scatter where ridges come and go (B).",
@@ -58,7 +59,8 @@ def _picture(docs: Path, name: str, numbers: dict[str, Any], measured: friction.
         return picture(path, (9, 7), lambda figure: section.paint(figure, numbers["section"]), _CAPTIONS[name])
     if name == "energy" and "sites" in numbers:
         return picture(path, (8, 5), lambda figure: sed.paint(figure, numbers["sites"]), _CAPTIONS[name])
-    return f"![{_CAPTIONS[name]}]({path.name})\n\n*{_CAPTIONS[name]}*" if path.exists() else ""
+    caption = f"{_CAPTIONS[name]} Drawn with the runs, whose data are not kept."
+    return f"![{caption}]({path.name})\n\n*{caption}*" if path.exists() else ""
 
 
 def draw(docs: Path, measured: friction.Measured | None = None) -> Path:
@@ -84,6 +86,5 @@ def draw(docs: Path, measured: friction.Measured | None = None) -> Path:
         "## Pictures",
         *(_picture(docs, name, numbers, measured) for name in _CAPTIONS),
         f"## Published measurements\n\n{published()}",
-        f"## Parameters\n\n{tables.tables()}",
     ]
     return page(docs / "paper.md", "The paper, reproduced", finding, how, body, "make paper", found.made, ["paper"])

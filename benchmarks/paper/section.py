@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from benchmarks.harness import BLUE, GREY, PURPLE, VERMILION
-from benchmarks.paper.statement import Statement, verdict
+from benchmarks.paper.statement import Statement, statement
 from benchmarks.runs import Run
+from fingerpad.io.style import ATTRACTION, GREY, PRESSURE, SHEAR
 
 STATES = {"normal": "normal contact", "partial": "partial slip", "slip": "full slip"}
 _UM = 1e-6
@@ -39,7 +39,7 @@ def gather(run: Run) -> dict[str, Any]:
 def paint(figure: Figure, section: Mapping[str, Any]) -> None:
     """Draw pressure, attraction and shear along the skin from normal contact to full slip."""
     axes = figure.subplots(len(STATES), 1, sharex=True, sharey=True)
-    looks = {"p": ("contact pressure", BLUE), "p_el": ("attraction", VERMILION), "t": ("shear", PURPLE)}
+    looks = {"p": ("contact pressure", PRESSURE), "p_el": ("attraction", ATTRACTION), "t": ("shear", SHEAR)}
     for ax, (state, title) in zip(axes, STATES.items(), strict=True):
         a = section[state]
         for name, (words, colour) in looks.items():
@@ -74,41 +74,32 @@ def statements(run: Run) -> list[Statement]:
     middle = (xs[on].min() + xs[on].max()) / 2
     leading, trailing = (float(slips[side].mean()) for side in (xs[on] > middle, xs[on] < middle))
     return [
-        Statement(
-            "2",
-            "d_eq mostly 1.7 to 3 µm",
+        statement(
+            "gaps",
             f"{both.min() / _UM:.2f} to {both.max() / _UM:.2f} µm; {100 * within:.0f} % of the ridges are within",
-            {"share": within, "least": float(both.min()), "largest": float(both.max())},
-            verdict(within > 0.9, within > 0.5),
-            "ridges that bear more than 30 kPa have less than 1.7 µm",
+            {"share": within, "least": both.min(), "largest": both.max()},
+            within > 0.9,
+            within > 0.5,
         ),
-        Statement(
-            "2",
-            "d_eq smallest at the central ridges, larger at the outer ones",
+        statement(
+            "central",
             f"{central / _UM:.2f} µm on the five central ridges, {outer / _UM:.2f} µm on the four outermost",
-            {"central": float(central), "outer": float(outer)},
-            verdict(bool(central < outer)),
+            {"central": central, "outer": outer},
+            central < outer,
         ),
-        Statement(
-            "2",
-            "elastic stress p − σ_el is tensile at ridge edges",
-            f"least value {tension:.2f} of f_ext/L_R",
-            {"tension": tension},
-            verdict(tension < 0),
-        ),
-        Statement(
-            "2",
-            "in normal contact the shear is point-symmetric",
+        statement("tension", f"least value {tension:.2f} of f_ext/L_R", {"tension": tension}, tension < 0),
+        statement(
+            "symmetric",
             f"its even part is {100 * uneven / 2:.2g} % of it",
             {"even": uneven / 2},
-            verdict(uneven / 2 < 0.05, uneven / 2 < 0.2),
+            uneven / 2 < 0.05,
+            uneven / 2 < 0.2,
         ),
-        Statement(
-            "2",
-            "tangentially loaded, slip spreads mostly from the leading edge",
+        statement(
+            "leading",
             f"in partial slip {100 * leading:.0f} % of the leading half, {100 * trailing:.0f} % of the trailing one",
             {"leading": leading, "trailing": trailing},
-            verdict(leading > 1.2 * trailing, leading > trailing),
-            "the bone moves to x > 0, the leading half is that of larger x",
+            leading > 1.2 * trailing,
+            leading > trailing,
         ),
     ]

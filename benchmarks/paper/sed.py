@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from benchmarks.harness import BLACK, VERMILION, counts
-from benchmarks.paper.statement import Statement, verdict
+from benchmarks.paper.statement import Statement, statement
 from benchmarks.runs import Array, Run
+from fingerpad.io.style import BLACK, VERMILION, count
 from geometry import tags
 
 
@@ -49,21 +49,18 @@ def sine_statements(run: Run) -> list[Statement]:
     }
     kinds = (classes["enter"], classes["leave"], classes["stay and fall by more than 5 %"], classes["stay within 5 %"])
     return [
-        Statement(
-            "9B",
-            "the response has twice the voltage's frequency",
+        statement(
+            "frequency",
             f"µ_app rises and falls once over half a period ({turned} turn)",
-            {"turns": float(turned)},
-            verdict(turned == 1),
-            "" if turned == 1 else "sliding on between the voltages leaves its path",
+            {"turns": turned},
+            turned == 1,
         ),
-        Statement(
-            "9B",
-            "sites enter, leave, bend or stay",
+        statement(
+            "sites",
             f"between 0 and {voltage[top]:.0f} V: " + ", ".join(f"{n} {words}" for words, n in classes.items()),
-            {words: float(n) for words, n in classes.items()},
-            verdict(all(kinds), sum(n > 0 for n in kinds) > 1),
-            "not every kind is found",
+            {words: n for words, n in classes.items()},
+            all(kinds),
+            sum(n > 0 for n in kinds) > 1,
         ),
     ]
 
@@ -100,37 +97,29 @@ def statements(run: Run) -> list[Statement]:
     sites = np.abs(r["merkel_sed"][normal][touching] / r["merkel_sed"][run.pressed][touching] - 1)
     merkel, away = r["merkel_sed"][normal], ~np.isin(r["ridge"], run.on_ridges(normal, "p_c")[0])
     return [
-        Statement(
-            "9A",
-            "in normal contact voltage changes SED only in the stratum corneum",
+        statement(
+            "layers",
             f"mean change (without sign) over mean SED: {100 * sc:.2g} % in it, {100 * ve:.2g} % in the viable "
             f"epidermis, {100 * dermis:.2g} % in the dermis; at Merkel sites {100 * np.median(sites):.2g} % (median)",
-            {"sc": sc, "ve": ve, "dermis": dermis, "merkel": float(np.median(sites))},
-            verdict(ve < 0.1 * sc and sites.max() < 0.05, ve < 0.5 * sc),
-            "the layers above share some of the change",
+            {"sc": sc, "ve": ve, "dermis": dermis, "merkel": np.median(sites)},
+            ve < 0.1 * sc and sites.max() < 0.05,
+            ve < 0.5 * sc,
         ),
-        Statement(
-            "9A",
-            "SED is largest at the Merkel sites below contacting ridges",
+        statement(
+            "Merkel",
             f"on average {merkel[~away].mean():.3g} J/m³ there, {merkel[away].mean():.3g} J/m³ at the others",
-            {"contact": float(merkel[~away].mean()), "others": float(merkel[away].mean())},
-            verdict(bool(merkel[~away].min() > merkel[away].max()), bool(merkel[~away].mean() > merkel[away].max())),
-            "next to the contact's edge the sites share the load",
+            {"contact": merkel[~away].mean(), "others": merkel[away].mean()},
+            merkel[~away].min() > merkel[away].max(),
+            merkel[~away].mean() > merkel[away].max(),
         ),
-        Statement(
-            "9A",
-            "in sliding most Merkel sites' SED falls",
-            f"at {100 * fall:.0f} % of the sites that stay in contact",
-            {"share": fall},
-            verdict(fall > 0.5, fall > 0.3),
-            "the leading ridges are pressed, the trailing ones relieved",
+        statement(
+            "fall", f"at {100 * fall:.0f} % of the sites that stay in contact", {"share": fall}, fall > 0.5, fall > 0.3
         ),
-        Statement(
-            "9A",
-            "SED in the dermal papillae (Meissner sites) rises in sliding",
+        statement(
+            "papillae",
             f"on average from {papillae[normal]:.3g} to {papillae[slip]:.3g} J/m³",
-            {"normal": float(papillae[normal]), "slip": float(papillae[slip])},
-            verdict(bool(papillae[slip] > papillae[normal])),
+            {"normal": papillae[normal], "slip": papillae[slip]},
+            papillae[slip] > papillae[normal],
         ),
     ]
 
@@ -155,19 +144,18 @@ def paint(figure: Figure, sites: Mapping[str, Any]) -> None:
     values.legend()
     change.bar(ridge, 100 * (friction / voltage - 1), color=BLACK, width=0.5)
     change.set(xlabel="ridge (0 is at the centre)", ylabel="difference (%)")
-    counts(change.xaxis)
+    count(change.xaxis)
 
 
 def claim_statement(sites: Mapping[str, Any]) -> Statement:
     """Return the verdict on the paper's central claim, site by site."""
     off = np.array(sites["friction"]) / np.array(sites["voltage"]) - 1
     worst = int(np.argmax(np.abs(off)))
-    return Statement(
-        "section 5",
-        "SED with voltage at µ0 equals SED without voltage at µ0 = µ_app",
+    return statement(
+        "claim",
         f"median difference (without sign) {100 * np.median(np.abs(off)):.2g} %, largest {100 * off[worst]:.2g} % at "
         f"ridge {sites['ridge'][worst]}; {int((np.abs(off) < 0.05).sum())} of {len(off)} sites within 5 %",
-        {"median": float(np.median(np.abs(off))), "largest": float(off[worst])},
-        verdict(bool((np.abs(off) < 0.05).all()), bool(np.median(np.abs(off)) < 0.05)),
-        "at the ends of the contact the attraction holds ridges that friction alone releases",
+        {"median": np.median(np.abs(off)), "largest": off[worst]},
+        (np.abs(off) < 0.05).all(),
+        np.median(np.abs(off)) < 0.05,
     )

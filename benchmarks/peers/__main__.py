@@ -1,4 +1,4 @@
-"""Meshes, cases and our own answers before the peers run, and the page after; benchmarks/peers/run does all of it.
+"""Meshes, cases and fingerpad's answers before the peers run, numbers and page after; benchmarks/peers/run does both.
 
 environment/run python3 -m benchmarks.peers prepare FOLDER SIZE ... | page FOLDER
 """
@@ -7,15 +7,14 @@ import argparse
 from dataclasses import replace
 from pathlib import Path
 
+from benchmarks.harness import DOCS, keep, made
 from benchmarks.peers import page
 from benchmarks.peers.cases import PEERS, VARIANTS, cases
 from benchmarks.peers.exchange import write_answer, write_case
 
-_DOCS = Path(__file__).resolve().parents[2] / "docs"
-
 
 def prepare(folder: Path, sizes: list[float]) -> None:
-    """Write meshes, cases, what the peers are to do, and our own answers."""
+    """Write meshes, cases, the tasks of the peers, and the answers of fingerpad."""
     from benchmarks.peers import ours  # needs dolfinx, which a reader of answers does not
 
     folder.mkdir(parents=True, exist_ok=True)
@@ -50,7 +49,8 @@ def main() -> None:
     if args.action == "prepare":
         prepare(args.folder, args.sizes)
     else:
-        print(page.write(args.folder, _DOCS))
+        keep("peers", page.numbers(args.folder), made(), DOCS)
+        print(page.draw(DOCS))
 
 
 if __name__ == "__main__":

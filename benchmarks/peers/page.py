@@ -1,52 +1,35 @@
-"""The page: every program beside ours, state by state, and a picture of the tractions."""
+"""The page: every program beside fingerpad, state by state, and a picture of the tractions."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
+from benchmarks.harness import kept, page, picture, table
 from benchmarks.peers import profile
 from benchmarks.peers.cases import PEERS, VARIANTS, cases
 from benchmarks.peers.exchange import Answer, Ridge, State, read_answer
-
-matplotlib.use("Agg")
+from fingerpad.io.style import BLUE, GREEN, ORANGE, VERMILION
 
 FORCE, SHAPE = 5e-4, 1e-2  # bars: relative differences of forces, and of half-width and peak pressure
-_STYLES = {"fingerpad": ("C0", "-", ""), "NGSolve": ("C1", "", "o"), "GetFEM": ("C2", "", "x"),
-           "FElupe": ("C3", "", "s"), "CalculiX": ("C4", "", "^")}  # fmt: skip
-_HEADER = """# Other codes, same problem
+_BARS = (FORCE, FORCE, SHAPE, SHAPE)
+_HEAD = ["program", "F_n (N/mm)", "F_t (N/mm)", "half-width (mm)", "peak pressure (MPa)"]
+# Colour, marker, and whether it is filled: a variant that explains a program lies in the middle of its marker.
+_STYLES = {"NGSolve": (BLUE, "o", False), "GetFEM": (GREEN, "x", False), "FElupe": (ORANGE, "s", False),
+           "NGSolve, as FElupe": (ORANGE, "s", True), "CalculiX": (VERMILION, "^", False),
+           "NGSolve, as CalculiX": (VERMILION, "^", True)}  # fmt: skip
+_HOW = """One papillary ridge, 0.483 mm wide and 0.6 mm high, is pressed by 0.06 mm on a rigid plane in 20 equal steps,
+without friction and with a coefficient of 0.25. Its top and sides are then moved sideways by 5 µm in 10 steps and on to
+50 µm in 15. The material is the paper's stratum corneum: G_0 = 0.08676 MPa, exponent 14.53 of the modified stretches,
+ν = 0.48, plane strain. The penalty is 1000 N/mm³, the tangential one 100 N/mm³, both per reference area. All programs
+read the same mesh of six-node triangles and take the same steps. Each uses its own assembly, differentiation and
+contact, or weak forms written anew in its own language. Half the contact's current length is found from the skin's
+displaced nodes in the same way for all. The peak pressure is the largest at a program's own contact points.
 
-Written from the programs' answers by `python3 -m benchmarks.peers page`, the last step of `benchmarks/peers/run`; do
-not edit. One papillary ridge, 0.483 mm wide and 0.6 mm high, is pressed by 0.06 mm on a rigid plane in 20 equal steps,
-without friction and with a coefficient of 0.25; then its top and sides are moved sideways by 5 µm in 10 steps and on to
-50 µm in 15. Stratum corneum of the paper: G_0 = 0.08676 MPa, exponent 14.53 of the modified stretches, ν = 0.48, plane
-strain. Penalty 1000 N/mm³, tangential 100 N/mm³, per reference area. All programs read the same mesh of six-node
-triangles and take the same steps; each uses its own assembly, differentiation and contact, or weak forms written anew
-in its own language. Half the contact's current length is found from the skin's displaced nodes in the same way for all;
-the peak pressure is the largest at a program's own contact points.
-
-**!** marks a difference from ours above 0.05 % of a force or 1 % of half-width or peak pressure. Friction is zero by
-symmetry in the pressed ridge; its difference there is not judged.
-"""
-
-
-@dataclass(frozen=True)
-class Row:
-    """A program's numbers in a state: N/mm, N/mm, mm, MPa."""
-
-    program: str
-    f_n: float
-    f_t: float
-    half_width: float
-    peak: float
-
-    @property
-    def numbers(self) -> tuple[float, ...]:
-        """Normal force, friction, half-width, peak pressure."""
-        return (self.f_n, self.f_t, self.half_width, self.peak)
+Differences are from fingerpad; **!** marks one above 0.05 % of a force or 1 % of half-width or peak pressure. Friction
+is zero by symmetry in the pressed ridge, and its difference there is not judged."""
 
 
 def stem(name: str, variant: str) -> str:
@@ -59,94 +42,124 @@ def answer_path(folder: Path, size: float, name: str, variant: str, program: str
     return folder / f"{program}_{stem(name, variant)}_{size:g}.json"
 
 
-def row(answer: Answer, state: State, ridge: Ridge, variant: str = "") -> Row:
-    """Return a program's numbers in a state."""
-    label = f"{answer.program}, {variant}" if variant else answer.program
-    return Row(label, state.f_n, state.f_t, profile.half_width(ridge, state), max(state.p_n))
+# -- numbers -------------------------------------------------------------------------------------------------
+def values(state: State, ridge: Ridge) -> list[float]:
+    """Return normal force, friction (N/mm), half-width (mm) and peak pressure (MPa) of a state."""
+    return [state.f_n, state.f_t, profile.half_width(ridge, state), max(state.p_n)]
 
 
-def line(one: Row, ours: Row) -> str:
-    """Return a row of the table, with differences from ours."""
-    cells = [one.program]
-    slides = abs(ours.f_t) > 1e-2 * ours.f_n
-    bars, judged = (FORCE, FORCE, SHAPE, SHAPE), (True, slides, True, True)
-    for value, reference, bar, judge in zip(one.numbers, ours.numbers, bars, judged, strict=True):
-        text = f"{value:.6f}"
-        if one is not ours and judge:
-            difference = value / reference - 1
-            text += f" ({'**!** ' if abs(difference) > bar else ''}{100 * difference:+.4f} %)"
-        cells.append(text)
-    return "| " + " | ".join(cells) + " |"
+def differences(found: Sequence[float], reference: Sequence[float]) -> list[float | None]:
+    """Return relative differences; None for friction that vanishes by symmetry."""
+    judged = (True, abs(reference[1]) > 1e-2 * reference[0], True, True)
+    return [a / b - 1 if judge else None for a, b, judge in zip(found, reference, judged, strict=True)]
 
 
-def table(rows: Iterable[Row]) -> str:
-    """Return a table of programs, ours first."""
-    rows = list(rows)
-    head = "| program | F_n (N/mm) | F_t (N/mm) | half-width (mm) | peak pressure (MPa) |\n|---|---|---|---|---|"
-    return "\n".join([head, *(line(one, rows[0]) for one in rows)])
-
-
-def draw(answers: list[Answer], names: list[str], path: Path) -> None:
-    """Draw pressure and friction over x, a panel for each state."""
-    figure = Figure(figsize=(9.0, 3.2 * len(names)), layout="constrained")
-    axes = figure.subplots(len(names), 2, squeeze=False)
-    for name, (pressure, friction) in zip(names, axes, strict=True):
-        for answer in answers:
-            state = next((s for s in answer.states if s.name == name), None)
-            if state is None:
-                continue
-            colour, dash, marker = _STYLES[answer.program]
-            touching = np.array(state.p_n) > 0
-            for ax, values in ((pressure, state.p_n), (friction, state.t_t)):
-                ax.plot(
-                    np.array(state.x)[touching] * 1e3,
-                    np.array(values)[touching] * 1e3,
-                    color=colour, linestyle=dash or "none", marker=marker, markersize=3.5, markerfacecolor="none",
-                    label=answer.program,
-                )  # fmt: skip
-        pressure.set(title=name, xlabel="x (µm)", ylabel="contact pressure (kPa)")
-        friction.set(title=name, xlabel="x (µm)", ylabel="friction on the skin (kPa)")
-        if not any(np.any(s.t_t) for answer in answers for s in answer.states if s.name == name):
-            friction.remove()
-    axes[0, 0].legend()
-    figure.savefig(path, dpi=110)
-
-
-def write(folder: Path, docs: Path) -> Path:
-    """Write page and picture from the answers in a folder; return the page."""
-    sizes = sorted((float(path.stem) for path in folder.glob("*.npz")), reverse=True)
-    parts, programs = [_HEADER], dict[str, str]()
-    for size in sizes:
+def numbers(folder: Path) -> dict[str, Any]:
+    """Return what the page shows of the answers in a folder, ready for JSON."""
+    programs, meshes = dict[str, list[str]](), []
+    for size in sorted((float(path.stem) for path in folder.glob("*.npz")), reverse=True):
         ridge = Ridge.read(folder / f"{size:g}.npz")
-        parts.append(f"## Facets of {size:g} µm ({len(ridge.triangles)} triangles)")
+        mesh: dict[str, Any] = {"size": size, "triangles": len(ridge.triangles), "states": [], "iterations": {}}
         for name in cases():
-            found = [(variant, peer) for case, variant, peer in VARIANTS if case == name]
-            paths = [("", peer) for peer in ("ours", *PEERS)] + found
-            answers = [
-                (variant, read_answer(path))
-                for variant, peer in paths
-                if (path := answer_path(folder, size, name, variant, peer)).exists()
+            tasks = [("", peer) for peer in ("ours", *PEERS)]
+            tasks += [(variant, peer) for case, variant, peer in VARIANTS if case == name]
+            paths = [(variant, answer_path(folder, size, name, variant, peer)) for variant, peer in tasks]
+            answers = [(variant, read_answer(path)) for variant, path in paths if path.exists()]
+            programs |= {a.program: [a.program, a.version, a.licence] for _, a in answers}
+            mesh["iterations"][name] = {a.program: a.iterations for variant, a in answers if not variant}
+            mesh["states"] += [_state(k, answers, ridge) for k in range(len(answers[0][1].states))]
+        meshes.append(mesh)
+    return {"programs": list(programs.values()), "meshes": meshes}
+
+
+def _state(k: int, answers: Sequence[tuple[str, Answer]], ridge: Ridge) -> dict[str, Any]:
+    reference = values(answers[0][1].states[k], ridge)
+    rows = list[dict[str, Any]]()
+    for variant, answer in answers:
+        found, label = values(answer.states[k], ridge), f"{answer.program}, {variant}" if variant else answer.program
+        rows.append(
+            {"program": label, "values": found} | ({"differences": differences(found, reference)} if rows else {})
+        )
+    return {"name": answers[0][1].states[k].name, "rows": rows}
+
+
+# -- page ----------------------------------------------------------------------------------------------------
+def line(row: dict[str, Any]) -> list[str]:
+    """Return a row of a table, with differences from fingerpad."""
+    cells = [row["program"]]
+    for value, difference, bar in zip(row["values"], row.get("differences", [None] * 4), _BARS, strict=True):
+        mark = "**!** " if difference is not None and abs(difference) > bar else ""
+        cells.append(f"{value:.6f}" + ("" if difference is None else f" ({mark}{100 * difference:+.4f} %)"))
+    return cells
+
+
+def largest(rows: Iterable[dict[str, Any]]) -> list[list[str]]:
+    """Return a row a program of its largest differences in all states, variants apart."""
+    found = dict[str, list[float]]()
+    for row in rows:
+        if "differences" in row:
+            sizes = [abs(d or 0.0) for d in row["differences"]]
+            found[row["program"]] = [
+                max(pair) for pair in zip(sizes, found.get(row["program"], [0.0] * 4), strict=True)
             ]
-            for _, a in answers:
-                programs[a.program] = f"| {a.program} | {a.version} | {a.licence} |"
-            for k, state in enumerate(answers[0][1].states):
-                rows = [row(answer, answer.states[k], ridge, variant) for variant, answer in answers]
-                parts.append(f"**{state.name[0].upper()}{state.name[1:]}**\n\n" + table(rows))
-            work = ", ".join(f"{a.program} {a.iterations}" for v, a in answers if not v)
-            parts.append(f"Iterations: {work}.")
-    parts.insert(1, "| program | version | licence |\n|---|---|---|\n" + "\n".join(programs.values()))
-    parts.insert(2, (Path(__file__).parent / "reasons.md").read_text(encoding="utf-8").strip())
-    finest = [
-        read_answer(path)
-        for name in cases()
-        for peer in ("ours", *PEERS)
-        if (path := answer_path(folder, sizes[-1], name, "", peer)).exists()
+    return [[program, *(f"{100 * d:.2g} %" if d > 5e-7 else "0" for d in some)] for program, some in found.items()]
+
+
+def paint(figure: Figure, states: Sequence[dict[str, Any]]) -> None:
+    """Draw the differences of each program over the states, and the variants that explain them; a panel a quantity."""
+    axes = figure.subplots(1, 4, sharex=True)
+    for k, (ax, name, bar) in enumerate(zip(axes, _HEAD[1:], _BARS, strict=True)):
+        ax.axhspan(-100 * bar, 100 * bar, color="0.9", lw=0, label="agreement, as judged here")
+        for program, (colour, marker, face) in _STYLES.items():
+            found = [
+                (n, row["differences"][k])
+                for n, s in enumerate(states)
+                for row in s["rows"]
+                if row["program"] == program
+            ]
+            known = np.array([pair for pair in found if pair[1] is not None], dtype=float).reshape(-1, 2)
+            look = {"color": colour, "mfc": colour if face else "none", "ms": 5 if face else 9, "label": program}
+            ax.plot(known[:, 0], 100 * known[:, 1], marker, **look)
+        ax.set_yscale("symlog", linthresh=0.01)
+        ax.set_xticks(range(len(states)), [state["name"].replace(" with", "\nwith") for state in states], rotation=60)
+        ax.set(title=name.split(" (")[0], ylim=(-5, 5))
+    axes[0].set_ylabel("difference from fingerpad (%)")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+
+
+def draw(docs: Path) -> Path:
+    """Write docs/peers.md and its picture from docs/peers.json."""
+    found = kept("peers", docs)
+    told = found.numbers
+    every = [row for mesh in told["meshes"] for state in mesh["states"] for row in state["rows"]]
+    summary = largest(row for row in every if "," not in row["program"])
+    exact = " and ".join(row[0] for row in summary if set(row[1:]) == {"0"}) or "no program"
+    finding = (
+        f"Of {len(summary)} other programs that solve the same ridge on the same mesh, {exact} agree with fingerpad "
+        "in all printed digits. The others define their contact differently, and this explains their differences. The "
+        f"largest ones of all states and meshes are:\n\n{table(_HEAD, summary)}"
+    )
+    caption = "Differences on the finest mesh. A filled marker inside a hollow one explains the difference."
+    finest = told["meshes"][-1]["states"]
+    body = [
+        table(["program", "version", "licence"], told["programs"]),
+        (Path(__file__).parent / "reasons.md").read_text(encoding="utf-8"),
+        picture(docs / "peers.png", (13, 5), lambda figure: paint(figure, finest), caption),
     ]
-    pictures = docs / "peers"
-    pictures.mkdir(parents=True, exist_ok=True)
-    names = ["pressed without friction", "moved 5 µm", "moved 50 µm"]
-    draw(finest, names, pictures / "tractions.png")
-    parts.insert(3, "![Pressure and friction over x in all programs, finest mesh](peers/tractions.png)")
-    page = docs / "peers.md"
-    page.write_text("\n\n".join(parts) + "\n", encoding="utf-8")
-    return page
+    for mesh in told["meshes"]:
+        body.append(f"## Facets of {mesh['size']:g} µm ({mesh['triangles']} triangles)")
+        body += [
+            f"**{state['name'].capitalize()}**\n\n{table(_HEAD, map(line, state['rows']))}" for state in mesh["states"]
+        ]
+        rows = [[name, *some.values()] for name, some in mesh["iterations"].items()]
+        body.append(table(["iterations", *next(iter(mesh["iterations"].values()))], rows))
+    return page(
+        docs / "peers.md",
+        "Other codes, same problem",
+        finding,
+        _HOW,
+        body,
+        "benchmarks/peers/run",
+        found.made,
+        ["peers"],
+    )

@@ -11,11 +11,12 @@ from matplotlib.colors import LogNorm, to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from benchmarks.harness import ORANGE, SKY, VERMILION, kept, page, picture, table
+from benchmarks.harness import kept, page, picture, table
 from benchmarks.stability import plan
 from benchmarks.stability.case import Case
 from benchmarks.stability.loop import loop
 from benchmarks.stability.plan import DEFAULT, Axis, Chart, Named, Panel
+from fingerpad.io.style import MAGNITUDE, ORANGE, SKY, VERMILION
 from variational.roughness.bam import BearingArea
 
 Row = Mapping[str, Any]
@@ -136,7 +137,7 @@ def outcome_cell(o: Row) -> tuple[str, str]:
 
 def value_cell(name: str, low: float, high: float, scale: float) -> Callable[[Row], tuple[str, str]]:
     """Return what gives colour and text of a cell: a number, its size on a logarithmic ramp."""
-    norm, colours = LogNorm(low, high, clip=True), matplotlib.colormaps["viridis"]
+    norm, colours = LogNorm(low, high, clip=True), matplotlib.colormaps[MAGNITUDE]
 
     def cell(o: Row) -> tuple[str, str]:
         if o["status"] == "failed" or o.get(name) is None:

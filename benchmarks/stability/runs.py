@@ -14,8 +14,8 @@ from fingerpad.runs import processes
 from fingerpad.runs.processes import Pool
 
 # Of an outcome, what the page shows.
-_SHOWN = ("status", "reason", "load", "newton", "factorisations", "cutbacks", "inverted", "penetration", "f_t")
-_SHOWN += ("contact_length", "f_ext")
+_SHOWN = ["status", "reason", "load", "newton", "factorisations", "cutbacks", "inverted", "penetration", "f_t"]
+_SHOWN += ["contact_length", "f_ext"]
 
 
 class Runs:

@@ -18,11 +18,10 @@ from functools import partial
 
 import numpy as np
 from dolfinx import fem
-from matplotlib.figure import Figure
 from scipy.optimize import brentq, minimize_scalar
 
 from benchmarks.verification import dugdale
-from benchmarks.verification.case import Case, Outcome, Row
+from benchmarks.verification.case import Case, Curves, Outcome, Row
 from benchmarks.verification.over_screen import formulations, over_screen, plane_strain_modulus
 from geometry.bodies import block, pad
 from variational.attraction.electroadhesion import ELECTROSTATIC
@@ -106,7 +105,9 @@ def potential(small: bool) -> Outcome:
         why = "a second-order remainder; points that cross an edge of the law bend it"
         rows.append(Row(f"order of Taylor's remainder, {name}", order, 2.0, 0.05, why, mesh, order, absolute=True))
         why = "central difference over 2 nm of laws that change over 1 um, and the energy's roundoff"
-        rows.append(Row(f"slope along a displacement, {name} (N/m)", slope, central, 1e-5, why, mesh))
+        rows.append(
+            Row(f"slope of the energy along a wavy displacement, {name} (N/m)", slope, central, 1e-5, why, mesh)
+        )
         rows.append(Row(f"resultant of the traction against lifting, {name} (N/m)", pull, lift, 1e-5, why, mesh))
     return Outcome(tuple(rows))
 
@@ -141,17 +142,10 @@ def actuator(small: bool) -> Outcome:
         Row("voltage of pull-in (V)", float(np.sqrt(fold)), exact, 1e-3, why, mesh),
     )
 
-    def draw(figure: Figure) -> None:
-        ax = figure.subplots()
-        travel = np.linspace(0, 0.5, 201)
-        load = np.sqrt(27 / 4 * travel * (1 - travel) ** 2)
-        ax.plot(load, travel, "k-", lw=0.8, label="parallel plates")
-        ax.plot(np.sqrt(square) / exact, (gap - np.array(y)) / rest, "C0o", mfc="none", label="block")
-        ax.plot([np.sqrt(fold) / exact], [(gap - low) / rest], "C1x", label="pull-in, extrapolated")
-        ax.set(xlabel="U / U of pull-in", ylabel="travel / (h_0 + g_0)")
-        ax.legend()
-
-    return Outcome(rows, draw)
+    travel = np.linspace(0, 0.5, 201)
+    plates = {"parallel plates": (np.sqrt(27 / 4 * travel * (1 - travel) ** 2), travel)}
+    block_ = {"block": (np.sqrt(square) / exact, (gap - np.array(y)) / rest)}
+    return Outcome(rows, Curves("U / U of pull-in", "travel / (h_0 + g_0)", plates, block_))
 
 
 # -- cylinder under a constant attraction --------------------------------------------------------------
@@ -191,17 +185,10 @@ def maugis(small: bool) -> Outcome:
         largest = min(f for _, f in found)
         rows.append(Row("pull-off force (N/m)", largest, float(pull_off.fun), tolerance, "asked for", mesh))
 
-    def draw(figure: Figure) -> None:
-        ax = figure.subplots()
-        x = np.linspace(0.2, 2.1, 300) * unit
-        ax.plot([load(v) / scale for v in x], x / unit, "k-", lw=0.8, label="Johnson and Greenwood, λ = 1")
-        ax.plot(np.pi / 4 * (x / unit) ** 2, x / unit, "C1--", lw=0.8, label="Hertz, no attraction")
-        a, f = np.array(found).T
-        ax.plot(f / scale, a / unit, "C0o", mfc="none", label="finite elements, pulled off")
-        ax.set(xlabel="f R / (E* b²), b³ = w R² / E*", ylabel="a / b", xlim=(-1.8, 1.0))
-        ax.legend()
-
-    return Outcome(tuple(rows), draw)
+    x, (a, f) = np.linspace(0.2, 2.1, 300) * unit, np.array(found).T
+    known = {"Johnson and Greenwood, λ = 1": ([load(v) / scale for v in x], x / unit)}
+    pulled = {"pulled off": (f / scale, a / unit)}
+    return Outcome(tuple(rows), Curves("f R / (E* b²), b³ = w R² / E*", "a / b", known, pulled))
 
 
 _LINE = "Johnson and Greenwood 2008, doi 10.1088/0022-3727/41/15/155315, by the formulas in dugdale.py"

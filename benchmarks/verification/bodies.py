@@ -10,14 +10,13 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from geometry import tags
 from geometry.mesh import TaggedMesh, load
 from variational import jit
+from variational.body import Body
 from variational.contact.penalty import Penalty
 from variational.materials.material import Material
 from variational.problem import Interface, Problem
 from variational.solvers.newton import Solver
-from variational.surface import Surface
 
 Array = NDArray[np.float64]
 Solid = Material
@@ -38,8 +37,7 @@ def body(build: Callable[[], float], layer: Callable[[Array], Array] | None = No
 
 def free_problem(made: TaggedMesh, solids: Mapping[int, Solid], element: str) -> Problem:
     """Return the problem of a body that no screen bears: the penalty is zero, and so is the voltage."""
-    surface = Surface(made.mesh, made.facet_tags, {0: tags.ridge(0)})
-    return Problem(made.mesh, made.cell_tags, surface, solids, Interface(Penalty(0.0, 1e11), 0.0, 1e-6), element)
+    return Body(made, solids, Interface(Penalty(0.0, 1e11), 0.0, 1e-6), element=element).problem
 
 
 def nodes_of(problem: Problem, facets: NDArray[np.int32]) -> NDArray[np.int32]:

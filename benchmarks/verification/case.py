@@ -1,35 +1,43 @@
-"""What a verification case is and what it says."""
+"""What a verification case is and what it reports."""
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+
+Lines = Mapping[str, tuple[ArrayLike, ArrayLike]]
 
 
 @dataclass(frozen=True)
 class Row:
-    """One number beside its reference."""
+    """One computed number beside the known answer.
+
+    Attributes:
+        quantity: with its unit in parentheses where it has one.
+        computed: by the program.
+        reference: the known answer.
+        tolerance: largest error that passes.
+        why: where the tolerance comes from, in one sentence.
+        mesh: elements and their size, or what else the number was computed with.
+        order: observed order of convergence, where several meshes were run.
+        absolute: whether error and tolerance are in the quantity's unit; relative otherwise.
+    """
 
     quantity: str
-    """What it is, with its unit in parentheses where it has one."""
-    ours: float
+    computed: float
     reference: float
     tolerance: float
-    """Largest error that passes."""
     why: str
-    """Where the tolerance comes from, in one sentence."""
     mesh: str = "–"
-    """Elements and their size, or what else the number was computed with."""
     order: float | None = None
-    """Observed order of convergence, where several meshes were run."""
     absolute: bool = False
-    """Whether error and tolerance are in the quantity's unit; relative otherwise."""
 
     @property
     def error(self) -> float:
         """Return the difference from the reference, relative to it unless ``absolute``."""
-        difference = abs(self.ours - self.reference)
+        difference = abs(self.computed - self.reference)
         return difference if self.absolute else difference / abs(self.reference)
 
     @property
@@ -39,23 +47,56 @@ class Row:
 
 
 @dataclass(frozen=True)
+class Curves:
+    """The picture of a case: known answers as lines, computed numbers as markers.
+
+    Attributes:
+        x: label of the abscissa, with its unit.
+        y: label of the ordinate, likewise.
+        known: abscissae and ordinates by name.
+        computed: likewise.
+        logarithmic: whether both axes are.
+    """
+
+    x: str
+    y: str
+    known: Lines
+    computed: Lines
+    logarithmic: bool = False
+
+    def draw(self, figure: Figure) -> None:
+        """Draw into an empty figure."""
+        ax = figure.subplots()
+        for k, (name, (x, y)) in enumerate(self.known.items()):
+            ax.plot(x, y, ("-", "--", ":", "-.")[k % 4], color="black", lw=0.8, label=name)
+        for k, (name, (x, y)) in enumerate(self.computed.items()):
+            ax.plot(x, y, "osv^d"[k % 5], color=f"C{k}", ms=4, mfc="none", label=f"{name}, computed")
+        scale = "log" if self.logarithmic else "linear"
+        ax.set(xlabel=self.x, ylabel=self.y, xscale=scale, yscale=scale)
+        ax.legend(fontsize="small")
+
+
+@dataclass(frozen=True)
 class Outcome:
-    """What a case found."""
+    """What a case found, and its picture if it has one."""
 
     rows: tuple[Row, ...]
-    draw: Callable[[Figure], None] | None = None
-    """Draws the picture into an empty figure."""
+    curves: Curves | None = None
 
 
 @dataclass(frozen=True)
 class Case:
-    """A problem with a known answer."""
+    """A problem with a known answer.
+
+    Attributes:
+        name: of the case.
+        reference: where the answer comes from, with its DOI or equation number.
+        run: solves it; the argument asks for the small form, of seconds and coarse meshes, that the tests run.
+    """
 
     name: str
     reference: str
-    """Where the answer comes from, with its DOI or equation number."""
     run: Callable[[bool], Outcome]
-    """Solves it; the argument asks for the small form, of seconds and coarse meshes, that the tests run."""
 
     @property
     def slug(self) -> str:
@@ -64,6 +105,6 @@ class Case:
 
 
 def worst(rows: Sequence[Row]) -> Row:
-    """Return the row that comes nearest to its tolerance or exceeds it most, said to be the worst of all."""
+    """Return the row that comes nearest to its tolerance or exceeds it most, named as the worst of all."""
     most = max(rows, key=lambda row: row.error / row.tolerance if row.error == row.error else float("inf"))
     return replace(most, quantity=f"{most.quantity}, worst of {len(rows)}")

@@ -19,11 +19,10 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from benchmarks.verification import principal
-from benchmarks.verification.case import Case, Outcome, Row, worst
+from benchmarks.verification.case import Case, Curves, Outcome, Row, worst
 from benchmarks.verification.points import Points
 from benchmarks.verification.principal import Solid, skin
 from variational import kinematics
@@ -109,27 +108,7 @@ def modes(small: bool) -> Outcome:
             found += compared(mode, solid, F, sigma, tangent)
         rows.append(worst(found))
 
-    def draw(figure: Figure) -> None:
-        axes = figure.subplots(1, 2, sharey=True)
-        x = np.linspace(0.6, 1.6, 201)
-        for ax, sign in zip(axes, (-1, 1), strict=True):
-            solid = skin("", *TABLE["SC"], POISSON, sign)
-            for k, (mode, marker) in enumerate(zip(list(MODES)[:3], "os^", strict=True)):
-                if k == 0:
-                    lateral = np.array([principal.free_stretch(solid, s) for s in x])
-                else:
-                    lateral = x if k == 1 else 1 / x
-                P = principal.nominal(solid, (x, lateral, np.ones_like(x)))[0]
-                ax.plot(x, P / 1e3, color=f"C{k}", ls=("-", "--", ":")[k], label=mode)
-                F = MODES[mode](solid)
-                ours = in_package(solid, F)[1][:, 0, 0]
-                ax.plot(F[:, 0, 0], ours / 1e3, marker, mfc="none", color=f"C{k}")
-            ax.set(xlabel="stretch λ", title=f"stratum corneum, a = {'-' if sign < 0 else '+'}α", ylim=(-400, 400))
-        axes[0].set_ylabel("nominal stress $P_1$ (kPa)")
-        handles, labels = axes[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper center", ncols=3, title="lines: reference, markers: ours")
-
-    return Outcome(tuple(rows), draw)
+    return Outcome(tuple(rows))
 
 
 @dataclass(frozen=True)
@@ -173,15 +152,9 @@ def three_terms(small: bool) -> Outcome:
             why = "compressibility, K = 1e6 G: J - 1 of the order of the stress over K"
             rows.append(Row(f"pure shear, λ = {x:g}, incompressible: P_1 (kPa)", ours / 1e3, reference, 1e-5, why))
 
-    def draw(figure: Figure) -> None:
-        ax = figure.subplots()
-        x = np.linspace(0.5, 5, 301)
-        ax.plot(x, incompressible(x) / 1e3, label="incompressible, closed form")
-        ax.plot(stretches, P[:, 0, 0] / 1e3, "o", mfc="none", color="C1", label="ours, three terms, K = 1e6 G")
-        ax.set(xlabel="stretch λ in pure shear", ylabel="nominal stress $P_1$ (kPa)", ylim=(-4000, 2500))
-        ax.legend()
-
-    return Outcome(tuple(rows), draw)
+    x, label = np.linspace(0.5, 5, 301), "nominal stress P_1 (kPa)"
+    known = {"incompressible, closed form": (x, incompressible(x) / 1e3)}
+    return Outcome(tuple(rows), Curves("stretch λ", label, known, {"K = 1e6 G": (stretches, P[:, 0, 0] / 1e3)}))
 
 
 CASES = (

@@ -19,11 +19,10 @@ from collections.abc import Sequence
 
 import numpy as np
 import ufl
-from matplotlib.figure import Figure
 from petsc4py import PETSc
 
 from benchmarks.verification.bodies import FreeSolver, body, free_problem
-from benchmarks.verification.case import Case, Outcome, Row
+from benchmarks.verification.case import Case, Curves, Outcome, Row
 from geometry import tags
 from geometry.bodies import cooks_membrane
 from variational.element import ELEMENTS
@@ -113,20 +112,9 @@ def small_strain(small: bool) -> Outcome:
         quantity, mesh = f"part of the rise that P1 misses, nu = {nu:g}", f"{divisions} × {divisions} × 2 triangles"
         rows.append(Row(quantity, missing, reference, tolerance, why, mesh, absolute=True))
 
-    def draw(figure: Figure) -> None:
-        ax = figure.subplots()
-        for k, (element, marker) in enumerate(zip(ELEMENTS, ("o-", "s-", "^-", "D-", "v-"), strict=True)):
-            if element in rises:
-                ax.semilogx(meshes, rises[element], marker, mfc="none", color=f"C{k}", label=f"{element}, ours")
-        ax.semilogx(QUADRILATERALS, SMALL_STRAIN, "k+--", label="OpenGeoSys, B-bar quadrilaterals")
-        ax.semilogx(QUADRILATERALS, LOCKED, "kx:", label="OpenGeoSys, plain quadrilaterals")
-        ax.axhline(mixed, color="0.6", lw=0.8, label="P2-P1 extrapolated")
-        ax.set_xticks(meshes, [str(n) for n in meshes])
-        ax.minorticks_off()
-        ax.set(xlabel="divisions of a side", ylabel="rise of the corner (mm)", ylim=(0, 9))
-        ax.legend(fontsize="small", ncols=2)
-
-    return Outcome(tuple(rows), draw)
+    known = {"OpenGeoSys, B-bar": (QUADRILATERALS, SMALL_STRAIN), "OpenGeoSys, plain": (QUADRILATERALS, LOCKED)}
+    found = {element: (meshes, values) for element, values in rises.items()}
+    return Outcome(tuple(rows), Curves("divisions of a side", "rise of the corner (mm)", known, found))
 
 
 def finite_strain(small: bool) -> Outcome:
@@ -139,16 +127,9 @@ def finite_strain(small: bool) -> Outcome:
         f"{meshes[-1]} × {meshes[-1]} × 2 triangles",
     )
 
-    def draw(figure: Figure) -> None:
-        ax = figure.subplots()
-        ax.semilogx(meshes, rises, "D-", mfc="none", color="C3", label="P2-P1, ours")
-        ax.semilogx(QUADRILATERALS, FINITE_STRAIN, "k+--", label="OpenGeoSys, F-bar quadrilaterals")
-        ax.set_xticks(meshes, [str(n) for n in meshes])
-        ax.minorticks_off()
-        ax.set(xlabel="divisions of a side", ylabel="rise of the corner (mm)", ylim=(6, 7.2))
-        ax.legend()
-
-    return Outcome((Row("rise, P2-P1 (mm)", rises[-1], FINITE_STRAIN[-1], changed, why, mesh),), draw)
+    known = {"OpenGeoSys, F-bar": (QUADRILATERALS, FINITE_STRAIN)}
+    curves = Curves("divisions of a side", "rise of the corner (mm)", known, {"P2-P1": (meshes, rises)})
+    return Outcome((Row("rise, P2-P1 (mm)", rises[-1], FINITE_STRAIN[-1], changed, why, mesh),), curves)
 
 
 _SOURCE = "OpenGeoSys's benchmark, after de Souza Neto et al. 1996, doi 10.1016/0020-7683(95)00259-6"

@@ -124,7 +124,7 @@ def manufactured(small: bool) -> Outcome:
     if pressures:
         order, mesh = orders.observed(pressures), f"up to {meshes[-1]} divisions, last error {pressures[-1]:.1e}"
         rows.append(Row("order of the pressure in L2, P2-P1", order, 2.0, 0.05, why, mesh, order, absolute=True))
-    return Outcome(tuple(rows), lambda figure: orders.draw(figure, found, meshes))
+    return Outcome(tuple(rows), orders.curves(found, meshes))
 
 
 CASES = (

@@ -7,10 +7,9 @@ somewhere inside a step.
 """
 
 import numpy as np
-from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from benchmarks.verification.case import Case, Outcome, Row
+from benchmarks.verification.case import Case, Curves, Outcome, Row
 from benchmarks.verification.microscale import H_0, MU_F
 from geometry import tags
 from geometry.bodies import ridge
@@ -96,24 +95,6 @@ def closed_cycle(small: bool) -> Outcome:
     turned_over = sum(abs(b.change) for b in cycles[-1]["press"])
     mesh = f"one ridge, P2, {_SIZE * 1e6:g} µm, {counts[-1]} steps a phase"
 
-    def draw(figure: Figure) -> None:
-        left, right = figure.subplots(1, 2)
-        left.loglog(counts, errors, "o-", label="sum over all steps")
-        left.loglog(counts, errors[0] * (counts[0] / np.array(counts)) ** 2, "k:", label="order 2")
-        left.set(xlabel="steps a phase", ylabel="unexplained over dissipated energy")
-        left.legend()
-        names = {"external": "bone", "voltage": "voltage", "air_gap": "air gap", "dissipation": "friction (spent)"}
-        for k, (name, label) in enumerate(names.items()):
-            right.plot(
-                np.cumsum([getattr(b, name) for b in balances[-1]]) * 1e6,
-                f"C{k}",
-                ls=["-", "--", "-.", ":"][k],
-                label=label,
-            )
-        right.plot([b.stored * 1e6 for b in balances[-1]], "k", lw=0.8, label="stored")
-        right.set(xlabel="step", ylabel="energy (µJ/m)")
-        right.legend(fontsize=8)
-
     why = "some four times the steps' errors, which fall with their square: a drift shows"
     rows = (
         Row("work over dissipation of the cycle", work[-1] / spent[-1], 1.0, 2e-4 if small else 2e-5, why, mesh),
@@ -137,7 +118,10 @@ def closed_cycle(small: bool) -> Outcome:
             absolute=True,
         ),
     )
-    return Outcome(rows, draw)
+    known = {"order 2": (counts, errors[0] * (counts[0] / np.array(counts)) ** 2)}
+    computed = {"sum over all steps": (counts, errors)}
+    curves = Curves("steps a phase (–)", "unexplained over dissipated energy (–)", known, computed, logarithmic=True)
+    return Outcome(rows, curves)
 
 
 CASES = (Case("Closed cycle", "first law: work = dissipation over a closed cycle", closed_cycle),)

@@ -22,9 +22,8 @@ its Q found; Coulomb's law knows no scale, so N may be any. Formula and tan alph
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from benchmarks.verification.case import Case, Outcome, Row
+from benchmarks.verification.case import Case, Curves, Outcome, Row
 from benchmarks.verification.over_screen import Array, formulations, over_screen, profile
 from geometry.bodies import block, pad, ridge
 from variational.contact.augmented import AugmentedLagrangian
@@ -77,15 +76,9 @@ def full_slip(small: bool) -> Outcome:
             same, why = 1e-5, "multipliers end at 0.5 nm, over which the attraction beside the contact changes by 4e-4"
         rows.append(Row(f"f_T after 0.2 mm more, over that, {name}", f_t / first, 1.0, same, why, mesh))
 
-    def draw(figure: Figure) -> None:
-        ax = figure.subplots()
-        for k, (name, path) in enumerate(paths.items()):
-            ax.plot(path[:, 0] * 1e6, path[:, 1] / (mu_f * path[:, 2]), f"C{k}{'osv^d'[k]}-", mfc="none", label=name)
-        ax.axhline(1.0, color="k", lw=0.8, ls="--")
-        ax.set(xlabel="bone's displacement (µm)", ylabel="f_T / (mu_0 f_c)")
-        ax.legend()
-
-    return Outcome(tuple(rows), draw)
+    found = {name: (path[:, 0] * 1e6, path[:, 1] / (mu_f * path[:, 2])) for name, path in paths.items()}
+    known = {"Coulomb": ((0.0, 600.0), (1.0, 1.0))}
+    return Outcome(tuple(rows), Curves("bone's displacement (µm)", "f_T / (mu_0 f_c) (–)", known, found))
 
 
 # -- partial slip --------------------------------------------------------------------------------------
@@ -154,17 +147,10 @@ def partial_slip(small: bool) -> Outcome:
         quantity = f"shear borne left of a place over Q, most off, at Q / mu P = {state.part:.3f}"
         rows.append(Row(quantity, state.cumulated, 0.0, tolerance, why, mesh, absolute=True))
 
-    def draw(figure: Figure) -> None:
-        ax = figure.subplots()
-        x, unit = np.linspace(-1.2, 1.2, 961), MU_F * 2 * FORCE / (np.pi * HALF_WIDTH)
-        for k, state in enumerate(states):
-            ax.plot(x, shear(x * HALF_WIDTH, state.part) / unit, "k-", lw=0.8, label="Cattaneo" if k == 0 else None)
-            label = f"Q / μP = {state.part:.2f}"
-            ax.plot(state.x / HALF_WIDTH, state.t / unit, f"C{k}{'o+xv'[k]}", ms=3, mfc="none", label=label)
-        ax.set(xlabel="x / a", ylabel="t / (μ p_0)", xlim=(-1.2, 1.2))
-        ax.legend()
-
-    return Outcome(tuple(rows), draw)
+    along, unit = np.linspace(-1.2, 1.2, 961), MU_F * 2 * FORCE / (np.pi * HALF_WIDTH)
+    known = {f"Cattaneo, Q / μP = {s.part:.2f}": (along, shear(along * HALF_WIDTH, s.part) / unit) for s in states}
+    found = {f"Q / μP = {s.part:.2f}": (s.x / HALF_WIDTH, s.t / unit) for s in states}
+    return Outcome(tuple(rows), Curves("x / a (–)", "t / (μ p_0) (–)", known, found))
 
 
 # -- incline -------------------------------------------------------------------------------------------

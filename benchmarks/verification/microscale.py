@@ -1,9 +1,8 @@
 """The bearing area model against the numbers of Forsbach et al. (2023) and others evaluated from Eqs. 9 to 15."""
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from benchmarks.verification.case import Case, Outcome, Row, worst
+from benchmarks.verification.case import Case, Curves, Outcome, Row, worst
 from variational.roughness.bam import BearingArea
 
 H_0 = 425e-6 / 1650 + 1e-6 / 3.9
@@ -40,18 +39,13 @@ def separations(small: bool) -> Outcome:
     d = bam.air_gap(u)
     rows = [_printed(f"d_eq at u_bar = {k} um (um)", float(bam.air_gap(k * _UM)), v, _UM) for k, v in AIR_GAPS.items()]
 
-    def draw(figure: Figure) -> None:
-        ax = figure.subplots()
-        ax.plot(u / _UM, d / _UM, label="bearing area model")
-        ax.plot(list(AIR_GAPS), list(AIR_GAPS.values()), "o", mfc="none", color="k", label="reference")
-        ax.set(xlabel="mean separation ū (µm)", ylabel="equivalent air gap d_eq (µm)", ylim=(0, 15))
-        ax.legend()
-
     least = (
         _printed("least d_eq (um)", float(d.min()), 1.486, _UM),
         Row("u_bar of the least d_eq over h_0", float(u[d.argmin()]) / H_0, 0.5, 1e-3, "sampling of 0.5 nm"),
     )
-    return Outcome((worst(rows), *least), draw)
+    known = {"reference": (list(AIR_GAPS), list(AIR_GAPS.values()))}
+    axes = "mean separation ū (µm)", "equivalent air gap d_eq (µm)"
+    return Outcome((worst(rows), *least), Curves(*axes, known, {"bearing area model": (u[::50] / _UM, d[::50] / _UM)}))
 
 
 def thresholds(small: bool) -> Outcome:
@@ -76,15 +70,6 @@ def folds(small: bool) -> Outcome:
     beyond = u > off
     on = float(u[beyond][p[beyond].argmax()])
 
-    def draw(figure: Figure) -> None:
-        ax = figure.subplots()
-        for U in VOLTAGES:
-            ax.plot(u / _UM, bam.external_pressure(u, U) / _KPA, label=f"{U:g} V", color=f"C{int(U / 50)}")
-        ax.plot([4.95, 10.7], [-3.46, 0.107], "o", mfc="none", color="k", label="folds at 200 V, reference")
-        ax.axhline(0, color="0.6", lw=0.8)
-        ax.set(xlabel="mean separation ū (µm)", ylabel="external pressure (kPa)", ylim=(-5, 20), xlim=(0, 16))
-        ax.legend()
-
     rows = (
         _printed("pull-off: u_bar (um)", off, 4.95, _UM),
         _printed("pull-off: d_eq (um)", float(bam.air_gap(off)), 3.03, _UM),
@@ -93,7 +78,9 @@ def folds(small: bool) -> Outcome:
         _printed("pull-in: u_bar (um)", on, 10.7, _UM),
         _printed("pull-in: p_ext (kPa)", float(p[beyond].max()), 0.107, _KPA),
     )
-    return Outcome(rows, draw)
+    known = {"folds at 200 V": ([4.95, 10.7], [-3.46, 0.107])}
+    axes = "mean separation ū (µm)", "external pressure (kPa)"
+    return Outcome(rows, Curves(*axes, known, {"200 V": (u[20000::800] / _UM, p[20000::800] / _KPA)}))
 
 
 def uniform_ridge(small: bool) -> Outcome:

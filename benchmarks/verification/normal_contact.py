@@ -27,10 +27,9 @@ from dataclasses import dataclass
 from functools import cache, partial
 
 import numpy as np
-from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
-from benchmarks.verification.case import Case, Outcome, Row
+from benchmarks.verification.case import Case, Curves, Outcome, Row
 from benchmarks.verification.over_screen import Array, formulations, over_screen, plane_strain_modulus, profile
 from geometry.bodies import block, foot, pad
 from variational.contact.augmented import AugmentedLagrangian
@@ -127,16 +126,10 @@ def hertz(small: bool) -> Outcome:
             order = _order([value - reference for value in values], meshes)
             rows.append(Row(f"{quantity}, {name}", values[-1], reference, tolerance, why, mesh, order))
 
-    def draw(figure: Figure) -> None:
-        ax = figure.subplots()
-        x = np.linspace(-1.2, 1.2, 481)
-        ax.plot(x, hertz_pressure(x * HALF_WIDTH) / P_0, "k-", lw=0.8, label="Hertz")
-        for (name, r), style in zip(finest.items(), ("C0o", "C1+"), strict=True):
-            ax.plot(r.x / HALF_WIDTH, r.p_n / P_0, style, ms=4, mfc="none", label=name)
-        ax.set(xlabel="x / a", ylabel="p_n / p_0", xlim=(-1.2, 1.2))
-        ax.legend()
-
-    return Outcome(tuple(rows), draw)
+    x = np.linspace(-1.2, 1.2, 481)
+    known = {"Hertz": (x, hertz_pressure(x * HALF_WIDTH) / P_0)}
+    found = {name: (r.x / HALF_WIDTH, r.p_n / P_0) for name, r in finest.items()}
+    return Outcome(tuple(rows), Curves("x / a (–)", "p_n / p_0 (–)", known, found))
 
 
 def convergence(small: bool) -> Outcome:
@@ -160,15 +153,9 @@ def convergence(small: bool) -> Outcome:
             Row(f"L2 error on the last mesh, {name}", values[-1], 0.0, most * sizes[-1], why, mesh, absolute=True),
         ]
 
-    def draw(figure: Figure) -> None:
-        ax = figure.subplots()
-        for k, (name, values) in enumerate(errors.items()):
-            ax.loglog(sizes, values, f"C{k}{'osv^d'[k]}-", mfc="none", label=name)
-        ax.loglog(sizes, sizes, "k--", lw=0.8, label="first order")
-        ax.set(xlabel="facet length / a", ylabel="L2 error of p_n (relative)")
-        ax.legend()
-
-    return Outcome(tuple(rows), draw)
+    found, known = {name: (sizes, values) for name, values in errors.items()}, {"first order": (sizes, sizes)}
+    axes = "facet length / a (–)", "L2 error of p_n (relative)"
+    return Outcome(tuple(rows), Curves(*axes, known, found, logarithmic=True))
 
 
 # -- flat punch ----------------------------------------------------------------------------------------
@@ -198,16 +185,10 @@ def flat_punch(small: bool) -> Outcome:
         quantity = f"L2 error of p_n in |x| < 0.9 a, {name}"
         rows.append(Row(quantity, errors[-1], 0.0, 0.01, why, mesh, order, absolute=True))
 
-    def draw(figure: Figure) -> None:
-        ax = figure.subplots()
-        x = np.linspace(-0.999, 0.999, 999)
-        ax.plot(x, 1 / np.sqrt(1 - x**2), "k-", lw=0.8, label="rigid punch on a half-space")
-        for (name, at, p_n), style in zip(finest, ("C0.", "C1+"), strict=True):
-            ax.plot(at / HALF_WIDTH, p_n * np.pi * HALF_WIDTH / force, style, ms=4, label=name)
-        ax.set(xlabel="x / a", ylabel="π a p_n / f", xlim=(-1.1, 1.1), ylim=(0, 6))
-        ax.legend()
-
-    return Outcome(tuple(rows), draw)
+    x = np.linspace(-0.98, 0.98, 999)
+    known = {"rigid punch on a half-space": (x, 1 / np.sqrt(1 - x**2))}
+    found = {name: (at / HALF_WIDTH, p_n * np.pi * HALF_WIDTH / force) for name, at, p_n in finest}
+    return Outcome(tuple(rows), Curves("x / a (–)", "π a p_n / f (–)", known, found))
 
 
 _HERTZ = "Hertz 1882, in Johnson, Contact Mechanics, 1985, sec. 4.2(c), doi 10.1017/CBO9781139171731"

@@ -1,4 +1,4 @@
-"""Orders of convergence: the errors of a field on finer and finer meshes, as rows and as a picture."""
+"""Orders of convergence: the errors of a field on finer and finer meshes, as rows and as curves."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -6,16 +6,14 @@ from typing import Any
 import numpy as np
 import ufl
 from dolfinx import fem, mesh
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from benchmarks.verification.case import Row
+from benchmarks.verification.case import Curves, Row
 from variational import jit
 
 Array = NDArray[np.float64]
 ELEMENTS = {"P1": 1, "P2": 2, "P2-P1": 2, "P3": 3}
 """Degrees of the displacement."""
-_STYLES = dict(zip(ELEMENTS, ("o-", "s--", "D:", "^-."), strict=True))
 Errors = Mapping[str, Sequence[tuple[float, float]]]
 """Of each element the errors in L2 and H1, mesh by mesh."""
 
@@ -56,19 +54,12 @@ def rows(errors: Errors, meshes: Sequence[int], tolerance: float, why: str) -> l
     return made
 
 
-def draw(figure: Figure, errors: Errors, meshes: Sequence[int]) -> None:
-    """Draw errors over divisions, with lines of the expected order through the last."""
-    axes = figure.subplots(1, 2, sharey=True)
+def curves(errors: Errors, meshes: Sequence[int]) -> Curves:
+    """Return the picture of the errors in L2 over divisions, with lines of the expected order through the last."""
     n = np.array(meshes)
-    for k, (ax, name) in enumerate(zip(axes, ("L2", "H1"), strict=True)):
-        for element, found in errors.items():
-            values, expected = [pair[k] for pair in found], ELEMENTS[element] + 1 - k
-            marker, line = _STYLES[element][0], _STYLES[element][1:]
-            colour = f"C{list(ELEMENTS).index(element)}"
-            ax.loglog(n, values, marker, mfc="none", color=colour, label=f"{element}, ours")
-            ax.loglog(n, values[-1] * (n[-1] / n) ** expected, line, color=colour, label=f"order {expected}")
-        ax.set_xticks(n, [str(count) for count in meshes])
-        ax.minorticks_off()
-        ax.set(xlabel="divisions", title=f"displacement in {name}")
-        ax.legend(fontsize="small")
-    axes[0].set_ylabel("relative error")
+    found = {element: (n, [pair[0] for pair in values]) for element, values in errors.items()}
+    known = {
+        f"order {ELEMENTS[element] + 1}": (n, values[-1][0] * (n[-1] / n) ** (ELEMENTS[element] + 1.0))
+        for element, values in errors.items()
+    }
+    return Curves("divisions (–)", "displacement's relative error in L2", known, found, logarithmic=True)

@@ -1,77 +1,66 @@
-"""The verification page: a table for each area, its pictures below."""
+"""The verification page: a table of known answers and computed numbers for each area."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
-from matplotlib.figure import Figure
-
+from benchmarks.harness import kept, page, table
 from benchmarks.verification.case import Case, Outcome, Row
-from fingerpad.io.files import replace, replace_json
 
 Results = Mapping[str, Sequence[tuple[Case, Outcome]]]
-_HEADER = """# Verification
-
-Made by `make verify`; do not edit. Each row is a number of ours beside its reference; **!** marks an error above its
-tolerance, with which `make verify` fails. The same cases on coarser meshes are part of `make test`. The numbers
-themselves, unrounded: [results.json](verification/results.json).
-"""
-
-
-def draw(outcome: Outcome, path: Path) -> None:
-    """Draw an outcome's picture, if it has one, as a PNG."""
-    if outcome.draw is None:
-        return
-    figure = Figure(figsize=(7.0, 3.6), layout="constrained")
-    outcome.draw(figure)
-    figure.savefig(path, dpi=110)
+_HOW = """Each row is a computed number beside its known answer: a closed form, a published benchmark, or an independent
+evaluation. The error is relative where *(rel.)* stands, otherwise in the quantity's unit. The tolerance is given with
+its reason; **!** marks an error above it. *Order* is the observed order of convergence over several meshes. `make
+verify` computes all rows and fails where one is off; its option `--pictures` draws the curves into
+`results/verification`. The same cases on coarser meshes are part of `make test`."""
+_HEAD = ["case and source of the answer", "quantity", "known answer", "computed", "error", "tolerance", "mesh", "order"]
 
 
-def _number(value: float) -> str:
-    return f"{value:.6g}"
-
-
-def _line(case: Case, row: Row, first: bool) -> str:
-    flag = "" if row.holds else "**!** "
-    unit = "" if row.absolute else " (rel.)"
-    cells = [
-        f"{case.name}; {case.reference}" if first else "",
-        row.quantity,
-        _number(row.reference),
-        _number(row.ours),
-        f"{flag}{row.error:.2g}{unit}",
-        f"{row.tolerance:.2g}: {row.why}",
-        row.mesh,
-        "–" if row.order is None else f"{row.order:.2f}",
-    ]
-    return "| " + " | ".join(cells) + " |"
-
-
-def page(results: Results, folder: str) -> str:
-    """Return the page; pictures are in ``folder``, relative to it."""
-    rows = [row for cases in results.values() for _, outcome in cases for row in outcome.rows]
-    held = sum(row.holds for row in rows)
-    parts = [_HEADER, f"{held} of {len(rows)} numbers are within their tolerance."]
-    for area, cases in results.items():
-        head = ["case and reference", "quantity", "reference", "ours", "error", "tolerance", "mesh", "order"]
-        lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
-        for case, outcome in cases:
-            lines += [_line(case, row, k == 0) for k, row in enumerate(outcome.rows)]
-        parts += [f"## {area}", "\n".join(lines)]
-        parts += [f"![{case.name}]({folder}/{case.slug}.png)" for case, outcome in cases if outcome.draw]
-    return "\n\n".join(parts) + "\n"
-
-
-def write(results: Results, docs: Path) -> None:
-    """Write page, numbers and pictures into the docs."""
-    folder = docs / "verification"
-    folder.mkdir(parents=True, exist_ok=True)
-    for cases in results.values():
-        for case, outcome in cases:
-            draw(outcome, folder / f"{case.slug}.png")
-    data = {
-        area: {case.name: [asdict(row) | {"error": row.error} for row in outcome.rows] for case, outcome in cases}
+def numbers(results: Results) -> dict[str, Any]:
+    """Return the rows of all cases, ready for JSON."""
+    return {
+        area: [
+            {"name": case.name, "reference": case.reference, "rows": [asdict(row) for row in outcome.rows]}
+            for case, outcome in cases
+        ]
         for area, cases in results.items()
     }
-    replace_json(folder / "results.json", data)
-    replace(docs / "verification.md", page(results, folder.name))
+
+
+def _lines(name: str, reference: str, rows: Sequence[Row]) -> list[list[str]]:
+    return [
+        [
+            f"{name}; {reference}" if k == 0 else "",
+            row.quantity,
+            f"{row.reference:.6g}",
+            f"{row.computed:.6g}",
+            f"{'' if row.holds else '**!** '}{row.error:.2g}{'' if row.absolute else ' (rel.)'}",
+            f"{row.tolerance:.2g}: {row.why}",
+            row.mesh,
+            "–" if row.order is None else f"{row.order:.2f}",
+        ]
+        for k, row in enumerate(rows)
+    ]
+
+
+def draw(docs: Path) -> Path:
+    """Write docs/verification.md from docs/verification.json."""
+    found = kept("verification", docs)
+    areas = {
+        area: [(case["name"], case["reference"], [Row(**row) for row in case["rows"]]) for case in cases]
+        for area, cases in found.numbers.items()
+    }
+    rows = [row for cases in areas.values() for *_, some in cases for row in some]
+    held = sum(row.holds for row in rows)
+    count = sum(map(len, areas.values()))
+    finding = (
+        f"{held} of {len(rows)} computed numbers in {count} cases agree with their known answers within tolerance."
+    )
+    body = [
+        f"## {area}\n\n{table(_HEAD, [line for case in cases for line in _lines(*case)])}"
+        for area, cases in areas.items()
+    ]
+    return page(
+        docs / "verification.md", "Verification", finding, _HOW, body, "make verify", found.made, ["verification"]
+    )

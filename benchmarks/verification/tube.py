@@ -9,12 +9,11 @@ pressure is the resultant of the forces at the inner nodes. Exact solutions: :mo
 from dataclasses import dataclass, replace
 
 import numpy as np
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from benchmarks.verification import orders
 from benchmarks.verification.bodies import NOTHING, FreeSolver, Held, body, free_problem, held, nodal_forces, nodes_of
-from benchmarks.verification.case import Case, Outcome, Row, worst
+from benchmarks.verification.case import Case, Curves, Outcome, Row, worst
 from benchmarks.verification.shooting import ALPHA, AXIS, SHEAR, A, B, Exact, exact_tube, pressure_of_incompressible
 from geometry import tags
 from geometry.bodies import quarter_tube
@@ -127,27 +126,16 @@ def inflation(small: bool) -> Outcome:
     why = f"{polygon(n)[1]}, and the change of volume, some 1 - 2 nu, times the exponent"
     rows.append(Row(quantity, ours / 1e3, limit / 1e3, tolerance + compressible, why, mesh))
 
-    def draw(figure: Figure) -> None:
-        ax = figure.subplots()
-        x = np.linspace(1.0, most, 61)[1:]
-        ax.plot(
-            x, [pressure_of_incompressible(k) / 1e3 for k in x], "--", color="C1", label="incompressible, closed form"
-        )
-        fine = np.linspace(1.02, most, 15)
-        ax.plot(fine, [exact_tube(0.48, k).pressure / 1e3 for k in fine], color="C0", label="ν = 0.48, by shooting")
-        for nu, colour, marker in ((0.48, "C0", "o"), (0.49999, "C1", "s")):
-            points = [(k, ours / 1e3) for (given, k), (_, ours) in pressures.items() if given == nu]
-            ax.plot(
-                *zip(*points, strict=True),
-                marker,
-                mfc="none",
-                color=colour,
-                label=f"ν = {nu:g}, ours, P2-P1, {n} divisions",
-            )
-        ax.set(xlabel="inner radius over its first value a/A", ylabel="inner pressure (kPa)")
-        ax.legend()
-
-    return Outcome(tuple(rows), draw)
+    x = np.linspace(1.02, most, 15)
+    known = {
+        "incompressible, closed form": (x, [pressure_of_incompressible(k) / 1e3 for k in x]),
+        "ν = 0.48, by shooting": (x, [exact_tube(0.48, k).pressure / 1e3 for k in x]),
+    }
+    computed: dict[str, tuple[Array, Array]] = {}
+    for nu in (0.48, 0.49999):
+        k, p = np.array([(k, p / 1e3) for (given, k), (_, p) in pressures.items() if given == nu]).T
+        computed[f"ν = {nu:g}"] = (k, p)
+    return Outcome(tuple(rows), Curves("a / A (–)", "inner pressure (kPa)", known, computed))
 
 
 def convergence(small: bool) -> Outcome:
@@ -160,7 +148,7 @@ def convergence(small: bool) -> Outcome:
 
     found = {e: [errors(e, n) for n in meshes] for e in (("P2-P1",) if small else ("P1", "P2", "P2-P1"))}
     rows = orders.rows(found, meshes, 0.1, "not yet asymptotic")
-    return Outcome(tuple(rows), lambda figure: orders.draw(figure, found, meshes))
+    return Outcome(tuple(rows), orders.curves(found, meshes))
 
 
 CASES = (

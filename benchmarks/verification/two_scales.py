@@ -9,10 +9,9 @@ which is solved by bracketing in the mean separation.
 """
 
 import numpy as np
-from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from benchmarks.verification.case import Case, Outcome, Row, worst
+from benchmarks.verification.case import Case, Curves, Outcome, Row, worst
 from benchmarks.verification.microscale import CLOSURE, EPS_0, H_0, MU_F, VOLTAGES
 from geometry import tags
 from geometry.bodies import block
@@ -89,22 +88,13 @@ def table(small: bool) -> Outcome:
             digits = 0.5005e-2 if mu_app > 1 else 0.5005e-3
             frictions.append(Row(f"mu_app {where}", mu, mu_app, digits, why, _MESH, absolute=True))
 
-    def draw(figure: Figure) -> None:
-        left, right = figure.subplots(1, 2)
-        p = np.linspace(9, 55, 100)
-        for k, voltage in enumerate(VOLTAGES):
-            exact = np.array([scalar(kpa * 1e3, voltage) for kpa in p])
-            left.plot(p, exact[:, 0] / 1e-6, color=f"C{k}", lw=1, label=f"{voltage:g} V")
-            right.plot(p, exact[:, 2], color=f"C{k}", lw=1)
-            ours = np.array([(kpa, *values) for (kpa, u), values in found.items() if u == voltage])
-            if len(ours):
-                left.plot(ours[:, 0], ours[:, 1] / 1e-6, "o", color=f"C{k}", mfc="none")
-                right.plot(ours[:, 0], ours[:, 3], "o", color=f"C{k}", mfc="none")
-        left.set(xlabel="external pressure (kPa)", ylabel="equivalent air gap (µm)")
-        right.set(xlabel="external pressure (kPa)", ylabel="apparent friction coefficient")
-        left.legend(title="lines: scalar equation\ncircles: coupled model", fontsize=8)
-
-    return Outcome((worst(gaps), worst(frictions)), draw)
+    p, known, computed = np.linspace(9, 55, 100), {}, {}
+    for voltage in VOLTAGES:
+        known[f"{voltage:g} V, scalar equation"] = (p, [scalar(kpa * 1e3, voltage)[2] for kpa in p])
+        points = {kpa: mu for (kpa, u), (_, _, mu) in found.items() if u == voltage}
+        computed[f"{voltage:g} V"] = (list(points), list(points.values()))
+    curves = Curves("external pressure (kPa)", "apparent friction coefficient (–)", known, computed)
+    return Outcome((worst(gaps), worst(frictions)), curves)
 
 
 CASES = (

@@ -1,7 +1,7 @@
 r"""What a run of a scene will take, by a rule from kept runs; within a factor of 2 where the scene is like theirs.
 
 Processor time is factorisations times unknowns times a constant. Factorisations are those of a press, a charge and a
-slide to full slip, fitted to the 40 full runs of ``docs/ladder.json`` (0.83 to 1.31 times theirs):
+slide to full slip, fitted to the 40 full runs of ``docs/models.json`` (0.83 to 1.31 times theirs):
 
 .. math:: n = 160 \, (f_{ext} / 75 N/m)^{0.33} \, e^{0.74 (U / 200 V)^2}
 

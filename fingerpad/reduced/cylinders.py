@@ -13,7 +13,7 @@ contact and full slip:
   :math:`2 G_0 / (1 - \nu)`, and acts on the attraction beyond the contact's ends alone.
 
 It leaves out that ridges in the middle bear more than those at the edge, and that ridges come and go with the
-voltage; how much that is: ``docs/ladder.md``.
+voltage; how much that is: ``docs/models.md``.
 """
 
 import json
@@ -35,7 +35,7 @@ from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeS
 from variational.state import ContactState
 
 # The default finger's full runs without voltage, contact size 10 um: f_ext (N/m), then contact length (m) and ridges in
-# contact in each state. benchmarks/ladder.py keeps the same numbers in docs/ladder.json.
+# contact in each state. benchmarks/models.py keeps the same numbers in docs/models.json.
 _FORCES = (5.0, 10.0, 25.0, 50.0, 75.0, 100.0, 120.0, 150.0)
 _LENGTHS = {
     "charged": (0.2313e-3, 0.3577e-3, 0.6504e-3, 1.0116e-3, 1.3028e-3, 1.4998e-3, 1.7017e-3, 1.8910e-3),

@@ -4,7 +4,7 @@
     smooth      a smooth finger with one ridge's law as its contact (:mod:`fingerpad.reduced.smooth`)
     full        the whole cross-section with every ridge (:mod:`fingerpad.runs.full`)
 
-Where each model is good enough: ``docs/ladder.md``.
+Where each model is good enough: ``docs/models.md``.
 """
 
 import math

@@ -1,0 +1,79 @@
+"""The comparison of models: numbers of an answer, errors against the full model, and the page."""
+
+import pytest
+
+from benchmarks import harness, models
+from fingerpad.io.states import PREFIXES
+from fingerpad.reduced import cylinders
+from fingerpad.runs.batch import key
+from fingerpad.scene import from_data
+
+BY = harness.Made("0", "abc", "2026-01-01")
+
+
+def test_lengths_in_the_program_are_the_runs():
+    """The lengths that `cylinders` interpolates are the kept full runs', to the four digits they are kept with."""
+    known = harness.kept("models").numbers["scenes"]
+    for state in ("charged", "full_slip"):
+        for k, f in enumerate(cylinders._FORCES):
+            run = known[models.name(f, 0.0)]["full"]["summary"]
+            assert cylinders._LENGTHS[state][k] == pytest.approx(run[f"{PREFIXES[state]}_contact_length"], abs=0.5e-7)
+            assert cylinders._RIDGES[state][k] == run[f"{PREFIXES[state]}_ridges_in_contact"]
+
+
+def test_kept_answers_are_those_of_the_program():
+    """The closed form answers as it did when the full runs were made, to roundoff of the scalar root."""
+    known = harness.kept("models").numbers["scenes"][models.name(75.0, 200.0)]["cylinders"]["summary"]
+    found = models.answer(cylinders.solve(from_data({"f_ext": 75.0, "voltage": 200.0})).to_dict())["summary"]
+    assert found == pytest.approx(known, rel=1e-9)
+
+
+def test_scenes_differ_and_their_mesh_is_given():
+    """Forty scenes and five extremes; all of one force share their mesh."""
+    scenes = models.scenes() | models.extremes()
+    assert len(scenes) == len({key(scene) for scene in scenes.values()}) == 45
+    assert all(scene.mesh.touching_half_arc is not None for scene in scenes.values())
+
+
+def answer(**values):
+    return {
+        "summary": {"full_slip": True} | values,
+        "cost": {"seconds": 2.0, "factorisations": 3, "unknowns": 5},
+        "more": {},
+    }
+
+
+def test_errors_are_against_the_full_model():
+    """Without an answer of either there is none."""
+    found = {"cylinders": answer(slip_mu_app=0.5), "full": answer(slip_mu_app=0.4)}
+    assert models.error(found, "cylinders", "slip_mu_app") == pytest.approx(0.25, rel=1e-12)
+    assert models.error(found, "smooth", "slip_mu_app") is None
+    assert models.error({"cylinders": found["cylinders"]}, "cylinders", "slip_mu_app") is None
+
+
+def test_failure_is_kept_alone():
+    assert models.answer({"failure": "TIME_LIMIT: not done", "full_slip": False}) == {"failure": "TIME_LIMIT: not done"}
+
+
+def test_page(tmp_path):
+    """One scene of two has no smooth answer; the other is by older tables; a run at an extreme failed."""
+    values = {name: 1.0 for name in models.QUANTITIES}
+    smooth = answer(**values) | {"more": {"table_version": 2}}
+    scenes = {
+        models.name(75.0, 0.0): {"cylinders": answer(**values), "smooth": answer(**values), "full": answer(**values)},
+        models.name(75.0, 200.0): {
+            "cylinders": answer(**values | {"slip_mu_app": 1.1}),
+            "smooth": {"failure": "lost"},
+            "full": answer(**values) | {"summary": values | {"full_slip": False}},
+        },
+        models.name(5.0, 0.0): {"cylinders": answer(**values), "smooth": smooth, "full": answer(**values)},
+    }
+    ends = [{"scene": "400 V at 10 N/m", "mu_app": None, "end": "step 9: stuck"}]
+    harness.keep("models", {"scenes": scenes, "extremes": ends}, BY, tmp_path)
+    text = models.draw(tmp_path).read_text(encoding="utf-8")
+    assert "give µ_app within 10.0 %" in text
+    assert "full slip in 2 of 3 scenes" in text
+    assert "No answer at 75 N/m, 200 V." in text
+    assert "1 of the answers are by an older law of one ridge" in text
+    assert "| 75 | +0.0 | – | – | – | +10.0 |" in text
+    assert "| 400 V at 10 N/m | – | step 9: stuck |" in text
