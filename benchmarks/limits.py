@@ -22,9 +22,9 @@ from benchmarks.convergence import Limit, limit
 from fingerpad.accuracy.recompute import Solve, StateRecorder, solve_again
 from fingerpad.io.files import replace
 from fingerpad.io.states import PREFIXES
+from fingerpad.model.finger import Step
 from fingerpad.model.options import plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.steps import Step
 from fingerpad.runs.batch import key, progress
 from fingerpad.runs.processes import End, Pool, limit_processor_time, run
 from fingerpad.scene import Scene, from_data, start
@@ -101,7 +101,7 @@ def _path(scene: Scene, uncharged: bool, comm: MPI.Comm) -> Solve:
     """Return the states of a scene's path on the coarsest mesh on which it can be followed."""
 
     def on_step(step: Step, done: float) -> None:
-        keeper.see(step)
+        keeper.record(step)
 
     def on_load() -> None:
         if "uncharged" not in keeper.states and uncharged:
@@ -113,7 +113,9 @@ def _path(scene: Scene, uncharged: bool, comm: MPI.Comm) -> Solve:
         simulation = Simulation(coarse, plan(scene), comm, on_step, on_load)
         keeper = StateRecorder(simulation)
         try:
-            simulation.run()
+            restart = simulation.run()
+            if restart is not None:
+                raise RuntimeError(f"{restart.reason}; give mesh.touching_half_arc")
             return keeper.solve()
         except StepFailed as error:
             failure = error

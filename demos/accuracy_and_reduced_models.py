@@ -1,9 +1,10 @@
 # %% [markdown]
 # # Accuracy, and reduced models
 #
-# Three models answer a scene. "full" has every ridge along the whole path of the loads. "smooth" has a finger without
-# ridges, with the law of one ridge for its contact. "cylinders" takes all ridges for the same charged cylinder, in
-# closed form. A scene with an accuracy starts on a coarse mesh and is refined until the estimated error is within it.
+# Three models compute the same scene. "full" has every ridge along the whole loading path. "smooth" is a finger without
+# ridges, with the law of one ridge as its contact. "cylinders" treats all ridges as equal charged cylinders, in closed
+# form. A scene with an accuracy starts on a coarse mesh and is refined until the estimated error is within the
+# accuracy.
 
 # %%
 import sys
@@ -20,13 +21,13 @@ SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"
 
 
 # %% [markdown]
-# The closed form knows how long the contact of the default finger is. Another finger's length is given to it, here that
-# of the full model.
+# The closed form contains the contact length of the default finger. For another finger the length is an input, here
+# that of the full model.
 
 
 # %%
 def ladder(scene: fp.Scene, out: Path) -> dict[str, fp.Result]:
-    """Return the models' answers, the cheapest first."""
+    """Return the results of the models, the cheapest first."""
     exact = fp.run(scene.replace(accuracy={"mu_app": ASKED}))
     known = exact.full_slip
     return {
@@ -39,7 +40,7 @@ def ladder(scene: fp.Scene, out: Path) -> dict[str, fp.Result]:
 
 # %%
 def main(out: str = "results/demos/accuracy_and_reduced_models", size: str = "small") -> None:
-    """Climb the ladder on a small finger; with the size "full" on the default finger, which takes far longer."""
+    """Compare the models on a small finger; with the size "full" on the default finger, which takes far longer."""
     scene = fp.Scene.load(SMALL) if size == "small" else fp.Scene()
     found = ladder(scene, Path(out))
     if MPI.COMM_WORLD.rank == 0:

@@ -1,15 +1,14 @@
 # %% [markdown]
 # # Your own microscale closure
 #
-# A closure says what air gap a ridge has under its mean contact pressure. The bearing area model is one; a constant
-# gap g is the least. It is one class with one method, and nothing in the solver changes.
+# A closure gives the air gap of a ridge under its mean contact pressure. The bearing area model is the default closure;
+# a constant gap g is the simplest one. A closure is one class with one method, and the solver stays unchanged.
 #
-# A flat block has that gap along its whole foot. Its friction is then known in closed form,
+# A flat block has the gap g along its whole foot. Its friction then has a closed form,
 #
 # $$f_T = \mu_0 \Big(f_{ext} + \frac{\varepsilon_0 U^2}{2 (h_0 + g)^2} L\Big)$$
 #
-# with L the length of the foot, as it is then; its edge that trails lifts by less than the gap, and is attracted as
-# well.
+# with the current length L of the foot. The trailing edge lifts by less than the gap, and is attracted as well.
 
 # %%
 import sys
@@ -52,7 +51,7 @@ def friction(gap: float) -> tuple[float, float]:
 
 # %%
 def main(out: str = "results/demos/own_closure", size: str = "small") -> None:
-    """Slide blocks with gaps of their own, then a finger; with the size "full" the default finger, far slower."""
+    """Slide blocks with constant gaps, then a finger; with the size "full" the default finger, far slower."""
     gaps = np.array([1e-6, 1.5e-6, 2e-6, 3e-6])
     found, exact = np.array([friction(gap) for gap in gaps]).T
     scene = fp.Scene.load(SMALL) if size == "small" else fp.Scene()

@@ -1,13 +1,13 @@
 # %% [markdown]
 # # Your own friction law
 #
-# Derjaguin (1934, Zeitschrift für Physik 88, pages 661 to 675) adds to Coulomb's friction a part that molecules make
-# wherever there is contact, $t = \mu p + \tau_0$. At p = 0 the limit would jump from 0 to τ_0, and Newton's method
-# would go back and forth between touching and not touching; so τ_0 begins smoothly,
+# Derjaguin (1934, Zeitschrift für Physik 88, pages 661 to 675) adds to Coulomb's friction a part of
+# molecular adhesion wherever there is contact, $t = \mu p + \tau_0$. At p = 0 the limit would jump from 0 to τ_0, and
+# Newton's method would alternate between contact and no contact. So τ_0 begins smoothly,
 #
 # $$t_{max}(p) = \mu p + \tau_0 \frac{p}{\sqrt{p^2 + p_{reg}^2}}$$
 #
-# A law is one class with that limit, written with arithmetic alone.
+# A law is one class with the limit t_max(p), written with arithmetic alone.
 
 # %%
 import sys
@@ -36,7 +36,7 @@ class Mine(fp.Friction):
 
 # %% [markdown]
 # A flat block slides on a foot of 1 mm, of which the trailing end lifts a little. At full slip its friction is
-# $\mu f_c + \tau_0 L_R$, less what the regularisation takes, $\tau_0 p_{reg}^2 / 2 p^2$ where the pressure is p.
+# $\mu f_c + \tau_0 L_R$, less the regularisation's part, $\tau_0 p_{reg}^2 / 2 p^2$ at pressure p.
 
 
 # %%

@@ -1,14 +1,14 @@
 # %% [markdown]
 # # Your own material
 #
-# A solid is a strain energy density; stresses and tangents are derived from it. Yeoh's solid stiffens under large
-# strain (Yeoh 1993, doi 10.5254/1.3538343),
+# A solid is given by its strain energy density; stresses and tangents are derived from this density. Yeoh's solid
+# stiffens under large strain (Yeoh 1993, doi 10.5254/1.3538343),
 #
 # $$W = \frac{G}{2} (\bar I_1 - 3) + c_2 (\bar I_1 - 3)^2 + \frac{K}{2} (J - 1)^2, \qquad
 #   \bar I_1 = J^{-2/3} \operatorname{tr} F^T F$$
 #
-# and is neo-Hooke's at $c_2 = 0$. It is one class: its numbers, and the part of the energy that does not belong to the
-# change of volume. The part with the bulk modulus K is added by itself.
+# and equals the neo-Hookean solid at $c_2 = 0$. The class has the numbers and the energy without the volumetric part.
+# The part with the bulk modulus K is added automatically.
 
 # %%
 import sys

@@ -1,10 +1,10 @@
 # %% [markdown]
 # # Your own mesh
 #
-# A body may come from a gmsh file. Its parts are found by the names of the physical groups (docs/mesh.md): layers of
-# triangles, the `bone rim` glued to the rigid bone, and `ridge 0`, `ridge 1`, `ridge -1`, … that can touch. Lengths are
-# in metres, and the screen is the line y = 0. Here it is an artificial fingertip of two layers with three round ridges,
-# as it would be cast from silicone.
+# A body can come from a gmsh file. The names of the physical groups mark the parts (docs/mesh.md): layers of triangles,
+# the `bone rim` glued to the rigid bone, and `ridge 0`, `ridge 1`, `ridge -1`, … that can touch. Lengths are in metres,
+# and the screen is the line y = 0. The example is an artificial fingertip of two layers with three round ridges, as
+# cast from silicone.
 
 # %%
 import sys
@@ -69,7 +69,7 @@ def ellipse(first: int, last: int, x: float, groove: float) -> int:
 
 
 # %% [markdown]
-# The file is pressed and slid as a body, led by hand, and as the finger of a scene.
+# The mesh is pressed and slid twice: as a body, load by load, and as the finger of a scene.
 
 
 # %%

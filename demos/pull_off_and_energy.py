@@ -1,13 +1,13 @@
 # %% [markdown]
 # # Pull-off and energy
 #
-# A charged ridge sticks. Lifted by displacement it bears a tension, up to the pull-off force; then it lets go in a
-# jump, and what was stored is released: heat and sound in a real finger. Along the way, energy is conserved,
+# A charged ridge sticks. Lifted by displacement, the ridge bears a tension up to the pull-off force. Then it snaps off
+# in a jump, and the stored energy is released: as heat and sound in a real finger. Energy is conserved,
 #
 # $$\Delta E_{stored} + E_{dissipated} + E_{released} = -\int f_{ext}\, dh$$
 #
 # with h the height of the bone. The voltage source does no further work in this sum, since the potential of the
-# attraction at a constant voltage is part of what is stored; and a gap that no pressure changes does none either.
+# attraction at a constant voltage is part of the stored energy. A constant air gap does no work either.
 
 # %%
 import sys

@@ -7,7 +7,7 @@
 # $$a = \sqrt{\frac{4 f R}{\pi E^*}}, \qquad p(x) = \frac{2 f}{\pi a} \sqrt{1 - x^2 / a^2}, \qquad
 #   E^* = \frac{E}{1 - \nu^2}$$
 #
-# The theory is one of small strains on a half-space. So a is small here beside R and beside the pad's height.
+# The theory holds for small strains on a half-space. So a is small here compared with R and with the pad's height.
 
 # %%
 import sys
@@ -26,8 +26,8 @@ PEAK = 2 * FORCE / (np.pi * HALF_WIDTH)  # Pa
 
 
 # %% [markdown]
-# The pad has n facets over the half-width. The screen's springs are a hundred times as stiff as a facet, so that they
-# vanish with the mesh.
+# The pad has n facets over the half-width. The springs of the screen are a hundred times as stiff as a facet, so that
+# their effect vanishes as the mesh is refined.
 
 
 # %%
@@ -40,8 +40,8 @@ def pressed(n: int) -> fp.Body:
 
 
 # %% [markdown]
-# The skin's pressure is an array of facets and Gauss points. Stiff springs let it alternate inside a facet, not in the
-# mean of a facet. The central facets' mean is the peak.
+# The skin's pressure is an array of facets and Gauss points. With stiff springs the pressure alternates inside a facet,
+# but not its mean over a facet. The mean of the central facets is the peak.
 
 
 # %%

@@ -1,14 +1,14 @@
 # %% [markdown]
 # # Roughness, without finite elements
 #
-# Papillary ridges are rough on the scale of micrometres. The bearing area model turns the roughness into one number
-# that the finger's scale needs: the equivalent air gap $d_{eq}(p_c)$ at which smooth surfaces would attract as the
-# rough ones do under the mean contact pressure p_c,
+# Papillary ridges are rough on the scale of micrometres. The bearing area model reduces the roughness to one number for
+# the scale of the finger: the equivalent air gap $d_{eq}(p_c)$. Smooth surfaces at this gap attract as the rough ones
+# do under the mean contact pressure p_c,
 #
 # $$p_c = E^* q_0 h_{rms} e^{-\bar u / \gamma h_{rms}}, \qquad
 #   p_{el} = \frac{\varepsilon_0 U^2}{2 (h_0 + d_{eq})^2}$$
 #
-# (Forsbach et al. 2023, doi 10.3389/fmech.2022.1074393, Eqs. 3, 9 and 13). It needs NumPy and SciPy alone.
+# (Forsbach et al. 2023, doi 10.3389/fmech.2022.1074393, Eqs. 3, 9 and 13). The demo needs NumPy and SciPy alone.
 
 # %%
 import sys
@@ -26,8 +26,8 @@ EPS_0 = 8.854e-12  # F/m
 
 
 # %% [markdown]
-# A measured surface would come from a file, by the command `fingerpad topography`. Here one is made: Gaussian heights
-# with a self-affine spectrum, $C(q) \propto q^{-2-2H}$ beyond q_0. Its spectrum is then fitted as if it were measured.
+# A measured surface comes from a file, by the command `fingerpad topography`. Here the surface is synthetic: Gaussian
+# heights with a self-affine spectrum, $C(q) \propto q^{-2-2H}$ beyond q_0. The spectrum is then fitted as if measured.
 
 
 # %%

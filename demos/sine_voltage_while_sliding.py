@@ -1,9 +1,9 @@
 # %% [markdown]
 # # A sine voltage while sliding
 #
-# A haptic display drives its screen with $U(t) = \hat U \sin \omega t$. The attraction goes with the square of the
-# voltage, so friction has twice the frequency, and no share of the frequency itself. The mean of the squared voltage is
-# half of its peak's. The model is quasi-static, so that time is the order of the loads alone.
+# A haptic display drives its screen with $U(t) = \hat U \sin \omega t$. The attraction is proportional to the square of
+# the voltage, so friction has twice the frequency of the voltage and no part at this frequency itself. The mean of the
+# squared voltage is half its peak value. The model is quasi-static: time is only the order of the loads.
 
 # %%
 import sys
@@ -20,8 +20,8 @@ SMALL = Path(__file__).parent / "scenes" / "small_finger.toml"
 
 
 # %% [markdown]
-# A history is a list of loads; what a load leaves out stays as it is. The finger is pressed, slides until all points
-# slip, and slides on while the voltage follows the sine. The model takes the magnitude of the voltage.
+# A history is a list of loads; values that a load omits stay unchanged. The finger is pressed, slides until all points
+# slip, and slides on while the voltage follows the sine. The model uses the magnitude of the voltage.
 
 
 # %%

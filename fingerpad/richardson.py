@@ -1,8 +1,8 @@
-r"""Discretisation error, knob by knob, from states solved again on other meshes.
+r"""Discretisation error, one mesh parameter after the other, from states solved again on other meshes.
 
-A knob is a set of element sizes, or the step size, that is halved at once. Knobs are halved one at a time and never
-two in one solve, so that each change of a quantity q is one knob's: :math:`\Delta_k`, from twice the size in use to
-the size in use. An error of :math:`C_k h_k^{p_k}` each gives to first order
+A mesh parameter is a set of element sizes, or the step size, that is halved at once. Parameters are halved one at a
+time and never two in one solve, so that each change of a quantity q belongs to one of them: :math:`\Delta_k`, from
+twice the size in use to the size in use. An error of :math:`C_k h_k^{p_k}` each gives to first order
 
 .. math:: q - q_{exact} = \sum_k \frac{q(2 h_k) - q(h_k)}{2^{p_k} - 1}, \qquad
           E = \sum_k \frac{|\Delta_k|}{2^{p_k} - 1}
@@ -10,8 +10,8 @@ the size in use. An error of :math:`C_k h_k^{p_k}` each gives to first order
 (Richardson's extrapolation as an estimate; Roache 1994, doi 10.1115/1.2910291). E adds magnitudes: signs that cancel on
 one mesh need not on the next. It is of the finest mesh solved on: what shows the error also lowers it.
 
-What is told is E times a factor of safety, one for the share of each knob: :data:`ONCE` for a knob that was halved
-once, of which one change is all that is known, :data:`MORE` for others. Roache takes 3 and 1.25, for two meshes and for
+The estimated error is E with a factor of safety on the share of each parameter: :data:`ONCE` for a parameter that was
+halved once, of which a single change is known, :data:`MORE` for others. Roache takes 3 and 1.25, for two meshes and for
 three. Where an accuracy is asked for, it is this error that has to be within it: a finer mesh is the price.
 
 The orders are those known beforehand: p = 1, that of a contact's edge on a mesh that does not know where it is, for
@@ -38,9 +38,9 @@ from numpy.typing import ArrayLike
 Parts = Mapping[str, ArrayLike]  # a number, or the parts of a sum, shape (ridges,)
 
 ONCE, MORE = 2.0, 1.5
-"""Factors of safety on the share of a knob that was halved once, and of one that was halved more often.
+"""Factors of safety on the share of a parameter that was halved once, and of one that was halved more often.
 
-With them the error that is told covers the known one in at least 90 % of the known cases, of each kind of quantity, and
+With them the estimated error covers the known one in at least 90 % of the known cases, of each kind of quantity, and
 in the default scene in all: ``docs/accuracy.json`` has the cases, ``benchmarks/calibration.py`` counts them for
 ``docs/accuracy.md``, and ``tests/test_calibration.py`` holds the factors to it.
 """
@@ -48,21 +48,21 @@ in the default scene in all: ``docs/accuracy.json`` has the cases, ``benchmarks/
 
 @dataclass
 class MeshParameter:
-    """What halving one knob changed, from its first size to the one in use."""
+    """What halving one mesh parameter changed, from its first size to the one in use."""
 
     changes: list[dict[str, float]] = field(default_factory=list)
     """By how much each quantity changed, at each halving; magnitudes."""
 
-    def see(self, coarse: Parts, fine: Parts) -> None:
-        """Take note of values before and after the next halving."""
+    def record(self, coarse: Parts, fine: Parts) -> None:
+        """Record values before and after the next halving."""
         self.changes.append({name: _change(coarse[name], fine[name]) for name in coarse if name in fine})
 
     def acts_on(self, name: str) -> bool:
-        """Return whether the knob has a part in a quantity's error."""
+        """Return whether the parameter has a part in a quantity's error."""
         return name in self.changes[-1]
 
     def share(self, name: str) -> float:
-        """Return the estimated part of a quantity's error that is this knob's, at the size in use, in its unit."""
+        """Return the estimated part of a quantity's error that is this parameter's, at the size in use, in its unit."""
         change = self.changes[-1][name]
         if len(self.changes) > 1:
             change = max(change, self.changes[-2][name] / 4)
@@ -83,36 +83,36 @@ def order(name: str) -> int:
     return 2 if "_sed_" in name else 1
 
 
-def errors(knobs: Mapping[str, MeshParameter], names: Sequence[str]) -> dict[str, float]:
+def errors(parameters: Mapping[str, MeshParameter], names: Sequence[str]) -> dict[str, float]:
     """Return the error of each quantity, with its factors of safety, in its unit."""
-    return {name: sum(knob.safe(name) for knob in knobs.values() if knob.acts_on(name)) for name in names}
+    return {name: sum(each.safe(name) for each in parameters.values() if each.acts_on(name)) for name in names}
 
 
-def to_halve(knobs: Mapping[str, MeshParameter], allowed: Mapping[str, float]) -> list[str]:
-    """Return the knobs to halve once more on the way to errors within what is allowed, by name.
+def to_refine(parameters: Mapping[str, MeshParameter], allowed: Mapping[str, float]) -> list[str]:
+    """Return the parameters to halve once more on the way to errors within what is allowed, by name.
 
     Of each quantity that is not within it, as few as will do by their orders, those with the largest shares first, and
     none that spends no more than its equal part. One halving at a time, since the order is that of small changes, and a
     mesh finer than need be costs more than one more round.
 
     Args:
-        knobs: that can be halved, with what halving them changed.
+        parameters: that can be halved, with what halving them changed.
         allowed: largest error of each quantity, in its unit.
 
     Returns:
-        In the order of ``knobs``; empty if every error is within what is allowed.
+        In the order of ``parameters``; empty if every error is within what is allowed.
     """
     found: set[str] = set()
-    estimate = errors(knobs, list(allowed))
+    estimate = errors(parameters, list(allowed))
     for name, most in allowed.items():
         left = estimate[name]
-        shares = {key: knob.safe(name) for key, knob in knobs.items() if knob.acts_on(name)}
+        shares = {key: each.safe(name) for key, each in parameters.items() if each.acts_on(name)}
         for key in sorted(shares, key=shares.__getitem__, reverse=True):
             if left <= most or shares[key] * len(shares) <= most:
                 break
             left -= shares[key] * (1 - 2 ** -order(name))
             found.add(key)
-    return [key for key in knobs if key in found]
+    return [key for key in parameters if key in found]
 
 
 def plus_minus(value: float, error: float) -> str:

@@ -1,6 +1,6 @@
 """Run a script with a small finger in the place of the default one: python3 tests/small_finger.py SCRIPT [ARG ...]
 
-What a reader of the script sees is the whole finger; the lines are the same.
+The script's lines stay as they are.
 """
 
 import runpy
@@ -20,14 +20,13 @@ def small(f_ext: float = 75.0, voltage: float = 200.0, **values: Any) -> Scene:
     return load(SMALL).replace(f_ext=f_ext * LIGHTER, voltage=voltage / 2, **values)
 
 
-def ends(scene: Scene, *args: Any, f_ext: list[float], voltage: list[float], **more: Any) -> fingerpad.Sweep:
-    """Return the first and the last point of a sweep."""
-    axes = {"voltage": [voltage[0] / 2, voltage[-1] / 2], "f_ext": [f_ext[-1] * LIGHTER]}  # in the order of the demo
-    return SWEEP(scene.replace(output={"errors": False}), *args, **more, **axes)
+def default(scene: Scene, *args: Any, **more: Any) -> fingerpad.Sweep:
+    """Return a sweep of the default scene: the closed form is made for its finger."""
+    return SWEEP(Scene(), *args, **more)
 
 
 SWEEP = fingerpad.sweep
 if __name__ == "__main__":
-    fingerpad.Scene, fingerpad.sweep = small, ends  # type: ignore[misc,assignment]
+    fingerpad.Scene, fingerpad.sweep = small, default  # type: ignore[misc,assignment]
     sys.argv = sys.argv[1:]
     runpy.run_path(sys.argv[0], run_name="__main__")

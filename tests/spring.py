@@ -16,7 +16,8 @@ from variational.body import Body
 from variational.contact.penalty import Penalty
 from variational.materials.saint_venant import SaintVenant
 from variational.problem import Interface
-from variational.solvers.newton import Control, Solver
+from variational.solvers.equations import Control
+from variational.solvers.newton import Solver
 
 WIDTH, HEIGHT, GAP = 0.125e-3, 0.5e-3, 6e-6
 YOUNG, VOLTAGE, H_0, D_EQ = 4e6, 200.0, 0.514e-6, 2e-6

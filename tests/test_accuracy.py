@@ -11,21 +11,21 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad.accuracy import refinement
+from fingerpad.accuracy import solves
 from fingerpad.accuracy.recompute import Solve, State
-from fingerpad.accuracy.refinement import Refinement
+from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.accuracy.rigid_screen import ORDER
 from fingerpad.io.interrupt import Interrupted
-from fingerpad.io.result import Result
 from fingerpad.model.options import plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.richardson import MORE, ONCE, plus_minus
-from fingerpad.runs import full as running
+from fingerpad.runs import attempt
 from fingerpad.runs.batch import key
 from fingerpad.scene import SceneError, from_data
-from tests.runs import run
+from tests.runs import SMALL_FINGER, run
 from variational.solvers.continuation import StepFailed
-from variational.solvers.newton import Control
+from variational.solvers.equations import Control
+from variational.solvers.failure import NotConverged
 from variational.solvers.transfer import StateSnapshot
 from variational.state import ContactState
 
@@ -51,7 +51,7 @@ def change(solve: Solve, **values) -> None:
     solve.states["full_slip"] = replace(kept, state=replace(kept.state, **values))
 
 
-def known(scene, needed, states, comm, look=None) -> Solve:
+def known(scene, needed, states, comm, views=False) -> Solve:
     row = contact(mu_app=mu_app(scene.mesh), f_t=75 * mu_app(scene.mesh))
     sed = {0: 1e3 * (1 + (scene.mesh.receptor / 60e-6) ** 2), 1: 10.0}
     return Solve({"full_slip": State(NOTHING, 1, row, np.full(17, 1e-3 / 17), sed)}, scene.mesh, 1000, 10, 1.0)
@@ -60,7 +60,7 @@ def known(scene, needed, states, comm, look=None) -> Solve:
 def search(monkeypatch, asked, solve=known, pause=lambda: None) -> Refinement:
     memory = {"numerics": {"memory": 1e15}}  # of solves that are none
     scene = from_data(({"accuracy": asked} if asked else {}) | memory)
-    monkeypatch.setattr(refinement, "solve_again", solve)
+    monkeypatch.setattr(solves, "solve_again", solve)
     found = Refinement(
         scene, plan(scene), known(scene, None, {}, MPI.COMM_SELF), MPI.COMM_SELF, lambda text: None, pause
     )
@@ -90,7 +90,7 @@ def test_only_what_costs_accuracy_is_refined(monkeypatch):
     """Each once, for its share; then 0.08 is asked for: the contact's, twice 0.04, is more than half of it, the
     growth's, twice 0.015, is not."""
     found = search(monkeypatch, {"mu_app": 0.08})
-    assert found.halved == {"contact": 2, "bulk": 1}
+    assert found.refinements == {"contact": 2, "bulk": 1}
 
 
 def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
@@ -105,24 +105,24 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
         row = contact(contact_length=length)
         return Solve({"charged": State(NOTHING, 0, row, np.array([length]), {})}, mesh, 1000, 10, 1.0)
 
-    def with_steps(search, n: int) -> Solve:
-        paths.append(n)
-        found = stepped(0.5**n, search.scene.mesh)
-        search.solves.append(found)
+    def with_steps(search, scale: float) -> Solve:
+        paths.append(scale)
+        found = stepped(scale / 2, scene.mesh)
+        search.found.append(found)
         return found
 
-    monkeypatch.setattr(Refinement, "_with_steps", with_steps)
+    monkeypatch.setattr(solves.Solves, "with_steps", with_steps)
     monkeypatch.setattr(
-        refinement,
+        solves,
         "solve_again",
-        lambda scene, needed, states, comm, look: Solve(dict(states), scene.mesh, 1000, 10, 1.0),
+        lambda scene, options, states, comm, views: Solve(dict(states), scene.mesh, 1000, 10, 1.0),
     )
     scene = from_data({"accuracy": {"contact_length": 0.04}, "numerics": {"step_scale": 2.0}})
     path = stepped(1.0, scene.mesh)
     found = Refinement(scene, plan(scene), path, MPI.COMM_SELF, lambda text: None, lambda: None)
     found.run()
-    assert paths == [-1, 1, 2]
-    assert found.halved == {"contact": 1, "bulk": 1, "steps": 2}
+    assert paths == [4.0, 1.0, 0.5]
+    assert found.refinements == {"contact": 1, "bulk": 1, "steps": 2}
     assert found.base.values()["normal_contact_length"] == pytest.approx(1.025e-3, rel=1e-12)
     assert found.estimates()["normal_contact_length"] == pytest.approx(MORE * 0.025e-3, rel=1e-9)
     assert found.summary()["step_scale"] == 0.5, "a quarter of the scene's"
@@ -131,8 +131,8 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
 def test_receptors_are_halved_where_energy_density_is_asked_for(monkeypatch):
     """What is allowed is a part of the largest site's; of the second site's own it is never asked for."""
     found = search(monkeypatch, {"sed": 0.005})
-    assert found.halved["receptor"] > 1
-    assert found.halved["contact"] == 1
+    assert found.refinements["receptor"] > 1
+    assert found.refinements["contact"] == 1
     largest = found.base.values()["slip_sed_0"]
     assert found.allowed() == pytest.approx({"slip_sed_0": 0.005 * largest, "slip_sed_1": 0.005 * largest}, rel=1e-12)
 
@@ -141,7 +141,7 @@ def test_estimate_alone_refines_nothing(monkeypatch):
     """Coarser meshes tell the error: none is finer than the scene's. The last one tells of the penalty."""
     sizes = []
 
-    def noted(scene, needed, states, comm, look=None):
+    def noted(scene, needed, states, comm, views=False):
         sizes.append(scene.mesh)
         return known(scene, needed, states, comm)
 
@@ -160,7 +160,7 @@ def test_estimate_alone_refines_nothing(monkeypatch):
     assert told["error"] == pytest.approx(ONCE * told["estimate"], rel=1e-12)
 
 
-def springs(scene, needed, states, comm, look=None) -> Solve:
+def springs(scene, needed, states, comm, views=False) -> Solve:
     """A contact that springs of the screen make longer, by their law."""
     solve = known(scene, needed, states, comm)
     if scene.contact.formulation == "penalty":
@@ -170,12 +170,12 @@ def springs(scene, needed, states, comm, look=None) -> Solve:
 
 def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
     """A rigid screen takes off what the springs put on, and no part of that is in the error of the mesh."""
-    monkeypatch.setattr(refinement, "solve_again", springs)
+    monkeypatch.setattr(solves, "solve_again", springs)
     scene, lines = from_data({}), list[str]()
     path = springs(scene, None, {}, MPI.COMM_SELF)
     found = Refinement(scene, plan(scene), path, MPI.COMM_SELF, lines.append, lambda: None)
     found.run()
-    state = found.states({"full_slip": contact()})["full_slip"]
+    state = with_errors(found, {"full_slip": contact()})["full_slip"]
     assert state.penalty.contact_length == pytest.approx(-1e-5, rel=1e-9)
     assert found.summary()["quantities"]["slip_contact_length"]["penalty"] == state.penalty.contact_length
     assert state.error.contact_length == 0
@@ -185,48 +185,48 @@ def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
 
 @pytest.mark.parametrize("formulation", ["nitsche", "augmented"])
 def test_formulations_without_a_penalty_tell_none(monkeypatch, formulation):
-    monkeypatch.setattr(refinement, "solve_again", springs)
+    monkeypatch.setattr(solves, "solve_again", springs)
     scene = from_data({"contact": {"formulation": formulation}})
     found = Refinement(
         scene, plan(scene), springs(scene, None, {}, None), MPI.COMM_SELF, lambda text: None, lambda: None
     )
     found.run()
     assert found.penalty == {}
-    assert found.states({"full_slip": contact()})["full_slip"].penalty.known() == {}
+    assert with_errors(found, {"full_slip": contact()})["full_slip"].penalty.known() == {}
 
 
 def test_penalty_that_cannot_be_told_is_noted(monkeypatch):
     """The run and its error stay."""
 
-    def lost(scene, needed, states, comm, look=None):
+    def lost(scene, needed, states, comm, views=False):
         if scene.contact.eps_n > 1.5e12:
             raise StepFailed("full slip found no equilibrium")
         return known(scene, needed, states, comm)
 
     found = search(monkeypatch, {}, lost)
     assert not found.failure
-    assert found.notes == ["what the penalty changes could not be estimated: full slip found no equilibrium"]
+    assert found.notes == ["the effect of the penalty could not be estimated: full slip found no equilibrium"]
     assert found.estimates()["slip_mu_app"] > 0
 
 
 def test_estimate_alone_that_is_lost_is_no_failure(monkeypatch):
     """The run is what was asked for; that it comes without its error is said."""
 
-    def lost(scene, needed, states, comm, look=None):
+    def lost(scene, needed, states, comm, views=False):
         raise StepFailed("full slip found no equilibrium")
 
     found = search(monkeypatch, {}, lost)
     assert not found.failure
     assert found.notes == [
         "discretisation errors could not be estimated: full slip found no equilibrium",
-        "what the penalty changes could not be estimated: full slip found no equilibrium",
+        "the effect of the penalty could not be estimated: full slip found no equilibrium",
     ]
 
 
 def test_says_when_the_accuracy_is_out_of_reach(monkeypatch):
     """An error that no refinement lowers."""
 
-    def stubborn(scene, needed, states, comm, look=None):
+    def stubborn(scene, needed, states, comm, views=False):
         solve = known(scene, needed, states, comm)
         sign = 1 if round(np.log2(20e-6 / scene.mesh.contact)) % 2 else -1
         change(solve, mu_app=EXACT * (1 + 0.1 * sign))
@@ -238,7 +238,7 @@ def test_says_when_the_accuracy_is_out_of_reach(monkeypatch):
 
 
 def test_says_when_a_state_is_lost(monkeypatch):
-    def lost(scene, needed, states, comm, look=None):
+    def lost(scene, needed, states, comm, views=False):
         raise StepFailed("full slip found no equilibrium")
 
     found = search(monkeypatch, {"mu_app": 0.01}, lost)
@@ -257,7 +257,7 @@ def test_stops_when_it_is_asked_to(monkeypatch):
 
 
 def test_says_where_a_ridge_comes_or_goes(monkeypatch):
-    def fewer(scene, needed, states, comm, look=None):
+    def fewer(scene, needed, states, comm, views=False):
         solve = known(scene, needed, states, comm)
         change(solve, ridges_in_contact=16 if scene.mesh.contact < 20e-6 else 17)
         return solve
@@ -319,33 +319,26 @@ def test_plus_minus(value, error, text):
 
 # -- from which mesh ---------------------------------------------------------------------------------------
 @pytest.mark.parametrize(
-    ("start", "helps", "tried"),
-    [(20e-6, True, [20e-6, 10e-6]), (20e-6, False, [20e-6]), (8e-6, True, [8e-6])],
+    ("start", "helps", "finer"),
+    [(20e-6, True, 10e-6), (20e-6, False, None), (8e-6, True, None)],
 )
 @pytest.mark.parametrize("asked", [{"mu_app": 0.01}, {}])
-def test_starts_again_finer_where_the_path_is_lost(monkeypatch, tmp_path, asked, start, helps, tried):
-    """20 um loses the path here and 10 um does not; not where that cannot help, nor below the limit."""
-    sizes = []
-
-    def once(scene, place, comm, lines, failed_starts):
-        sizes.append(scene.mesh.contact)
-        lost = scene.mesh.contact != 10e-6
-        record = {"failed_starts": list(failed_starts)}
-        failure = "no equilibrium" if lost else ""
-        return Result(scene, "full", None, None, None, failure=failure, record=record), lost and helps
-
-    monkeypatch.setattr(running, "_run", once)
+def test_starts_again_finer_where_the_path_is_lost(asked, start, helps, finer):
+    """With half the contact size; not where that cannot help, nor below the limit."""
     scene = from_data(({"accuracy": asked} if asked else {}) | {"mesh": {"contact": start}})
-    summary = run(scene, tmp_path, MPI.COMM_SELF)
-    assert sizes == tried
-    assert [each["contact"] for each in summary["failed_starts"]] == tried[:-1]
+    lost: StepFailed = StepFailed("no equilibrium")
+    lost.__cause__ = NotConverged("DIVERGED_LOCAL_MIN" if helps else "NOT_A_NUMBER", False)
+    if asked and not helps:  # any loss of a mesh to start from may be its coarseness
+        lost = Interrupted(signal.SIGTERM, 3)
+    restart = attempt._finer(scene, plan(scene), lost)
+    assert (restart and restart.scene.mesh.contact) == finer
 
 
 # -- a small finger ----------------------------------------------------------------------------------------
 SMALL = {
     "f_ext": 1.0,
     "voltage": 100.0,
-    "geometry": {"ridge_count": 9},
+    "geometry": SMALL_FINGER,
     "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
     "accuracy": {"mu_app": 0.5},
 }
@@ -399,7 +392,7 @@ def test_steps_follow_the_scene_s_scale():
     assert scene.parameters()["numerics"]["step_scale"] == 0.5
     assert "step_scale" not in from_data(SMALL).parameters()["numerics"]
     simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
-    assert simulation.continuation.step_scale == 0.5
+    assert simulation.finger.continuation.step_scale == 0.5
 
 
 @pytest.mark.parametrize(
@@ -411,4 +404,4 @@ def test_loads_to_normal_contact(places, kept):
     loads = [{"name": "away", "bone_height": 1e-5}, {"name": "press", "f_ext": 1.0}, {"name": "slide"}]
     moves = [{} if place is None else {"bone_x": place} for place in places]
     scene = from_data({"history": [load | move for load, move in zip(loads, moves, strict=True)]})
-    assert refinement.loads_to_normal_contact(scene) == scene.history[:kept]
+    assert solves.loads_to_normal_contact(scene) == scene.history[:kept]

@@ -13,9 +13,10 @@ import fingerpad as fp
 from fingerpad.io.result import Cost
 from fingerpad.io.states import PREFIXES, STATES
 from fingerpad.model.hints import finer_mesh_may_help
-from fingerpad.runs import full, sweep
+from fingerpad.runs import attempt, full, sweep
 from fingerpad.runs.processes import End
 from fingerpad.scene import from_data
+from tests.runs import SMALL_FINGER
 from variational.solvers.continuation import StepFailed
 from variational.solvers.failure import NotConverged
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
@@ -23,7 +24,7 @@ from variational.state import CONDITIONS, RESULTS, ContactState, Errors
 SMALL = {
     "f_ext": 1.0,
     "voltage": 60.0,
-    "geometry": {"ridge_count": 9},
+    "geometry": SMALL_FINGER,
     "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
     "output": {"receptors": False},
 }
@@ -182,18 +183,18 @@ def test_smaller_elements_are_tried_where_that_is_the_advice(reason, helps):
 @pytest.mark.slow
 def test_a_run_starts_again_with_smaller_elements(monkeypatch):
     """Every solve of 40 um elements fails; with 20 um the loads are reached, and the result says what was tried."""
-    solve = full.Simulation.run
+    solve = attempt.Simulation.run
 
     def lost(self):
-        if self.scene.mesh.contact > 30e-6:
+        if self.finger.contact_size > 30e-6:
             raise StepFailed("no equilibrium") from NotConverged("DIVERGED_LOCAL_MIN", False)
-        solve(self)
+        return solve(self)
 
-    monkeypatch.setattr(full.Simulation, "run", lost)
+    monkeypatch.setattr(attempt.Simulation, "run", lost)
     lean = {"history": [{"name": "press", "f_ext": 0.5}], "output": {"receptors": False, "errors": False}}
     found = fp.run(from_data({key: SMALL[key] for key in ("geometry", "mesh")} | lean))
     assert not found.failure and found.charged.mesh_contact == 20e-6
-    assert [start["contact"] for start in found.to_dict()["failed_starts"]] == [40e-6]
+    assert [restart["contact"] for restart in found.to_dict()["restarts"]] == [20e-6]
     assert "contact size of 40 µm; the run started again" in str(found)
 
 

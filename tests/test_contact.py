@@ -18,7 +18,8 @@ from variational.materials.ogden import Ogden
 from variational.problem import Interface
 from variational.quantities import Observer
 from variational.roughness.bam import BearingArea
-from variational.solvers.newton import Control, Solver
+from variational.solvers.equations import Control, Equations
+from variational.solvers.newton import Solver
 
 pytestmark = pytest.mark.mpi
 WIDTH, HEIGHT = 1e-3, 0.5e-3
@@ -183,7 +184,7 @@ def test_ridge():
     solver = make(load(MPI.COMM_WORLD, ridge(5e-6)), eps_n=1e12)
     for step in range(1, 7):
         solver.control = Control(0.0, -step * 10e-6)
-        solver.solve(creep=True)
+        solver.solve(pseudo_transient=True)
     loads = Observer(solver.problem).ridge_loads()
     assert loads.f_contact[0] == pytest.approx(36.048, rel=2e-4)
     assert solver.reaction[1] == pytest.approx(loads.f_contact[0], abs=100 * TOLERANCE)
@@ -260,9 +261,9 @@ def test_force_is_held_while_sliding(slide):
 def test_tolerance_belongs_to_its_solver(body):
     """A second solver ends at its own tolerance, not at that of the one before it."""
     problem, rim = make(body).problem, body.facet_tags.find(tags.BONE_RIM)
-    coarse, fine = Solver(problem, rim, 1e3, 1e-3), Solver(problem, rim, 1.0, 1e-6)
-    assert coarse._snes.getTolerances()[1] == pytest.approx(1.0)
-    assert fine._snes.getTolerances()[1] == pytest.approx(1e-6)
+    coarse, fine = (Solver(Equations(problem, rim), *scales) for scales in ((1e3, 1e-3), (1.0, 1e-6)))
+    assert coarse.iteration.snes.getTolerances()[1] == pytest.approx(1.0)
+    assert fine.iteration.snes.getTolerances()[1] == pytest.approx(1e-6)
 
 
 # -- what a solve leaves -------------------------------------------------------------------------------
@@ -288,7 +289,7 @@ def test_imbalance_is_the_largest_free_force(body):
 def test_imbalance_of_a_body_out_of_balance(body):
     """A tolerance of a hundredth of the force leaves more than one of a billionth, and says so."""
     solver = make(body)
-    coarse = Solver(solver.problem, body.facet_tags.find(tags.BONE_RIM), 5.0, 1e-2)
+    coarse = Solver(Equations(solver.problem, body.facet_tags.find(tags.BONE_RIM)), 5.0, 1e-2)
     coarse.control = Control(0.0, -0.01 * HEIGHT)
     coarse.solve()
     assert 1e-9 < coarse.imbalance() < 1e-2

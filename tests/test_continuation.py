@@ -17,18 +17,18 @@ from variational.solvers.failure import NotConverged
 def sliding():
     """Return a function that slides a pressed block by 0.6 mm, where solves in a range of loads fail."""
 
-    def slide(first, last, cycling=False, times=1000, each=0, but_creeping=False):
+    def slide(first, last, cycling=False, times=1000, each=0, but_pseudo_transient=False):
         run = over(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), MU_F, 1e11, 1e10, held=False).continuation
         solver = run.solver
         run.run(Target("press", bone_height=-2e-6))
         solve, reached = run.coupling.solve, []
 
-        def failing(creep=False):
+        def failing(pseudo_transient=False):
             nonlocal times
-            if first <= solver.control.x <= last and times > 0 and not (creep and but_creeping):
+            if first <= solver.control.x <= last and times > 0 and not (pseudo_transient and but_pseudo_transient):
                 times -= 1
                 raise NotConverged("TEST", False, cycling=cycling)
-            solve(creep)
+            solve(pseudo_transient)
             solver.counts.factorisations += each
 
         run.coupling.solve = failing
@@ -75,7 +75,7 @@ def test_steps_grow_again_after_a_cut(sliding, each):
 
 def test_jump_is_not_crept_up_to_for_ever(sliding):
     """Of a jump at 240 um each step of 60, 30, 15 and 7.5 um is cut once; the next is let jump."""
-    reached = sliding(0.2399e-3, 0.2405e-3, each=100, but_creeping=True)
+    reached = sliding(0.2399e-3, 0.2405e-3, each=100, but_pseudo_transient=True)
     assert reached[-1][0] == pytest.approx(0.6e-3)
     cut = [(x / 1e-6, len(attempt.cutbacks)) for x, attempt in reached if attempt.cutbacks]
     assert cut == [(pytest.approx(x), 1) for x in (210, 225, 232.5, 236.25)]

@@ -36,7 +36,7 @@ class Stub:
         self.surface, self.state = SimpleNamespace(names=list(range(ridges))), lambda: None
         self.coupling = Coupling(self, self, closure)
 
-    def solve(self, creep: bool = False) -> None:
+    def solve(self, pseudo_transient: bool = False) -> None:
         """The formula needs no solve."""
 
     def ridge_loads(self, state, by_gap):

@@ -24,7 +24,8 @@ from variational.materials.saint_venant import SaintVenant
 from variational.pressure import LayerwisePressure
 from variational.problem import Interface, Problem
 from variational.quantities import Observer
-from variational.solvers.newton import Control, Solver
+from variational.solvers.equations import Control, Equations
+from variational.solvers.newton import Solver
 from variational.surface import Surface
 
 pytestmark = pytest.mark.mpi
@@ -41,7 +42,7 @@ def make(body, cell_tags, solids, element, eps_n=EPS_N) -> Solver:
     surface = Surface(body.mesh, body.facet_tags, {0: tags.ridge(0)})
     problem = Problem(body.mesh, cell_tags, surface, solids, Interface(Penalty(eps_n, 1e11), 0.0, 0.514e-6), element)
     sides = fem.locate_dofs_topological(problem.V, 1, body.facet_tags.find(tags.SIDES))
-    return Solver(problem, body.facet_tags.find(tags.BONE_RIM), 1.0, TOLERANCE, [(2 * sides, 0.0)])
+    return Solver(Equations(problem, body.facet_tags.find(tags.BONE_RIM), [(2 * sides, 0.0)]), 1.0, TOLERANCE)
 
 
 BLOCK = block(WIDTH, HEIGHT, 0.125e-3)
@@ -72,14 +73,15 @@ def pressed_ridge(element, poisson, times=0) -> float:
     solver = make(body, body.cell_tags, {tags.STRATUM_CORNEUM: Ogden(G_0, ALPHA, poisson)}, element)
     for y in np.linspace(0, -20e-6, 21)[1:]:
         solver.control = Control(0.0, float(y))
-        solver.solve(creep=True)
+        solver.solve(pseudo_transient=True)
     return float(Observer(solver.problem).ridge_loads().f_contact[0])
 
 
 # -- derivatives ---------------------------------------------------------------------------------------
 def disturb(solver) -> np.ndarray:
     """Set a state without symmetry and force control, and return this rank's part of a direction."""
-    x, first = solver.layout.create_vector(), solver._first_row
+    x = solver.layout.create_vector()
+    first = x.getOwnershipRange()[0]
     wave = np.sin(0.7 + 1.3 * np.arange(solver.layout.global_size) ** 1.1)[first : first + solver.layout.local_size]
     x.array_w[:] = 2e-6 * wave
     solver.x.array_w[:] = x.array_r
@@ -89,7 +91,7 @@ def disturb(solver) -> np.ndarray:
 
 def imbalance(solver, x) -> np.ndarray:
     f = solver.layout.create_vector()
-    solver._residual(None, x, f)
+    solver.equations.residual(x, f)
     return f.array_r.copy()
 
 
@@ -109,8 +111,9 @@ def test_jacobian(element):
     step, x = solver.layout.create_vector(), solver.x.copy()
     step.array_w[:] = move
     start = imbalance(solver, x)
-    solver._jacobian(None, x, solver.jacobian, solver._K)
-    solver.jacobian.mult(step, f)
+    tangent = solver.iteration.tangent
+    tangent.update(None, x, tangent.relative, tangent.matrix)
+    tangent.relative.mult(step, f)
     remainders = []
     for part in STEPS:
         x.array_w[:] = solver.x.array_r + part * move
@@ -127,12 +130,12 @@ def test_residual_is_the_energys_derivative():
 
     def energy(part):
         x.array_w[:] = solver.x.array_r + part * move
-        solver.to_fields(x)
+        solver.equations.to_fields(x)
         return MPI.COMM_WORLD.allreduce(fem.assemble_scalar(problem.energy))
 
     r = imbalance(solver, x)
     free = np.ones(len(r), dtype=bool)
-    free[solver._prescribed()[0] - solver._first_row] = False
+    free[solver.equations.local(solver.equations.prescribed_rows())] = False
     move[~free] = 0.0
     slope = MPI.COMM_WORLD.allreduce(float(r @ move))
     step = solver.layout.create_vector()
@@ -146,7 +149,7 @@ def test_residual_is_the_energys_derivative():
 def test_mixed_jacobian_is_symmetric():
     """Displacement and pressure derive from one energy. Tolerance: roundoff."""
     solver = layered("P2-P1", eps_n=0.0)
-    move, A = disturb(solver), solver._K
+    move, A = disturb(solver), solver.iteration.tangent.matrix
     blocks = [solver.problem.jacobian, *solver.problem.pressure_jacobian]
     for form, part in zip(blocks, ((0, 0), (0, 1), (1, 0), (1, 1)), strict=True):
         solver.layout.add_to_matrix(A, form, part)
@@ -243,7 +246,7 @@ def pressed_layers(element, comm=MPI.COMM_WORLD) -> Problem:
     solver = layered(element, build=ridge(40e-6, height=HEIGHT), comm=comm)
     for y in (-5e-6, -10e-6, -15e-6, -20e-6):
         solver.control = Control(0.0, y)
-        solver.solve(creep=True)
+        solver.solve(pseudo_transient=True)
     return solver.problem
 
 

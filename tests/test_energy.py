@@ -15,7 +15,7 @@ from variational.attraction import electroadhesion
 from variational.attraction.electroadhesion import Attraction
 from variational.energy import Balance, EnergyBook
 from variational.quantities import Observer
-from variational.solvers.newton import Control
+from variational.solvers.equations import Control
 
 
 @pytest.fixture(scope="module", params=["block", "ridge"])

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fingerpad.richardson import MORE, ONCE, MeshParameter, errors, to_halve
+from fingerpad.richardson import MORE, ONCE, MeshParameter, errors, to_refine
 
 
 def law(order: float, c: float = 0.1):
@@ -10,28 +10,28 @@ def law(order: float, c: float = 0.1):
     return lambda n: {"q": 1 + c * 2 ** (-order * n)}
 
 
-def knob(q, *at: int) -> MeshParameter:
-    """Return a knob that was halved from each of these on."""
+def parameter(q, *at: int) -> MeshParameter:
+    """Return a parameter that was halved from each of these on."""
     found = MeshParameter()
     for n in at:
-        found.see(q(n), q(n + 1))
+        found.record(q(n), q(n + 1))
     return found
 
 
 @pytest.mark.parametrize("at", [(0,), (0, 1), (0, 1, 2)])
 def test_first_order_is_found_exactly(at):
     """What is left at the size in use. Roundoff of a difference of ones."""
-    assert knob(law(1.0), *at).share("q") == pytest.approx(0.1 / 2 ** (at[-1] + 1), rel=1e-12)
+    assert parameter(law(1.0), *at).share("q") == pytest.approx(0.1 / 2 ** (at[-1] + 1), rel=1e-12)
 
 
 def test_second_order_is_overestimated_three_times():
     """First order is taken: the whole of the last change, of which second order leaves a third."""
-    assert knob(law(2.0), 0, 1).share("q") == pytest.approx(3 * 0.1 / 16, rel=1e-12)
+    assert parameter(law(2.0), 0, 1).share("q") == pytest.approx(3 * 0.1 / 16, rel=1e-12)
 
 
 def test_energy_density_is_taken_for_second_order():
     found = MeshParameter()
-    found.see({"slip_sed_0": 1.3}, {"slip_sed_0": 1.0})
+    found.record({"slip_sed_0": 1.3}, {"slip_sed_0": 1.0})
     assert found.share("slip_sed_0") == pytest.approx(0.1, rel=1e-12)
 
 
@@ -39,46 +39,46 @@ def test_energy_density_is_taken_for_second_order():
 def test_accidentally_small_change_is_not_believed(name, left):
     """A change of nothing at all counts as the quarter of the one before it that second order leaves."""
     found = MeshParameter()
-    found.see({name: 1.1}, {name: 1.0})
-    found.see({name: 1.0}, {name: 1.0})
+    found.record({name: 1.1}, {name: 1.0})
+    found.record({name: 1.0}, {name: 1.0})
     assert found.share(name) == pytest.approx(left, rel=1e-12)
 
 
 def test_ridges_that_change_both_ways_do_not_cancel():
     """Sixteen that go up and down by 0.1, a sum that does not change: 0.4, as if their signs were random."""
     found = MeshParameter()
-    found.see({"length": [1.0] * 16}, {"length": [1.1, 0.9] * 8})
+    found.record({"length": [1.0] * 16}, {"length": [1.1, 0.9] * 8})
     assert found.share("length") == pytest.approx(0.4, rel=1e-12)
 
 
 def test_ridges_that_change_one_way_add_up():
     found = MeshParameter()
-    found.see({"length": [1.0] * 16}, {"length": [1.1] * 16})
+    found.record({"length": [1.0] * 16}, {"length": [1.1] * 16})
     assert found.share("length") == pytest.approx(1.6, rel=1e-12)
 
 
-def test_errors_of_knobs_add_up_whatever_their_signs():
-    """Two knobs of first order whose errors cancel on this mesh."""
-    knobs = {"a": knob(law(1.0, 0.1), 0), "b": knob(law(1.0, -0.1), 0)}
-    assert errors(knobs, ["q"])["q"] == pytest.approx(ONCE * 0.1, rel=1e-12)
+def test_errors_of_parameters_add_up_whatever_their_signs():
+    """Two parameters of first order whose errors cancel on this mesh."""
+    parameters = {"a": parameter(law(1.0, 0.1), 0), "b": parameter(law(1.0, -0.1), 0)}
+    assert errors(parameters, ["q"])["q"] == pytest.approx(ONCE * 0.1, rel=1e-12)
 
 
-def test_each_knob_has_its_own_factor_of_safety():
+def test_each_parameter_has_its_own_factor_of_safety():
     """Shares of 0.05, known from one change, and 0.025, from two."""
-    knobs = {"a": knob(law(1.0), 0), "b": knob(law(1.0), 0, 1)}
-    assert errors(knobs, ["q"])["q"] == pytest.approx(ONCE * 0.05 + MORE * 0.025, rel=1e-12)
+    parameters = {"a": parameter(law(1.0), 0), "b": parameter(law(1.0), 0, 1)}
+    assert errors(parameters, ["q"])["q"] == pytest.approx(ONCE * 0.05 + MORE * 0.025, rel=1e-12)
 
 
-def test_a_knob_that_does_not_act_on_a_quantity_is_left_out():
+def test_a_parameter_that_does_not_act_on_a_quantity_is_left_out():
     """The steps of normal contact say nothing of full slip."""
-    knobs = {"a": knob(law(1.0), 0), "steps": MeshParameter([{"other": 1.0}])}
-    assert errors(knobs, ["q"])["q"] == pytest.approx(ONCE * 0.05, rel=1e-12)
+    parameters = {"a": parameter(law(1.0), 0), "steps": MeshParameter([{"other": 1.0}])}
+    assert errors(parameters, ["q"])["q"] == pytest.approx(ONCE * 0.05, rel=1e-12)
 
 
 def test_nothing_is_halved_within_the_tolerance():
     """The tolerance holds for the share of 0.05 with its factor of safety."""
-    assert to_halve({"a": knob(law(1.0), 0)}, {"q": ONCE * 0.0501}) == []
-    assert to_halve({"a": knob(law(1.0), 0)}, {"q": ONCE * 0.0499}) == ["a"]
+    assert to_refine({"a": parameter(law(1.0), 0)}, {"q": ONCE * 0.0501}) == []
+    assert to_refine({"a": parameter(law(1.0), 0)}, {"q": ONCE * 0.0499}) == ["a"]
 
 
 @pytest.mark.parametrize(
@@ -86,13 +86,13 @@ def test_nothing_is_halved_within_the_tolerance():
 )
 def test_as_few_are_halved_as_will_do(allowed, keys):
     """Shares of 0.05 and 0.005 become half at first order; each may spend half of what is allowed."""
-    knobs = {"b": knob(law(1.0, 0.01), 0), "a": knob(law(1.0, 0.1), 0)}
-    assert to_halve(knobs, {"q": ONCE * allowed}) == keys
+    parameters = {"b": parameter(law(1.0, 0.01), 0), "a": parameter(law(1.0, 0.1), 0)}
+    assert to_refine(parameters, {"q": ONCE * allowed}) == keys
 
 
 def test_one_that_does_not_matter_is_not_halved_for_another():
-    """Of two quantities, the second has no share of the knob b."""
+    """Of two quantities, the second has no share of the parameter b."""
     other = MeshParameter()
-    other.see({"p": 1.0}, {"p": 0.9})
-    knobs = {"a": knob(law(1.0), 0), "b": other}
-    assert to_halve(knobs, {"q": 0.01}) == ["a"]
+    other.record({"p": 1.0}, {"p": 0.9})
+    parameters = {"a": parameter(law(1.0), 0), "b": other}
+    assert to_refine(parameters, {"q": 0.01}) == ["a"]

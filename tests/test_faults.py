@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad.runs import full
+from fingerpad.runs import attempt
 from fingerpad.scene import from_data
 from geometry.bodies import block
 from geometry.mesh import load
@@ -17,8 +17,9 @@ from tests.test_contact import HEIGHT, MU_F, WIDTH, over
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap
 from variational.solvers.continuation import Attempt, Continuation
+from variational.solvers.equations import Control
 from variational.solvers.failure import NotConverged
-from variational.solvers.newton import Control, Solver
+from variational.solvers.newton import Solver
 
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
 HISTORY = [{"name": "press", "bone_height": -60e-6}, {"name": "charge", "voltage": 100.0}]
@@ -28,15 +29,16 @@ GOOD = 2  # steps accepted before a fault
 @pytest.fixture(autouse=True)
 def one_start(monkeypatch):
     """A fault is one of its mesh: no run starts again with smaller elements."""
-    monkeypatch.setattr(full, "FINEST", 1.0)
+    monkeypatch.setattr(attempt, "FINEST", 1.0)
 
 
 @pytest.fixture
 def scene():
-    """A finger pressed in two steps and charged in four."""
+    """A finger of nine ridges pressed in two steps and charged in four; without errors, that no fault is put into."""
 
     def make_scene(**numerics):
-        return from_data({"mesh": MESH, "history": HISTORY, "numerics": numerics})
+        parts = {"geometry": {"ridge_count": 9}, "output": {"errors": False}}
+        return from_data({"mesh": MESH, "history": HISTORY, "numerics": numerics, **parts})
 
     return make_scene
 
@@ -73,10 +75,10 @@ def before_solves(monkeypatch):
             accept(self)
             count[0] += 1
 
-        def disturbed(self, creep=False):
+        def disturbed(self, pseudo_transient=False):
             if count[0] >= GOOD:
                 act(self)
-            solve(self, creep)
+            solve(self, pseudo_transient)
 
         monkeypatch.setattr(Continuation, "_accept", counted)
         monkeypatch.setattr(Solver, "solve", disturbed)
@@ -121,8 +123,8 @@ def test_mumps_out_of_memory(scene, tmp_path, before_solves):
     """MUMPS may use one megabyte: it says so, and no smaller step is tried in vain."""
 
     def act(solver):
-        solver._snes.getKSP().getPC().getFactorMatrix().setMumpsIcntl(23, 1)
-        solver._stale = True
+        solver.iteration.snes.getKSP().getPC().getFactorMatrix().setMumpsIcntl(23, 1)
+        solver.iteration.tangent.stale = True
 
     before_solves(act)
     ends(scene(), tmp_path, "step 3 (charge", "MUMPS_OUT_OF_MEMORY (INFOG(1) = -", "try a larger mesh.contact")
@@ -166,8 +168,8 @@ def trajectory(chance: float, seed: int) -> tuple[list[dict[str, np.ndarray]], i
     solver, coupling, continuation = made.solver, made.coupling, made.continuation
     draw, solve, rejected = np.random.default_rng(seed), solver.solve, 0
 
-    def capricious(creep=False):
-        solve(creep)
+    def capricious(pseudo_transient=False):
+        solve(pseudo_transient)
         if draw.uniform() < chance:
             solver.problem.guess.value *= -1  # as an attempt does that took the other guess too
             raise NotConverged("drawn", False)
@@ -180,7 +182,9 @@ def trajectory(chance: float, seed: int) -> tuple[list[dict[str, np.ndarray]], i
     for control, voltage in loads:
         while True:
             try:
-                continuation._try((Control(control.x, control.y, control.force), voltage), Attempt(), creep=True)
+                continuation._try(
+                    (Control(control.x, control.y, control.force), voltage), Attempt(), pseudo_transient=True
+                )
                 break
             except NotConverged as failure:
                 assert failure.reason == "drawn"

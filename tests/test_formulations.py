@@ -218,8 +218,8 @@ def test_rejected_attempts_leave_no_trace(formulation):
     anchor, multiplier = run.problem.anchor.x.array.copy(), run.problem.multiplier.x.array.copy()
     solve = run.coupling.solve
 
-    def fail(creep=False):
-        solve(creep)
+    def fail(pseudo_transient=False):
+        solve(pseudo_transient)
         state = run.observer.state()
         run.problem.correct_history(History(2 * state.anchor, 2 * state.p_n, state.x))
         raise NotConverged("TEST", False)

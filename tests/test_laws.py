@@ -410,29 +410,29 @@ def slid() -> Simulation:
 @pytest.mark.mpi
 def test_finger_of_own_laws_reaches_full_slip(slid):
     """f_T is the sum of the limits of its points. Tolerance: forces left at nodes, roundoff of the limit."""
-    state, limit = slid.states[-1], float(slid.ridge_loads().f_limit.sum())
+    state, limit = slid.states[-1], float(slid.finger.ridge_loads().f_limit.sum())
     assert state.all_slip
-    assert state.f_t == pytest.approx(limit, abs=slid.force_error + CONE_ROUNDOFF * limit)
-    assert state.f_contact - state.f_electrostatic == pytest.approx(1.0, abs=slid.force_error)
+    assert state.f_t == pytest.approx(limit, abs=slid.finger.force_error + CONE_ROUNDOFF * limit)
+    assert state.f_contact - state.f_electrostatic == pytest.approx(1.0, abs=slid.finger.force_error)
 
 
 @pytest.mark.mpi
 def test_friction_of_own_law_is_below_coulombs(slid):
     """It levels off with the pressure."""
-    loads = slid.ridge_loads()
+    loads = slid.finger.ridge_loads()
     assert 0 < loads.f_limit.sum() < 0.95 * 0.4 * loads.f_contact.sum()
 
 
 @pytest.mark.mpi
 def test_air_gaps_are_the_closures(slid):
-    assert (slid.coupling.d_eq == 2e-6).all()
+    assert (slid.finger.coupling.d_eq == 2e-6).all()
 
 
 @pytest.mark.mpi
 def test_dermis_is_the_given_material(slid):
-    group = next(group for group in slid.problem.laws if tags.DERMIS in group)
+    group = next(group for group in slid.finger.problem.laws if tags.DERMIS in group)
     assert group == (tags.DERMIS,)
-    assert isinstance(slid.problem.laws[group], Mine)
+    assert isinstance(slid.finger.problem.laws[group], Mine)
 
 
 @pytest.mark.mpi

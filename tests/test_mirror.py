@@ -191,7 +191,7 @@ def columns(folder, name: str) -> list[dict[str, str]]:
 def fingers(tmp_path_factory):
     """Summaries and folders of a charged finger, by half and whole."""
     folders = [tmp_path_factory.mktemp(name) for name in ("half", "whole")]
-    scene = from_data({"mesh": MESH, "history": HISTORY})
+    scene = from_data({"mesh": MESH, "history": HISTORY, "geometry": {"ridge_count": 9}})
     half = run(scene, folders[0], MPI.COMM_WORLD)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(run_module, "plan", lambda scene: replace(options.plan(scene), both_halves=True))

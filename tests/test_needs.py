@@ -148,7 +148,8 @@ def test_all_points_slip_without_friction(body):
 # -- runs --------------------------------------------------------------------------------------------------
 def summary_of(data, folder, monkeypatch=None, **parts) -> dict:
     """Run a scene, with parts of the model that the plan would leave out if ``parts`` say so."""
-    scene = from_data({"mesh": MESH} | data)
+    output = {"errors": False} | data.get("output", {})
+    scene = from_data({"mesh": MESH, "geometry": {"ridge_count": 9}} | data | {"output": output})
     if monkeypatch is not None:
         monkeypatch.setattr(run_module, "plan", lambda scene: replace(options.plan(scene), **parts))
     summary = run(scene, folder, MPI.COMM_WORLD)

@@ -21,6 +21,7 @@ from variational.quantities import Observer, RidgeLoads
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Attempt, Continuation, Target
 from variational.solvers.coupling import Coupling
+from variational.solvers.equations import Equations
 from variational.solvers.newton import Solver
 
 H_0, EPS_0 = 0.514e-6, 8.854e-12
@@ -207,7 +208,7 @@ def charged(request):
     solver = make(body)
     sides = fem.locate_dofs_topological(solver.problem.V, 1, body.facet_tags.find(tags.SIDES))
     rim = body.facet_tags.find(tags.BONE_RIM)
-    solver = Solver(solver.problem, rim, P_EXT * SIDE, fixed=[(2 * sides, 0.0)])
+    solver = Solver(Equations(solver.problem, rim, [(2 * sides, 0.0)]), P_EXT * SIDE)
     model = FlatRidge(p_floor)
     path = Path(solver, model.closure, touch_depth=5e-9, step_scale=STEP / 0.25)
     path.to("press", f_ext=P_EXT * SIDE)

@@ -14,7 +14,7 @@ from tests.runs import run
 
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
 LOADS = [{"name": "press", "bone_height": -30e-6}, {"name": "slide", "bone_x": 5e-6}]
-PRESS = {"mesh": MESH, "history": LOADS, "output": {"errors": False}}
+PRESS = {"mesh": MESH, "history": LOADS, "geometry": {"ridge_count": 9}, "output": {"errors": False}}
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""The README's lines run as they are written: the laws of one's own, on a small finger, and the commands."""
+"""The lines of the README and of the pages about laws and commands run as they are written."""
 
 import re
 import shlex
@@ -10,11 +10,15 @@ import pytest
 import fingerpad as fp
 from fingerpad import cli
 from fingerpad.scene import from_data
+from tests.pages import alike, blocks, printed
 
 ROOT = Path(__file__).parents[1]
-README = (ROOT / "README.md").read_text(encoding="utf-8")
-PYTHON = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-COMMANDS = [line.split("#")[0] for line in re.findall(r"^    (?:mpirun .*)?(fingerpad .*)$", README, re.MULTILINE)]
+PAGES = [Path("README.md"), Path("CONTRIBUTING.md"), Path("demos/README.md")]
+PAGES += [Path("docs", page.name) for page in sorted((ROOT / "docs").glob("*.md"))]
+README, LAWS, COMMAND = (
+    (ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "docs/laws.md", "docs/command.md")
+)
+COMMANDS = [line.split("#")[0] for line in re.findall(r"^    (?:mpirun .*)?(fingerpad .*)$", COMMAND, re.MULTILINE)]
 SMALL = {
     "f_ext": 1.0,
     "voltage": 60.0,
@@ -24,13 +28,45 @@ SMALL = {
 }
 
 
+def code(block: str) -> list[str]:
+    return [line for line in (line.split("  #")[0].strip() for line in block.splitlines()) if line]
+
+
+def test_readme_fits_a_screen():
+    assert len(README.splitlines()) <= 65
+
+
+def test_door_is_the_demo():
+    """Every line of Python of the README is one of the first demo, which runs them; so is the body of docs/laws.md."""
+    demo = code((ROOT / "demos" / "first_run.py").read_text(encoding="utf-8"))
+    lines = [line for block, _ in [*blocks(README), blocks(LAWS)[1]] for line in code(block)]
+    assert len(lines) > 10 and [line for line in lines if line not in demo] == []
+
+
+def test_closed_form_prints_the_readme(tmp_path, monkeypatch):
+    """To the last digit printed: one of roundoff may be rounded the other way."""
+    monkeypatch.chdir(tmp_path)
+    block, output = blocks(README)[0]
+    first = block.partition("result =")[0]
+    assert alike(output.rpartition("µ_app = ")[0], printed(first, {}), 0.0)
+
+
+def test_full_run_of_the_readme_is_the_kept_one():
+    """The default scene's friction is that of docs/errors.md, whose runs take minutes, to the digits printed there."""
+    page = (ROOT / "docs" / "errors.md").read_text(encoding="utf-8")
+    kept = re.search(r"^\| µ_app, full slip \| ([0-9.]+) \|", page, re.MULTILINE)
+    found = re.search(r"µ_app = ([0-9.]+) ± ", README)
+    assert kept is not None and found is not None
+    assert float(found[1]) == pytest.approx(float(kept[1]), abs=6e-5)
+
+
 @pytest.mark.slow
 def test_own_laws_run_as_written(monkeypatch):
     """With another scene; each law acts: the gap is constant, and friction is its limit summed over the skin."""
     small = from_data(SMALL)
     monkeypatch.setattr(fp, "Scene", lambda: small, raising=False)
     names: dict = {}
-    exec(compile(PYTHON[1], "README.md", "exec"), names)
+    printed(blocks(LAWS)[0][0], names)
     slip, p = names["result"].full_slip, names["p"]
     touching = slip.ridges.length > 0
     np.testing.assert_allclose(slip.d_eq[touching], 2e-6, rtol=1e-12)
@@ -44,12 +80,16 @@ def test_own_laws_run_as_written(monkeypatch):
     assert low < abs(slip.f_t) < high
 
 
-def test_door_is_the_demo():
-    """The first lines of the README are those of the first demo, which runs them."""
-    demo = (ROOT / "demos" / "first_run.py").read_text(encoding="utf-8")
-    lines = [line.split("#")[0].strip() for line in PYTHON[0].splitlines()]
-    missing = [line for line in lines if line and line not in re.sub(r"[ ]*#.*", "", demo)]
-    assert missing == []
+@pytest.mark.slow
+def test_tutorial_prints_what_it_shows(tmp_path, monkeypatch):
+    """One block after the other; numbers within 2 %, since the mesh may differ from one version of gmsh to the next."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "demos").symlink_to(ROOT / "demos")
+    names: dict = {}
+    for block, output in blocks((ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")):
+        found = printed(block, names)
+        assert not output or alike(output, found, 0.02), found
+    assert {file.name for file in tmp_path.glob("*.png")} == {"surface.png", "history.png", "friction.png"}
 
 
 @pytest.mark.parametrize("line", COMMANDS)
@@ -60,6 +100,19 @@ def test_commands_are_known(line, capsys):
     assert "--no-such-option is not an option" in capsys.readouterr().err
 
 
-def test_links_lead_somewhere():
-    links = re.findall(r"\]\((?!http)([^)#]+)\)", README)
-    assert len(links) > 20 and [link for link in links if not (ROOT / link).exists()] == []
+def test_make_targets_exist():
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    named = re.findall(r"^    make ([a-z-]+)", README, re.MULTILINE)
+    assert len(named) == 2 and all(f"\n{name}:\n" in makefile for name in named)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=str)
+def test_links_lead_somewhere(page):
+    text = (ROOT / page).read_text(encoding="utf-8")
+    links = re.findall(r"\]\((?!http)([^)#\s]+)\)", text)
+    assert [link for link in links if not (ROOT / page).parent.joinpath(link).exists()] == []
+
+
+def test_every_page_is_in_the_index():
+    index = (ROOT / "docs" / "README.md").read_text(encoding="utf-8")
+    assert [page.name for page in (ROOT / "docs").glob("*.md") if f"({page.name})" not in index] == ["README.md"]

@@ -1,7 +1,6 @@
 """What a run says of itself: of which state, under which loads, on which mesh, and nothing of a state it rejects."""
 
 import csv
-import json
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -14,19 +13,19 @@ from fingerpad.accuracy.recompute import StateRecorder
 from fingerpad.io import console, drawing, writing
 from fingerpad.io.states import RESULTS, named
 from fingerpad.io.views import Profile
-from fingerpad.model import report
+from fingerpad.model import full_slip, report
+from fingerpad.model.balance import force_error
 from fingerpad.model.options import plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.steps import force_error
 from fingerpad.scene import from_data
-from tests import test_demo
-from tests.runs import run
+from tests.runs import SMALL_FINGER, run
 from variational.contact.friction import CONE_ROUNDOFF
-from variational.solvers.newton import PREFIX, Solver
+from variational.solvers.iteration import PREFIX
+from variational.solvers.newton import Solver
 
 MU_0 = 0.25
 SMALL = {
-    "geometry": {"ridge_count": 9},
+    "geometry": SMALL_FINGER,
     "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
 }
 LEAN = SMALL | {"output": {"errors": False, "receptors": False}}
@@ -104,24 +103,14 @@ BACK = {"name": "back", "bone_x": 0.0}
     ],
     ids=["lift", "height", "two slips", "there and back"],
 )
-def test_demo_passes(tmp_path, history, load, f_ext):
+def test_headline_is_the_last_full_slip(tmp_path, history, load, f_ext):
     """Whatever came after the full slip, and whichever of height and force was given."""
-    loads = "\n".join(
-        "[[history]]\n" + "\n".join(f"{k} = {json.dumps(v)}" for k, v in load.items()) for load in history
-    )
-    tables = {"geometry": LEAN["geometry"], "mesh": LEAN["mesh"], "output": LEAN["output"]}
-    rest = "\n".join(
-        f"[{name}]\n" + "\n".join(f"{k} = {json.dumps(v)}" for k, v in t.items()) for name, t in tables.items()
-    )
-    (tmp_path / "scene.toml").write_text(f"{loads}\n{rest}\n", encoding="utf-8")
-    done = test_demo.run(tmp_path / "out", str(tmp_path / "scene.toml"))
-    assert done.returncode == 0, done.stdout + done.stderr
-    summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
+    summary = run(from_data(LEAN | {"history": history}), tmp_path, MPI.COMM_WORLD)
     assert summary["slip_load"] == load
     assert f_ext is None or summary["slip_f_ext"] == pytest.approx(f_ext, rel=1e-9)
     assert (summary["normal_load"], summary["normal_bone_x"]) == ("press", 0.0)
     assert abs(summary["normal_mu_app"]) < 0.01
-    assert float(rows_of(tmp_path / "out")[-1]["f_ext"]) == summary["f_ext"]
+    assert float(rows_of(tmp_path)[-1]["f_ext"]) == summary["f_ext"]
 
 
 CHARGE, SLIDE_ON = {"name": "charge", "voltage": 60.0}, {"name": "slide on", "bone_x": 0.6e-3}
@@ -134,7 +123,7 @@ TURN = {"name": "turn", "bone_x": 0.258e-3}  # after 0.26 mm: too little for a s
 def test_errors_are_estimated_of_the_headline(more, load):
     """The states kept for it are the last full slip that was held and normal contact, not those of another load."""
     scene = from_data(LEAN | {"history": [PRESS, SLIDE, *more]})
-    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: keeper.see(step), lambda: None)
+    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: keeper.record(step), lambda: None)
     keeper = StateRecorder(simulation)
     simulation.run()
     found, kept = named(simulation.states), keeper.solve().states
@@ -154,7 +143,7 @@ def test_probe_of_full_slip_leaves_no_trace(monkeypatch):
         simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
         simulation.run()
         rows += [state.row() for state in simulation.states]
-        monkeypatch.setattr(Simulation, "_holds", lambda self: False)
+        monkeypatch.setattr(full_slip.FullSlip, "_holds", lambda self: False)
     assert probed[-1]["slip_held"] and not plain[-1]["slip_held"]
     left = {"slip_held": None}
     assert [row | left for row in probed] == [row | left for row in plain]

@@ -7,9 +7,9 @@ from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, WIDTH, make
 from variational.problem import SLIPS, STICKS
-from variational.solvers import newton as module
+from variational.solvers import iteration as module
+from variational.solvers.equations import Control
 from variational.solvers.failure import NotConverged
-from variational.solvers.newton import Control
 
 pytestmark = pytest.mark.mpi
 
@@ -32,13 +32,13 @@ class Trace:
     def __init__(self, solver):
         self.norms: list[float] = []
         self.kept: list[bool] = []
-        solver._snes.setMonitor(lambda snes, iteration, norm: self._note(solver, iteration, norm))
+        solver.iteration.snes.setMonitor(lambda snes, iteration, norm: self._note(solver, iteration, norm))
 
     def _note(self, solver, iteration, norm):
         if iteration == 0:
             self.norms, self.kept = [], []
         self.norms.append(norm)
-        self.kept.append(solver._kept)
+        self.kept.append(solver.iteration.tangent.kept)
 
     def rises(self):
         """Return by how much the residual rose in iterations from the second on that used a kept factorisation."""
@@ -111,11 +111,11 @@ def test_guess_of_a_load(flat, slipping, guess):
 def test_other_guess_is_tried_where_points_may_be_on_the_cone(flat, monkeypatch, mu_f, on_cone, runs):
     solver, guesses = make(flat, mu_f), []
 
-    def lost(shifted):
+    def lost(x):
         guesses.append(float(solver.problem.guess.value))
         return -1
 
-    monkeypatch.setattr(solver, "_run", lost)
+    monkeypatch.setattr(solver.iteration, "run", lost)
     solver.new_load(Control(), 0.0, on_cone=on_cone)
     with pytest.raises(NotConverged):
         solver.solve()

@@ -9,7 +9,7 @@ from geometry.mesh import load
 from tests import spring
 from tests.test_contact import HEIGHT, MU_F, VOLTAGE, WIDTH, make
 from variational.quantities import Observer
-from variational.solvers.newton import Control
+from variational.solvers.equations import Control
 from variational.solvers.stability import StabilityCheck
 
 pytestmark = pytest.mark.mpi
@@ -83,7 +83,7 @@ def sliding():
     problem.voltage.value = VOLTAGE / 2
     for x in (0.0, 30e-6, 60e-6, 120e-6):
         solver.control = Control(x, -4e-6)
-        solver.solve(creep=True)
+        solver.solve(pseudo_transient=True)
         state = observer.state()
         problem.surface.set_history(problem.anchor, state.anchor)
     assert observer.slip(state) == (1.0, True)
@@ -105,7 +105,7 @@ def test_inertia_of_slipping_points_is_refused(sliding):
 def test_agrees_with_all_eigenvalues(sliding):
     """Arnoldi's least eigenvalue is that of the whole dense pencil, friction too. Tolerance: its settling, 3e-9."""
     check = StabilityCheck(sliding)
-    held = sliding.prescribed_rows()
+    held = sliding.equations.prescribed_rows()
     K, M = check._tangent(0.0, held), check._mass_matrix(held)
     if K.comm.size > 1:
         pytest.skip("dense matrices are for one rank")

@@ -14,7 +14,7 @@ from benchmarks.stability import runs as keeping
 from benchmarks.stability.case import Case, Outcome
 from benchmarks.stability.loop import loop
 from benchmarks.stability.runs import Runs, run_all
-from variational.solvers.newton import Control
+from variational.solvers.equations import Control
 
 # A press of half an newton a metre on facets of 60 um: two seconds a run.
 TINY = Case(contact_size=60e-6, force=0.5, voltage=50.0, element="P1", slide=0.0)

@@ -103,7 +103,7 @@ def test_normal_contact_returns_on_its_own_mesh(bodies, reached):
     normal = reached[COARSE][0]
     path = prepare(bodies[COARSE])
     give(normal, path.coupling)
-    path.adopt("normal contact")
+    path.re_equilibrate("normal contact")
     np.testing.assert_allclose(path.solver.bone, normal.bone, atol=1e-11)
 
 
@@ -115,7 +115,7 @@ def test_full_slip_from_a_coarse_mesh_is_that_of_the_path(bodies, reached):
     """
     path = prepare(bodies[FINE])
     give(reached[COARSE][1], path.coupling, SLIDE)
-    path.adopt("full slip")
+    path.re_equilibrate("full slip")
     f_t, length = -path.solver.reaction[0], path.observer.ridge_loads(path.surface_state).length[0]
     assert path.slip == (1.0, True)
     assert f_t == pytest.approx(reached[FINE][2], rel=2e-6)
@@ -127,7 +127,7 @@ def test_full_slip_stays_when_it_slides_on(bodies, reached):
     """Adopted full slip is steady over a further 0.2 mm. Tolerance: 1e-6, the run's own criterion."""
     path = prepare(bodies[FINE])
     give(reached[COARSE][1], path.coupling, SLIDE)
-    path.adopt("full slip")
+    path.re_equilibrate("full slip")
     before = path.solver.reaction[0]
     path.run(Target("slide", bone_x=path.solver.control.x + SLIDE))
     assert path.slip == (1.0, True)
@@ -139,11 +139,11 @@ def test_forces_held_balance_any_state(bodies, reached):
     path = prepare(bodies[FINE])
     give(reached[COARSE][1], path.coupling, SLIDE)
     solver = path.solver
-    solver.hold()
+    solver.equations.hold(solver.x)
     before = solver.x.array_r.copy()
     solver.solve()
     np.testing.assert_array_equal(solver.x.array_r, before)
-    solver.held = 0.5
+    solver.equations.load_part = 0.5
     solver.solve()
     assert MPI.COMM_WORLD.allreduce(float(np.abs(solver.x.array_r - before).max()), op=MPI.MAX) > 1e-9
 
@@ -158,17 +158,17 @@ def test_body_comes_into_balance_under_skin_that_is_held(bodies, reached):
     give(reached[COARSE][1], path.coupling, SLIDE)
     solver, skin = path.solver, path.observer.state()
     before = solver.x.array_r.copy()
-    solver.hold(skin=True)
-    solver.held = 0.0
+    solver.equations.hold(solver.x, skin=True)
+    solver.equations.load_part = 0.0
     solver.solve()
     now = path.observer.state()
     np.testing.assert_array_equal(now.x, skin.x)
     np.testing.assert_allclose(now.y, skin.y, rtol=0, atol=4 * np.finfo(float).eps * np.abs(solver.bone).max())
     assert MPI.COMM_WORLD.allreduce(float(np.abs(solver.x.array_r - before).max()), op=MPI.MAX) > 1e-9
     assert solver.imbalance() < 1e-9
-    held = len(solver.prescribed_rows())
-    solver.release()
-    assert len(solver.prescribed_rows()) < held or not len(skin.x)
+    held = len(solver.equations.prescribed_rows())
+    solver.equations.release()
+    assert len(solver.equations.prescribed_rows()) < held or not len(skin.x)
     solver.solve()
     assert solver.imbalance() < 1e-9
 
@@ -182,17 +182,17 @@ def test_a_state_not_found_at_once_is_found(bodies, reached, monkeypatch, failur
     path = prepare(bodies[FINE])
     give(reached[COARSE][1], path.coupling, SLIDE)
     solve, solver, calls, ways = path.coupling.solve, path.solver, [], []
-    hold = solver.hold
+    hold = solver.equations.hold
 
-    def fails(creep):
-        calls.append((creep, solver.counts.newton, solver.x.array_r.copy()))
+    def fails(pseudo_transient):
+        calls.append((pseudo_transient, solver.counts.newton, solver.x.array_r.copy()))
         if len(calls) <= failures:
             raise NotConverged("DIVERGED_LOCAL_MIN", False)
-        solve(creep)
+        solve(pseudo_transient)
 
-    def noted(skin=False):
+    def noted(x, skin=False):
         ways.append(skin)
-        hold(skin)
+        hold(x, skin)
 
     def loaded(*load, on_cone=True, **more):
         assert not on_cone, "another guess would be tried, of which no point knows"
@@ -200,18 +200,18 @@ def test_a_state_not_found_at_once_is_found(bodies, reached, monkeypatch, failur
 
     new_load = solver.new_load
     monkeypatch.setattr(path.coupling, "solve", fails)
-    monkeypatch.setattr(solver, "hold", noted)
+    monkeypatch.setattr(solver.equations, "hold", noted)
     monkeypatch.setattr(solver, "new_load", loaded)
-    attempt = path.adopt("full slip")
+    attempt = path.re_equilibrate("full slip")
     assert attempt.cutbacks == failures * ["DIVERGED_LOCAL_MIN"]
     assert attempt.pseudo_transient == 0
-    assert [creep for creep, *_ in calls] == [False, False, False, True][: failures + 1]
+    assert [pseudo_transient for pseudo_transient, *_ in calls] == [False, False, False, True][: failures + 1]
     assert ways == [True, False][:failures]
     newton = [n for _, n, _ in calls][:3]
     assert sorted(set(newton)) == newton, "nothing was solved for in between"
     if failures == 3:
         np.testing.assert_array_equal(calls[3][2], calls[1][2])
-    assert solver.held == 0
+    assert solver.equations.load_part == 0
     assert -solver.reaction[0] == pytest.approx(reached[FINE][2], rel=2e-6)
 
 
@@ -225,18 +225,18 @@ def test_bits_are_halved_down_to_an_eighth(bodies, reached, monkeypatch, largest
     give(reached[COARSE][1], path.coupling, SLIDE)
     solver, held, done = path.solver, [], 1.0
 
-    def solve(creep=False):
+    def solve(pseudo_transient=False):
         nonlocal done
-        held.append(solver.held)
-        if done - solver.held > largest:
+        held.append(solver.equations.load_part)
+        if done - solver.equations.load_part > largest:
             raise NotConverged("DIVERGED_LOCAL_MIN", False)
-        done = solver.held
+        done = solver.equations.load_part
 
     monkeypatch.setattr(solver, "solve", solve)
     with end:
-        path._let_go(0.5)
+        path._relax(0.5)
     assert held == tried
-    assert solver.held == 0
+    assert solver.equations.load_part == 0
 
 
 def test_bits_are_let_go_where_the_body_cannot_be_settled(bodies, reached, monkeypatch):
@@ -244,27 +244,27 @@ def test_bits_are_let_go_where_the_body_cannot_be_settled(bodies, reached, monke
     path = prepare(bodies[FINE])
     give(reached[COARSE][1], path.coupling, SLIDE)
     solve, solver, calls, started = path.coupling.solve, path.solver, [], []
-    put_in, hold, once = solver.x.array_r.copy(), solver.hold, solver.solve
+    put_in, hold, once = solver.x.array_r.copy(), solver.equations.hold, solver.solve
 
-    def fails_once(creep):
-        calls.append(creep)
+    def fails_once(pseudo_transient):
+        calls.append(pseudo_transient)
         if len(calls) == 1:
             raise NotConverged("DIVERGED_LOCAL_MIN", False)
-        solve(creep)
+        solve(pseudo_transient)
 
-    def noted(skin=False):
+    def noted(x, skin=False):
         started.append(solver.x.array_r.copy())
-        hold(skin)
+        hold(x, skin)
 
-    def not_with_skin_held(creep=False):
-        once(creep)
+    def not_with_skin_held(pseudo_transient=False):
+        once(pseudo_transient)
         if len(started) == 1 and len(calls) == 1:
             raise NotConverged("DIVERGED_FUNCTION_DOMAIN", True)
 
     monkeypatch.setattr(path.coupling, "solve", fails_once)
-    monkeypatch.setattr(solver, "hold", noted)
+    monkeypatch.setattr(solver.equations, "hold", noted)
     monkeypatch.setattr(solver, "solve", not_with_skin_held)
-    attempt = path.adopt("full slip")
+    attempt = path.re_equilibrate("full slip")
     assert len(attempt.cutbacks) == 2
     np.testing.assert_array_equal(started, [put_in, put_in])
     assert calls == [False, False]
@@ -276,7 +276,7 @@ def test_failure_names_the_state(bodies, reached):
     path = prepare(bodies[FINE])
     give(replace(reached[COARSE][1], voltage=float("nan")), path.coupling, SLIDE)
     with pytest.raises(StepFailed, match="full slip.*found no equilibrium"):
-        path.adopt("full slip")
+        path.re_equilibrate("full slip")
 
 
 def test_another_body_is_refused(reached):

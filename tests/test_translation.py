@@ -8,11 +8,12 @@ from mpi4py import MPI
 from fingerpad.model.options import plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data
+from tests.runs import SMALL_FINGER
 from variational.solvers import newton as solver_module
 from variational.solvers.continuation import StepFailed
 
 FINGER = {
-    "geometry": {"ridge_count": 9},
+    "geometry": SMALL_FINGER,
     "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
 }
 
@@ -46,8 +47,8 @@ def held(made: Simulation) -> bool:
 
 def forces(made: Simulation) -> np.ndarray:
     """Return the bone's reactions and each ridge's contact force, friction and length."""
-    loads = made.ridge_loads()
-    return np.concatenate([made.solver.reaction, loads.f_contact, loads.f_friction, 1e3 * loads.length])
+    loads = made.finger.ridge_loads()
+    return np.concatenate([made.finger.solver.reaction, loads.f_contact, loads.f_friction, 1e3 * loads.length])
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +62,7 @@ def test_forces_do_not_depend_on_where_the_finger_is(at_the_start, away):
     """Relative 1e-9 of the load, a hundred times the tolerance of the solve; before, the residual stalled above it."""
     moved = slid(away, 1.0, 100.0, 1e-11)
     assert held(moved) and held(at_the_start)
-    assert moved.solver.bone[0] - at_the_start.solver.bone[0] == pytest.approx(away, rel=1e-12)
+    assert moved.finger.solver.bone[0] - at_the_start.finger.solver.bone[0] == pytest.approx(away, rel=1e-12)
     np.testing.assert_allclose(forces(moved), forces(at_the_start), rtol=0, atol=1e-9)
 
 
@@ -70,20 +71,20 @@ def test_light_press_at_200_v_after_5_mm():
     """Half a newton a metre: friction is mu_0 times the contact force, to the solve's tolerance over some ridges."""
     made = slid(5e-3, 0.5, 200.0, 1e-9)
     assert held(made)
-    loads = made.ridge_loads()
+    loads = made.finger.ridge_loads()
     assert abs(loads.f_friction.sum()) == pytest.approx(0.25 * loads.f_contact.sum(), rel=1e-8)
-    assert made.solver.reaction[1] == pytest.approx(0.5, rel=1e-8)
+    assert made.finger.solver.reaction[1] == pytest.approx(0.5, rel=1e-8)
 
 
 def test_translated_body_bears_no_force():
     """Off the screen, 10 mm aside: every nodal force is zero to the last bit."""
     scene = from_data(FINGER | {"f_ext": 1.0})
     made = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
-    u = np.tile([10e-3, 3e-3], (len(made.problem.displacement()), 1))
-    made.solver.set_displacement(u, np.array([10e-3, 3e-3]))
-    np.testing.assert_array_equal(made.problem.displacement(), u)
-    made.problem.set_history(made.problem.history)
-    np.testing.assert_array_equal(fem.assemble_vector(made.problem.residual).array, 0.0)
+    u = np.tile([10e-3, 3e-3], (len(made.finger.problem.displacement()), 1))
+    made.finger.solver.set_displacement(u, np.array([10e-3, 3e-3]))
+    np.testing.assert_array_equal(made.finger.problem.displacement(), u)
+    made.finger.problem.set_history(made.finger.problem.history)
+    np.testing.assert_array_equal(fem.assemble_vector(made.finger.problem.residual).array, 0.0)
 
 
 @pytest.mark.slow
@@ -115,6 +116,6 @@ def test_points_of_little_friction_come_to_stick():
     made.run()
     assert not any(row["jump"] for row in rows)
     assert sum(row["cutbacks"] for row in rows) <= 1
-    assert float(made.problem.ease.value) == 1.0
-    limit = 0.002 * made.ridge_loads().f_contact
-    assert (np.abs(made.ridge_loads().f_friction) <= limit * (1 + 1e-9)).all()
+    assert float(made.finger.problem.ease.value) == 1.0
+    limit = 0.002 * made.finger.ridge_loads().f_contact
+    assert (np.abs(made.finger.ridge_loads().f_friction) <= limit * (1 + 1e-9)).all()

@@ -15,9 +15,9 @@ from variational.materials.material import Material
 from variational.problem import Interface, Problem
 from variational.quantities import Observer
 from variational.roughness.closure import Closure
-from variational.solvers.cell import carried
 from variational.solvers.continuation import Attempt, Continuation, Target
 from variational.solvers.coupling import Coupling
+from variational.solvers.equations import Equations
 from variational.solvers.newton import Solver
 from variational.surface import Surface
 
@@ -76,12 +76,12 @@ class Body:
         force_scale: float = 1.0,
         tolerance: float = 1e-9,
         held: Facets | None = None,
-        carried_sides: Facets | None = None,
+        moving_sides: Facets | None = None,
         mirror: Facets | None = None,
         coupling_tolerance: float = 1e-6,
         coupling_cap: int = 30,
         by_gap: bool = False,
-        on_accept: Callable[[Target, float, Attempt], None] = lambda target, part, attempt: None,
+        on_accept: Callable[[Target, float, Attempt], bool | None] = lambda target, part, attempt: None,
         touch_depth: float = 5e-6,
         step_scale: float = 1.0,
     ) -> None:
@@ -97,8 +97,8 @@ class Body:
             force_scale: force per length (N/m) in which residuals are measured.
             tolerance: see :class:`variational.solvers.newton.Solver`.
             held: facets that do not move sideways.
-            carried_sides: facets that move sideways with the bone (:mod:`variational.solvers.cell`), in
-                place of ``held``.
+            moving_sides: facets that move sideways with the bone, in place of ``held``; see
+                :class:`variational.solvers.equations.Equations`.
             mirror: facets at x = 0 of the half of a body that is its own mirror image.
             coupling_tolerance: relative error of air gaps at which the loop over the scales ends.
             coupling_cap: most sweeps of that loop.
@@ -112,11 +112,9 @@ class Body:
         """
         self.surface = Surface(tagged.mesh, tagged.facet_tags, tagged.ridge_tags(), points)
         self.problem = Problem(tagged.mesh, tagged.cell_tags, self.surface, solids, interface, element)
-        if carried_sides is not None:
-            self.solver: Solver = carried(self.problem, tagged.rim, carried_sides, force_scale, tolerance)
-        else:
-            fixed = [] if held is None else [(2 * fem.locate_dofs_topological(self.problem.V, 1, held), 0.0)]
-            self.solver = Solver(self.problem, tagged.rim, force_scale, tolerance, fixed, mirror)
+        fixed = [] if held is None else [(2 * fem.locate_dofs_topological(self.problem.V, 1, held), 0.0)]
+        equations = Equations(self.problem, tagged.rim, fixed, moving_sides, mirror)
+        self.solver = Solver(equations, force_scale, tolerance)
         self.observer = Observer(self.problem, mirror is not None)
         self.coupling = Coupling(self.solver, self.observer, closure, coupling_tolerance, coupling_cap, by_gap)
         self.continuation = Continuation(self.coupling, on_accept, touch_depth, step_scale)

@@ -1,5 +1,6 @@
 """The skin that can touch: its facets, quadrature points, history, integrals and contact patches."""
 
+import math
 from collections.abc import Mapping
 
 import basix
@@ -83,6 +84,9 @@ class Surface:
         # Powers of the facet coordinate at the points: interpolation is exact for the traces of elements
         # of a degree below the number of points.
         self._to_powers = np.linalg.inv(np.vander(self.points[:, 0], increasing=True))
+        n = range(len(self.points))
+        bernstein = np.array([[math.comb(i, k) / math.comb(n[-1], k) for k in n] for i in n])
+        self._to_bernstein = bernstein @ self._to_powers
         self._history_maps()
         self._reversed = self._point_order(xy)
 
@@ -169,6 +173,8 @@ class Surface:
         """
         lengths = np.zeros(len(x))
         near = gap.min(axis=1, initial=np.inf) < 4 * (np.ptp(gap, axis=1) if len(gap) else 0)
+        # A polynomial is above its least Bernstein coefficient: most facets are found open without their roots.
+        near &= (gap @ self._to_bernstein.T).min(axis=1) < 1e-9 * np.abs(gap).max(axis=1)
         gauss, weights = np.polynomial.legendre.leggauss(6)
         for k in np.flatnonzero(near):
             opening = Polynomial(self._to_powers @ gap[k])

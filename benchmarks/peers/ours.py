@@ -16,7 +16,7 @@ from variational.contact.formulation import History
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 from variational.problem import Interface
-from variational.solvers.newton import Control
+from variational.solvers.equations import Control
 
 _MM = 1e-3  # m
 _STIFFNESS = 1e9  # Pa/m in a N/mm^3

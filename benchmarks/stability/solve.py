@@ -38,8 +38,8 @@ from variational.problem import Interface
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Attempt, Continuation, StepFailed, Target
 from variational.solvers.coupling import Coupling
+from variational.solvers.equations import Control
 from variational.solvers.failure import NotConverged
-from variational.solvers.newton import Control
 
 _H_0 = 0.514e-6  # m
 _SKIN = {tags.STRATUM_CORNEUM: 86.76e3, tags.VIABLE_EPIDERMIS: 61.75e3, tags.DERMIS: 2.55e3}  # Pa
@@ -49,7 +49,7 @@ _ALPHA = -14.53
 class PlainCoupling(Coupling):
     """Sweeps without pseudo-transient continuation."""
 
-    def _sweep(self, creep: bool) -> tuple[NDArray[np.float64], SurfaceState]:
+    def _sweep(self, pseudo_transient: bool) -> tuple[NDArray[np.float64], SurfaceState]:
         return super()._sweep(False)
 
 
@@ -70,9 +70,9 @@ class Recorder(Continuation):
         cells = self.problem.cell_tags.find(tag)
         return float(compat.evaluate_on_cells(self._jacobian, self.problem.mesh, cells).min())
 
-    def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool, on_cone: bool = True) -> None:
+    def _try(self, load: tuple[Control, float], attempt: Attempt, pseudo_transient: bool, on_cone: bool = True) -> None:
         try:
-            super()._try(load, attempt, creep, on_cone)
+            super()._try(load, attempt, pseudo_transient, on_cone)
         except NotConverged as failure:
             if failure.inverted:
                 layers = {name: tag for name, tag in tags.LAYERS.items() if tag in strip.LAYERS}
@@ -92,7 +92,7 @@ def make(case: Case) -> Body:
         BearingArea(_H_0),
         element=case.element,
         force_scale=case.force * case.ridges,
-        carried_sides=mesh.facets(tags.SIDES) if case.sides == "carried" else None,
+        moving_sides=mesh.facets(tags.SIDES) if case.sides == "carried" else None,
     )
 
 

@@ -1,7 +1,6 @@
 """Bodies without a screen: what the cases of solids and elements have in common."""
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
 
 import dolfinx
 import numpy as np
@@ -16,10 +15,12 @@ from variational.body import Body
 from variational.contact.penalty import Penalty
 from variational.materials.material import Material
 from variational.problem import Interface, Problem
+from variational.solvers.equations import Equations
 from variational.solvers.newton import Solver
 
 Array = NDArray[np.float64]
 Solid = Material
+Facets = NDArray[np.int32]
 Held = tuple[NDArray[np.int32], float]
 NOTHING = np.empty(0, dtype=np.int32)  # facets of the bone's rim
 
@@ -55,6 +56,16 @@ def nodal_forces(problem: Problem) -> Array:
     return np.asarray(fem.assemble_vector(problem.residual).array.reshape(-1, 2))
 
 
+class FreeEquations(Equations):
+    """Those of a body that need not have a bone."""
+
+    def assemble_tangent(self, A: PETSc.Mat) -> None:
+        """Make sure that the bone has a diagonal, which nothing else does where no facet is glued to it."""
+        for row in self.layout.rigid_rows:
+            A.setValue(row, row, 0.0, PETSc.InsertMode.ADD_VALUES)
+        super().assemble_tangent(A)
+
+
 class FreeSolver(Solver):
     """A solver of a body that need not have a bone, with dead loads on its nodes, of which the finger has none.
 
@@ -62,14 +73,19 @@ class FreeSolver(Solver):
         load: nodal forces (N/m) as a vector of unknowns; zero where displacements are prescribed.
     """
 
-    load: Any = None
+    def __init__(
+        self, problem: Problem, rim: Facets, force_scale: float, tolerance: float = 1e-9, fixed: Sequence[Held] = ()
+    ) -> None:
+        """Set the solver up; the arguments are those of :class:`Equations` and :class:`Solver`."""
+        super().__init__(FreeEquations(problem, rim, fixed), force_scale, tolerance)
+        self.load = self.equations.dead_load
 
     def set_load(self, form) -> None:
         """Take the nodal forces of a linear form, UFL, in the displacement's test function."""
-        self.load = self.layout.create_vector()
         self.load.set(0.0)
         self.layout.add_to_unknowns(fem.assemble_vector(fem.form(form, jit_options=jit.OPTIONS)).array, self.load)
-        self.load.array_w[self.prescribed_rows() - self._first_row] = 0.0
+        self.load.array_w[self.equations.local(self.equations.prescribed_rows())] = 0.0
+        self.equations.load_part = 1.0
 
     def start(self) -> None:
         """Start from the problem's displacement and, if it has one, pressure; on one rank."""
@@ -77,15 +93,3 @@ class FreeSolver(Solver):
         if self.problem.pressure:
             rows = self.problem.pressure.rows(0)
             self.x.array_w[rows[rows >= 0]] = self.problem.pressure.unknown.x.array[rows >= 0]
-
-    def _residual(self, snes: PETSc.SNES | None, x: PETSc.Vec, f: PETSc.Vec) -> None:
-        known = self._ahead  # then the load is in it
-        super()._residual(snes, x, f)
-        if self.load is not None and not known:
-            f.axpy(-1.0, self.load)
-
-    def assemble_tangent(self, A: PETSc.Mat) -> None:
-        """Make sure that the bone has a diagonal, which nothing else does where no facet is glued to it."""
-        for row in self.layout.rigid_rows:
-            A.setValue(row, row, 0.0, PETSc.InsertMode.ADD_VALUES)
-        super().assemble_tangent(A)

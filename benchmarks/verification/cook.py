@@ -59,8 +59,8 @@ class Membrane:
         """Return the corner's rise (mm) by the tangent at rest."""
         solver, layout = self.solver, self.solver.layout
         A, x = layout.create_matrix(), layout.create_vector()
-        solver.assemble_tangent(A)
-        A.zeroRows(solver.prescribed_rows(), diag=YOUNG)
+        solver.equations.assemble_tangent(A)
+        A.zeroRows(solver.equations.prescribed_rows(), diag=YOUNG)
         ksp = PETSc.KSP().create(layout.comm)
         ksp.setOperators(A)
         ksp.setType(PETSc.KSP.Type.PREONLY)

@@ -20,7 +20,8 @@ from variational.energy import Balance, EnergyBook
 from variational.materials.ogden import Ogden
 from variational.problem import Interface
 from variational.quantities import Observer
-from variational.solvers.newton import Control, Solver
+from variational.solvers.equations import Control
+from variational.solvers.newton import Solver
 
 D_EQ, VOLTAGE = 2e-6, 100.0
 PHASES = ("press", "charge", "slide", "back", "discharge", "lift")
@@ -40,7 +41,7 @@ class Walk:
         solver, problem = self.solver, self.solver.problem
         problem.set_air_gaps(np.array([d_eq]))
         problem.voltage.value, solver.control = voltage, control
-        solver.solve(creep=True)
+        solver.solve(pseudo_transient=True)
         self.state = self.observer.state()
         balance = self.book.step(self.state, solver.bone, solver.reaction, np.array([d_eq]))
         if problem.anchor is not None:

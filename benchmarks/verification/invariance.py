@@ -29,6 +29,7 @@ from variational.materials import saint_venant
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
 from variational.problem import Problem
+from variational.solvers.equations import Equations
 from variational.solvers.newton import Solver
 
 Array = NDArray[np.float64]
@@ -149,7 +150,7 @@ def hooke(lame: float, shear: float) -> Array:
 def dense(solver: Solver) -> Array:
     """Return the assembled tangent of a solver in its problem's state."""
     A = solver.layout.create_matrix()
-    solver.assemble_tangent(A)
+    solver.equations.assemble_tangent(A)
     rows = range(A.getSize()[0])
     return np.asarray(A.getValues(rows, rows))
 
@@ -206,7 +207,7 @@ def tangent(small: bool) -> Outcome:
     matrices, linear = [], []
     for element in ELEMENTS:
         problem = layered(element)
-        solver = Solver(problem, NOTHING, 1.0)
+        solver = Solver(Equations(problem, NOTHING), 1.0)
         deform(problem)
         matrix = dense(solver)
         largest, quantity = np.array([np.abs(matrix).max()]), f"assembled tangent less its transpose, {element}"

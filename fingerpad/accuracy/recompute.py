@@ -1,18 +1,19 @@
 """States of a path that can be solved again: kept on the way, carried to another mesh, solved for there."""
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from mpi4py import MPI
 from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.io.states import PREFIXES, WORDS, before_sliding
+from fingerpad.io.views import View
+from fingerpad.model.finger import Step
 from fingerpad.model.options import ModelOptions
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.steps import Step
+from fingerpad.model.viewer import Viewer
 from fingerpad.scene import Scene
 from geometry.parameters import MeshSize
 from variational.receptors import Receptors
@@ -52,8 +53,8 @@ class Solve:
     factorisations: int
     processor_seconds: float
     """Of this rank."""
-    views: dict[str, Any] = field(default_factory=dict)
-    """What is to be shown of states that were solved again, by name."""
+    views: dict[str, View] = field(default_factory=dict)
+    """What tables and pictures show of states that were solved again, by name."""
 
     def values(self) -> dict[str, float]:
         """Return the quantities of interest, by the prefix of the state and the name of the quantity."""
@@ -83,15 +84,16 @@ class StateRecorder:
         """Find the Merkel sites of the ridges that can touch."""
         self._simulation = simulation
         self._start = time.process_time()
-        ridges, profiles = simulation.problem.surface.names, simulation.profiles
+        finger = simulation.finger
+        ridges, profiles = finger.problem.surface.names, finger.profiles
         sites = profiles.merkel_sites()[[profiles.ridges.index(j) for j in ridges]]
-        self._sites = Receptors(simulation.problem, sites)
+        self._sites = Receptors(finger.problem, sites)
         self._begun: State | None = None  # the last full slip, held or not
         self.states: dict[str, State] = {}
-        self.views: dict[str, Any] = {}
+        self.views: dict[str, View] = {}
 
-    def see(self, step: Step) -> None:
-        """Take note of an accepted step; collective."""
+    def record(self, step: Step) -> None:
+        """Record an accepted step; collective."""
         states, state = self._simulation.states, step.state
         if state.ridges_in_contact > 0 and len(before_sliding(states)) == len(states):
             self.keep("charged")
@@ -102,47 +104,44 @@ class StateRecorder:
 
     def keep(self, name: str) -> None:
         """Keep the present state; collective."""
-        self.states[name] = self._state((1 if self._simulation.solver.reaction[0] <= 0 else -1) * (name == "full_slip"))
+        direction = 1 if self._simulation.finger.solver.reaction[0] <= 0 else -1
+        self.states[name] = self._state(direction * (name == "full_slip"))
 
     def _state(self, direction: int) -> State:
-        s = self._simulation
-        loads = s.ridge_loads()
-        lengths = np.zeros(s.scene.geometry.ridge_count)
-        lengths[np.array(s.ridges) + len(lengths) // 2] = loads.length
-        sed = {j: float(density) for j, density in zip(s.problem.surface.names, self._sites.sed(), strict=True)}
-        present = s.present(loads).state
-        return State(carry(s.coupling, s.continuation.surface_state), direction, present, lengths, sed)
+        f = self._simulation.finger
+        loads = f.ridge_loads()
+        lengths = np.zeros(f.profiles.finger.ridge_count)
+        lengths[np.array(f.ridges) + len(lengths) // 2] = loads.length
+        sed = {j: float(density) for j, density in zip(f.problem.surface.names, self._sites.sed(), strict=True)}
+        present = self._simulation.present(loads).state
+        return State(carry(f.coupling, f.continuation.surface_state), direction, present, lengths, sed)
 
     def solve(self) -> Solve:
         """Return what was kept."""
-        s, seconds = self._simulation, time.process_time() - self._start
-        return Solve(self.states, s.scene.mesh, s.unknowns, s.solver.counts.factorisations, seconds, self.views)
+        f, seconds = self._simulation.finger, time.process_time() - self._start
+        return Solve(self.states, f.scene.mesh, f.unknowns, f.solver.counts.factorisations, seconds, self.views)
 
 
 def solve_again(
-    scene: Scene,
-    needed: ModelOptions,
-    states: Mapping[str, State],
-    comm: MPI.Comm,
-    look: Callable[[Simulation], Any] | None = None,
+    scene: Scene, options: ModelOptions, states: Mapping[str, State], comm: MPI.Comm, views: bool = False
 ) -> Solve:
     """Solve for states of a scene's finger on the scene's mesh; collective.
 
     Args:
         scene: with the mesh.
-        needed: the parts of the model that the states have.
+        options: the parts of the model that the states have.
         states: as they were found on another mesh.
         comm: communicator of the mesh.
-        look: returns what is to be shown of the state that a simulation is in, for :attr:`Solve.views`.
+        views: whether tables and pictures are to show the states (:attr:`Solve.views`).
 
     Raises:
         StepFailed: see :meth:`fingerpad.model.simulation.Simulation.adopt`.
     """
-    simulation = Simulation(scene, needed, comm, lambda step, done: None, lambda: None)
-    keeper = StateRecorder(simulation)
+    simulation = Simulation(scene, options, comm)
+    recorder, finger = StateRecorder(simulation), simulation.finger
     for name, state in states.items():
         simulation.adopt(state.carried, words(name), state.direction)
-        keeper.keep(name)
-        if look is not None:
-            keeper.views[name] = look(simulation)
-    return keeper.solve()
+        recorder.keep(name)
+        if views:
+            recorder.views[name] = Viewer(finger).view(simulation.present(finger.ridge_loads()))
+    return recorder.solve()

@@ -1,4 +1,4 @@
-"""``fingerpad params``: every key of a scene, as a table or as a scene file with comments."""
+"""``fingerpad params``: every key of a scene, as a table, a scene file with comments or the page docs/scene.md."""
 
 import textwrap
 from collections.abc import Sequence
@@ -13,19 +13,36 @@ _WIDTH = 120
 _EXAMPLES = """
     fingerpad params roughness
     fingerpad params --toml > scene.toml
+    fingerpad params --markdown > docs/scene.md
 """
+_PAGE = """# Scene reference
+
+A scene has {keys} keys in {tables} tables. An empty file is the default scene: 75 N/m, 200 V, friction 0.25,
+slid to full slip. Most scenes change only `f_ext`, `voltage`, `friction` and one or two tables. Only two keys have no
+default: the name of a load and the file of a height map, both in optional tables.
+
+- In a file, a key stands in its table: `[mesh]`, then `contact = 10e-6`.
+- In Python: `fp.Scene(mesh={{"contact": 10e-6}})`. On the command line: `--set mesh.contact=10e-6`.
+- Numbers are in SI units. A number with a unit can be given as text: `"10 um"`, `"50 N/m"`.
+- Forces are per metre of finger out of the plane of the cross-section (N/m).
+- A value outside its range is refused with the key, the value, the range and, where likely, the unit that was meant.
+- *Assumption* marks choices that the paper leaves open. [assumptions.md](assumptions.md) gives their effect.
+
+This page is written by `fingerpad params --markdown` from the program's own definitions; a test compares the two."""
 
 
 def main(argv: Sequence[str]) -> int:
     """Print keys; return the exit code."""
     parser = Parser("fingerpad params", "Every key of a scene: unit, default, range and meaning.", _EXAMPLES)
     parser.add_argument("filter", nargs="?", default="", metavar="FILTER", help="keys with this in their name")
-    parser.add_argument("--toml", action="store_true", help="as a complete scene file of the defaults, with comments")
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--toml", action="store_true", help="as a complete scene file of the defaults, with comments")
+    form.add_argument("--markdown", action="store_true", help="as a page: the scene reference, docs/scene.md")
     args = parser.read(argv)
     found = [key for key in every() if args.filter.lower() in key.name.lower()]
     if not found:
         raise SceneError(f"no key of a scene has {clip(args.filter)} in its name; fingerpad params lists all of them")
-    say(toml(found) if args.toml else table(found))
+    say(toml(found) if args.toml else page(found) if args.markdown else table(found))
     return 0
 
 
@@ -59,6 +76,26 @@ def toml(found: Sequence[Key]) -> str:
         given = f"{'# ' * off}{name} ={'' if key.default is None else ' ' + _value(key.default)}"
         lines.append(f"{given}  # {', '.join(filter(None, (key.unit, key.allowed)))}")
     return "\n".join(lines)
+
+
+def page(found: Sequence[Key]) -> str:
+    """Return keys as a page in Markdown, one table for each table of a scene."""
+    by_table: dict[str, list[Key]] = {}
+    for key in found:
+        by_table.setdefault(key.name.rpartition(".")[0], []).append(key)
+    lines = [_PAGE.format(keys=len(found), tables=len([name for name in by_table if name]))]
+    for name, keys in by_table.items():
+        heading = f"`[[{name.removesuffix('[]')}]]`" if name.endswith("[]") else f"`[{name}]`" if name else "Top level"
+        lines += ["", f"## {heading}", "", "| key | unit | default | allowed | meaning |", "|---|---|---|---|---|"]
+        for key in keys:
+            cells = (f"`{key.name.rpartition('.')[2]}`", key.unit, _short(key), key.allowed, key.meaning)
+            lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def _short(key: Key) -> str:
+    """Return the default of a key with the digits that it has."""
+    return f"{key.default:.12g}" if isinstance(key.default, float) else _default(key)
 
 
 def _has_values(found: Sequence[Key], table: str) -> bool:

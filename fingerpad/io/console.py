@@ -41,7 +41,7 @@ class Console:
         if not self._progress.disable:
             self._progress.start()
 
-    def say(self, text: str) -> None:
+    def show(self, text: str) -> None:
         """Print a line above the progress bar."""
         if self._lines:
             self._progress.console.print(text, highlight=False, soft_wrap=True, markup=False)
@@ -49,7 +49,7 @@ class Console:
     def head(self) -> None:
         """Print legend and head of the table of steps."""
         for line in (*_LEGEND, _HEADER, _UNITS):
-            self.say(line)
+            self.show(line)
 
     def step(self, s: ContactState, done: float) -> None:
         """Print an accepted state.
@@ -59,7 +59,7 @@ class Console:
             done: part of the whole history that is done.
         """
         assert s.record is not None
-        self.say(
+        self.show(
             f"{s.step:4d} {s.load[:7]:7s} {s.f_ext:7.3f} {s.voltage:5.1f} {s.bone_x * 1e3:7.4f} "
             f"{s.bone_height * 1e3:8.5f} {s.f_t:8.4f} {s.mu_app:7.4f} {s.f_electrostatic:7.3f} "
             f"{s.ridges_in_contact:6d} {s.contact_length * 1e3:8.4f} {s.record.newton_iterations:6d} "

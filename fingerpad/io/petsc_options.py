@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from petsc4py import PETSc
 
 from fingerpad.scene import SceneError
-from variational.solvers.newton import DEFAULTS, PREFIX
+from variational.solvers.iteration import DEFAULTS, PREFIX
 
 _DIRECT = ("lu", "cholesky")
 # What an option that PETSc did not read may have been meant for; any other that PETSc reads is allowed as well.

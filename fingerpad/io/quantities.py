@@ -13,9 +13,9 @@ class Quantity(NamedTuple):
     words: str
     unit: str
     scale: float
-    """From SI to the unit."""
+    """Factor from SI to the unit."""
     digits: int
-    """After the point, where no error says how many are significant."""
+    """Digits after the point, where no error is estimated."""
 
 
 QUANTITIES = {
@@ -35,12 +35,12 @@ PER_LENGTH = (
 
 
 def cell(key: str, value: float, error: float = math.nan) -> str:
-    """Return a quantity given in SI in the unit of tables, with its error where that is known and not below its digits.
+    """Return a quantity in the unit of tables, with its error where the error reaches the digits shown.
 
     Args:
-        key: a name of :data:`QUANTITIES`.
-        value: in SI; NaN where it is not known.
-        error: in SI; NaN where it is not known.
+        key: name in :data:`QUANTITIES`.
+        value: value in SI; NaN where it is not computed.
+        error: error in SI; NaN where it is not estimated.
     """
     if math.isnan(value):
         return "–"
@@ -51,7 +51,7 @@ def cell(key: str, value: float, error: float = math.nan) -> str:
 
 
 def in_words(key: str) -> str:
-    """Return a key such as ``slip_mu_app`` in words: the quantity, and the state that it is of."""
+    """Return a key such as ``slip_mu_app`` in words: quantity and state."""
     name = next((name for name, prefix in PREFIXES.items() if key.startswith(f"{prefix}_")), None)
     if name is None:
         return key
@@ -61,6 +61,6 @@ def in_words(key: str) -> str:
 
 
 def scaled(key: str, value: float) -> tuple[float, str]:
-    """Return a value of a key such as ``slip_contact_length``, given in SI, in the unit of tables, and that unit."""
+    """Return the value of a key such as ``slip_contact_length`` (in SI) in the unit of tables, and this unit."""
     known = [q for name, q in QUANTITIES.items() if key == name or key.endswith(f"_{name}")]
     return (value * known[0].scale, known[0].unit) if known else (value, "")

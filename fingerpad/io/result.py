@@ -1,4 +1,4 @@
-"""What a model answers: the states of a run by name and in order, their errors and costs, as values, files and text."""
+"""Result of a model: the states of a run by name and in order, their errors and costs, as values, files and text."""
 
 import csv
 import json
@@ -26,72 +26,75 @@ _CHANGES = ("error", "penalty")
 
 @dataclass(frozen=True)
 class Cost:
-    """What an answer took."""
+    """Time, memory and work of a result."""
 
     processor_seconds: float = 0.0
-    """Of all ranks, meshes, microscale and compiled forms included (s)."""
+    """Processor time of all ranks (s), meshes, microscale and compiled forms included."""
     wall_seconds: float = 0.0
+    """Elapsed time (s)."""
     newton_iterations: int = 0
     factorisations: int = 0
     unknowns: int = 0
-    """Of the largest linear system; of the final mesh, where a scene asks for an accuracy."""
+    """Unknowns of the largest linear system; with an accuracy, of the final mesh."""
     memory_mb: float = 0.0
-    """Of all ranks (MB)."""
+    """Memory of all ranks (MB)."""
     ranks: int = 1
 
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """The answer of a model to a scene; the same on every rank, except for pictures, which rank 0 draws."""
+    """Result of a model for a scene; the same on every rank, except for pictures, which rank 0 draws."""
 
     scene: Scene
     model: str
     """``full``, ``smooth`` or ``cylinders``."""
     uncharged: ContactState | None
-    """Uncharged normal contact, the last state before a voltage; None where a history has none, or the model does not
-    answer for it. So are the next two. For all three: :mod:`fingerpad.io.states`."""
+    """Uncharged normal contact; None where a history or a model does not have this state, as for the next two. All
+    three are defined in :mod:`fingerpad.io.states`."""
     charged: ContactState | None
-    """Charged normal contact, the last state before the bone moves sideways."""
+    """Charged normal contact, the last state in contact before the bone moves sideways."""
     full_slip: ContactState | None
     """Full slip, held over a further 0.2 mm."""
     steps: tuple[ContactState, ...] = ()
-    """Accepted states in order; none of a model without a path."""
+    """Accepted states in order; empty for a model without a loading path."""
     loads: tuple[LoadResult, ...] = ()
+    """Each load in order, with the state at its end."""
     cost: Cost = Cost()
     failure: str = ""
-    """Why a load or an accuracy could not be reached, else empty."""
+    """Reason why a load or an accuracy could not be reached, else empty."""
     interrupted: str = ""
     """Name of the signal that ended the run, else empty."""
     notes: tuple[str, ...] = ()
-    """What a reader should be told of the answer: sources, omissions, doubts."""
+    """Remarks on the result: sources, omissions, limits of validity."""
     record: dict[str, Any] = field(default_factory=dict)
-    """What else ``summary.json`` holds: omissions, restarts, the search for an accuracy, laws, provenance."""
+    """Further content of ``summary.json``: omissions, restarts, refinement, laws, provenance."""
     folder: Path | None = None
-    """Where tables, plots and fields are; None where none were asked for."""
+    """Folder of tables, plots and fields; None where nothing was written."""
     drawing: "Drawing | None" = None
+    """Data of the pictures; None for a model without them."""
 
     @property
     def named(self) -> dict[str, ContactState]:
-        """The named states that there are, by their names in :data:`fingerpad.io.states.STATES`."""
+        """Named states that are not None, by their names in :data:`fingerpad.io.states.STATES`."""
         return {name: state for name in STATES if (state := getattr(self, name)) is not None}
 
     @property
     def last(self) -> ContactState | None:
-        """The last accepted state, or that of a model without a path."""
+        """The last accepted state; without a loading path the last named state."""
         return self.steps[-1] if self.steps else (self.full_slip or self.charged or self.uncharged)
 
     def plot(self, kind: str = "surface", path: str | Path | None = None) -> "Figure | None":
         """Draw the skin (``"surface"``), the deformed finger (``"finger"``) or the history of sliding (``"history"``).
 
         Args:
-            kind: which of them.
-            path: of a PNG file to write; None for the figure alone.
+            kind: ``"surface"``, ``"finger"`` or ``"history"``.
+            path: PNG file to write; None for the figure alone.
 
         Returns:
             The Matplotlib figure on rank 0, None on the others.
 
         Raises:
-            ValueError: another kind, or one that the result has no data for.
+            ValueError: another kind, or a kind without data in this result.
         """
         if self.drawing is not None:
             return self.drawing.figure(kind, None if path is None else Path(path))
@@ -103,7 +106,7 @@ class Result:
 
     # -- files -----------------------------------------------------------------------------------------
     def values(self) -> dict[str, Any]:
-        """Return conditions and results of the named states, flat: ``slip_mu_app``, None where not in the model."""
+        """Return conditions and results of the named states, flat: ``slip_mu_app``; None where a state is missing."""
         found: dict[str, Any] = {}
         for name in STATES:
             state, prefix = getattr(self, name), PREFIXES[name]
@@ -114,7 +117,7 @@ class Result:
         return found
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the result ready for JSON, as ``summary.json`` holds it; SI units."""
+        """Return the content of ``summary.json``, ready for JSON; SI units."""
         last = self.last
         found: dict[str, Any] = {
             "model": self.model,
@@ -135,10 +138,10 @@ class Result:
 
     @classmethod
     def from_dict(cls, summary: Mapping[str, Any], folder: Path | None = None) -> "Result":
-        """Return what a ``summary.json`` says, without the states on the way.
+        """Return the result of a ``summary.json``, without the states on the loading path.
 
         Raises:
-            SceneError: the parameters in it are no scene.
+            SceneError: its parameters are no valid scene.
         """
         parameters = summary["parameters"]
         scene = from_data({key: value for key, value in parameters.items() if key not in ("laws", "model")})
@@ -148,7 +151,7 @@ class Result:
         names = (*CONDITIONS, *RESULTS, *_STABILITY, *(f"{f.name}_{kind}" for f in fields(Errors) for kind in _CHANGES))
         used |= {f"{prefix}_{name}" for prefix in PREFIXES.values() for name in names}
         record = {key: value for key, value in summary.items() if key not in used}
-        if "laws" in parameters:  # objects of Python, of which their names are left
+        if "laws" in parameters:  # objects of Python, of which only the names are kept
             record["parameters"] = parameters
         uncharged, charged, full_slip = (_state(summary, PREFIXES[name]) for name in STATES)
         return cls(
@@ -167,12 +170,12 @@ class Result:
 
     @classmethod
     def load(cls, folder: str | Path) -> "Result":
-        """Return the result that a run left in a folder; arrays along the skin are in ``surface.npz`` there.
+        """Return the result of a run from its folder; arrays along the skin stay in ``surface.npz`` there.
 
         Raises:
-            SceneError: there is none that can be read.
+            SceneError: the folder holds no result that can be read.
         """
-        from fingerpad.io.drawing import Drawing  # Matplotlib: not for those who only read numbers
+        from fingerpad.io.drawing import Drawing  # Matplotlib, which reading numbers does not need
 
         folder = Path(folder)
         try:
@@ -192,7 +195,7 @@ class Result:
 
     # -- text ------------------------------------------------------------------------------------------
     def __str__(self) -> str:
-        """Return the block *Result* that ends a run: the named states side by side, with units and errors."""
+        """Return the text *Result* at the end of a run: the named states side by side, with units and errors."""
         shown = self.named
         lines = ["Result" + (f" (model '{self.model}')" if self.model != "full" else "")]
         if shown:
@@ -213,7 +216,7 @@ class Result:
         return "\n".join(lines)
 
     def _line(self, key: str) -> list[str]:
-        """Return a quantity of the named states as a row of text; empty where no state has it."""
+        """Return a quantity of the named states as a row of text; empty where it is missing in every state."""
         quantity, cells = QUANTITIES[key], []
         for name, state in self.named.items():
             shown = key not in ("mu_app", "f_t") or name == "full_slip"
@@ -222,7 +225,7 @@ class Result:
         return [f"{quantity.words}{unit}", *cells] if set(cells) - {"–"} else []
 
     def _remarks(self) -> list[str]:
-        """Return what follows the table: why there is no full slip, what ± and N/m mean, the penalty's share."""
+        """Return the lines after the table: failure, missing full slip, meaning of ± and N/m, effect of the penalty."""
         found = [f"Not finished: {self.failure}"] if self.failure else []
         asked = any(load.until_full_slip or load.bone_x for load in self.scene.loads())
         if asked and self.full_slip is None and not self.failure:
@@ -238,14 +241,14 @@ class Result:
 
 
 def _loads(steps: Sequence[ContactState], summary: Mapping[str, Any]) -> Iterator[LoadResult]:
-    """Yield what each load of a run came to; whether its end is stable is in the summary alone."""
+    """Yield the result of each load of a run; the stability of its end comes from the summary."""
     stable = [load.get("stable") for load in summary.get("loads", ())]
     for k, (name, mine) in enumerate(by_load(steps)):
         yield load_result(name, mine, stable[k] if k < len(stable) else None)
 
 
 def _plain(value: Any) -> Any:
-    """Return a value ready for JSON: None where it is not known."""
+    """Return a value ready for JSON: None for NaN."""
     return None if isinstance(value, float) and math.isnan(value) else value
 
 
@@ -259,7 +262,7 @@ def _state(summary: Mapping[str, Any], prefix: str) -> ContactState | None:
         return None
     values = {key: summary.get(f"{prefix}_{key}") for key in (*CONDITIONS, *RESULTS, *_STABILITY)}
     given = {key: value for key, value in values.items() if value is not None}
-    for key in ("f_ext", "voltage"):  # of the scene itself, in answers of models without a path
+    for key in ("f_ext", "voltage"):  # of the scene itself, in results of models without a loading path
         given.setdefault(key, summary[key] if summary.get("model", "full") != "full" else math.nan)
     if prefix == PREFIXES["full_slip"]:
         given |= {"all_slip": True, "slip_held": True}

@@ -1,12 +1,12 @@
-"""Which accepted states of a history have a name, and what each of its loads came to; no dolfinx.
+"""Named states of a history, and the result of each load; no dolfinx.
 
 * *uncharged* (uncharged normal contact): the last state in contact before a voltage is switched on and before the bone
   first moves sideways,
 * *charged* (charged normal contact, in short normal contact): the last state in contact before the bone first moves
-  sideways with skin on the screen, under whatever voltage there is; a way through the air before does not count, and a
-  bone that comes back later makes no other one,
-* *full_slip*: full slip. Every point in contact slips one way, and goes on so with the same forces while the bone
-  slides a further 0.2 mm. A full slip begins at its first state, and the last one that was held counts.
+  sideways with skin on the screen, at the voltage of that state. Sideways motion without contact does not count, nor
+  does a later return of the bone,
+* *full_slip*: full slip. Every point in contact slips one way, with the same forces while the bone slides a further
+  0.2 mm. A full slip begins at its first state. Of several full slips the last one that was held counts.
 """
 
 from collections.abc import Iterator, Sequence
@@ -17,14 +17,14 @@ from typing import Any
 
 from variational.state import CONDITIONS, RESULTS, ContactState
 
-STILL = 1e-12  # m, below which the bone has not moved sideways
-SLIDE_ON = 0.2e-3  # m, further sliding that must not change the forces of full slip
+STILL = 1e-12  # m, largest sideways displacement of a bone at rest
+SLIDE_ON = 0.2e-3  # m, further sliding over which the forces of full slip are constant
 STATES = ("uncharged", "charged", "full_slip")
 WORDS = {"uncharged": "uncharged normal contact", "charged": "charged normal contact", "full_slip": "full slip"}
 PREFIXES = {"uncharged": "uncharged", "charged": "normal", "full_slip": "slip"}
-"""Before the quantities of a state in flat tables and in ``summary.json``: ``normal_contact_length``."""
+"""Prefixes of the quantities of a state in flat tables and in ``summary.json``: ``normal_contact_length``."""
 _EXTREMES = ("mu_app", "f_t", "contact_length", "f_electrostatic")
-_ROUNDOFF = 1e-9  # relative, of a way or a voltage
+_ROUNDOFF = 1e-9  # relative, of a displacement or a voltage
 
 
 def before_sliding(rows: Sequence[ContactState]) -> Sequence[ContactState]:
@@ -36,13 +36,13 @@ def before_sliding(rows: Sequence[ContactState]) -> Sequence[ContactState]:
 
 
 def full_slip(rows: Sequence[ContactState], row: ContactState, steady: float, least: float) -> tuple[int, bool]:
-    """Return the step at which the full slip of a new state began, zero without, and whether it was held since.
+    """Return the first step of the full slip of a new state, zero without full slip, and whether it was held since.
 
     Args:
-        rows: the states before it, with ``slip_began`` and ``slip_held``.
+        rows: accepted states before the new one, with ``slip_began`` and ``slip_held``.
         row: the new state.
-        steady: relative change of the forces that means nothing.
-        least: change of the forces (N/m) that means nothing.
+        steady: relative change of the forces that is not significant.
+        least: change of the forces (N/m) that is not significant.
     """
     if not row.all_slip or len(before_sliding([*rows, row])) > len(rows):
         return 0, False
@@ -55,14 +55,14 @@ def full_slip(rows: Sequence[ContactState], row: ContactState, steady: float, le
 
 
 def unchanged(first: ContactState, row: ContactState, steady: float, least: float) -> bool:
-    """Return whether two states have the same voltage and forces; arguments as of :func:`full_slip`."""
+    """Return whether two states have the same voltage and forces; arguments as for :func:`full_slip`."""
     same = abs(row.voltage - first.voltage) <= _ROUNDOFF * abs(first.voltage)
     pairs = ((first.f_t, row.f_t), (first.f_ext, row.f_ext))
     return bool(same and all(abs(b - a) <= steady * abs(a) + least for a, b in pairs))
 
 
 def named(rows: Sequence[ContactState]) -> dict[str, ContactState]:
-    """Return the states of :data:`STATES` that a history has so far, by name."""
+    """Return the states of :data:`STATES` in a history so far, by name."""
     still = [row for row in before_sliding(rows) if row.ridges_in_contact > 0]
     uncharged = still[: next((k for k, row in enumerate(still) if row.voltage > 0), len(still))]
     held = next((row.slip_began for row in reversed(rows) if row.slip_held), None)
@@ -71,9 +71,10 @@ def named(rows: Sequence[ContactState]) -> dict[str, ContactState]:
 
 
 def partial_slip(rows: Sequence[ContactState]) -> ContactState | None:
-    """Return the state nearest to half of the points slipping on the way to the last full slip or to the end, if any.
+    """Return the state in which the slipping part of the points is nearest to one half, None without such a state.
 
-    States in which every point slips are none.
+    Only states before the last full slip count, or all states without full slip. States in which every point slips do
+    not count.
     """
     found = named(rows)
     last = found.get("full_slip", rows[-1]).step
@@ -83,7 +84,7 @@ def partial_slip(rows: Sequence[ContactState]) -> ContactState | None:
 
 
 def by_load(rows: Sequence[ContactState]) -> Iterator[tuple[str, list[ContactState]]]:
-    """Yield each load's name and its states, those of the first touch with the load that it is on the way to."""
+    """Yield each load's name and its states; the states of the first touch belong to the load that follows."""
     for _, group in groupby(rows, key=lambda row: row.load_number):
         mine = list(group)
         yield mine[-1].load, mine
@@ -91,7 +92,7 @@ def by_load(rows: Sequence[ContactState]) -> Iterator[tuple[str, list[ContactSta
 
 @dataclass(frozen=True)
 class Extreme:
-    """Least and largest value of a quantity over the states of a load, and the steps that have them."""
+    """Least and largest value of a quantity over the states of a load, and their steps."""
 
     min: float
     min_step: int
@@ -101,19 +102,19 @@ class Extreme:
 
 @dataclass(frozen=True, eq=False)
 class LoadResult:
-    """What a load came to."""
+    """Result of a load."""
 
     name: str
     end: ContactState
     extremes: dict[str, Extreme]
-    """By quantity: apparent and total friction, contact length and attraction."""
+    """By quantity: apparent friction coefficient, friction force, contact length and attraction."""
     full_slip_reached: bool
     full_slip_held: bool
     stable: bool | None
-    """Whether the state at the end is; None where that was not examined."""
+    """Whether the state at the end is stable; None where this was not examined."""
 
     def to_dict(self) -> dict[str, Any]:
-        """Return it ready for JSON."""
+        """Return the load's result, ready for JSON."""
         end = {key: getattr(self.end, key) for key in (*CONDITIONS, *RESULTS) if key != "load"}
         extremes = {quantity: asdict(extreme) for quantity, extreme in self.extremes.items()}
         more = {name: getattr(self, name) for name in ("full_slip_reached", "full_slip_held", "stable")}
@@ -121,12 +122,12 @@ class LoadResult:
 
 
 def load_result(name: str, mine: Sequence[ContactState], stable: bool | None) -> LoadResult:
-    """Return what a load came to.
+    """Return the result of a load.
 
     Args:
-        name: of the load.
-        mine: its states.
-        stable: whether the state at its end is, None where that was not examined.
+        name: name of the load.
+        mine: states of the load.
+        stable: whether the state at its end is stable, None where this was not examined.
     """
     extremes = {}
     for quantity in _EXTREMES:

@@ -18,6 +18,7 @@ class Writer:
 
     Attributes:
         log: takes what is to be logged; kept in memory until the folder is taken.
+        folder: where files go; None where nothing is written.
     """
 
     def __init__(self, place: Place | None, comm: MPI.Comm) -> None:
@@ -28,6 +29,7 @@ class Writer:
             comm: communicator of the run.
         """
         self._place, self._comm, self._taken = place, comm, False
+        self.folder = None if place is None else place.folder
         self._tables: dict[str, Table] = {}
         self._fields: Fields | None = None
         self.log = logging.getLogger("fingerpad")

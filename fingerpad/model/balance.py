@@ -1,9 +1,61 @@
-"""What must hold at every full slip, checked after each run: the balance of forces, and friction at its limit."""
+"""What must hold of accepted states: the balance of forces in each, and friction at its limit in full slip."""
+
+import numpy as np
+from numpy.typing import NDArray
 
 from variational.contact.friction import CONE_ROUNDOFF
+from variational.quantities import RidgeLoads
+from variational.solvers.continuation import StepFailed
 from variational.state import ContactState
 
+BALANCED = 1e-6
+"""Largest part of f_ext that may be left at a node, and by which the reactions of bone and screen may differ."""
 _DEFECT = "this is a defect of the program, please report it"
+
+
+def force_error(unknowns: int, tolerance: float, force_scale: float) -> float:
+    """Return the largest sum (N/m) of the nodal forces in one direction that a converged solve can leave.
+
+    The solve ends where the norm of all of them is the tolerance times the force scale; their sum is at most the root
+    of their number times that (Cauchy and Schwarz).
+
+    Args:
+        unknowns: their number, at most.
+        tolerance: of the solver, over ``force_scale``.
+        force_scale: force per length (N/m) in which residuals are measured.
+    """
+    return float(np.sqrt(unknowns)) * tolerance * force_scale
+
+
+def refuse_unbalanced(
+    where: str, left: float, loads: RidgeLoads, bone: NDArray[np.float64], scale: float, tolerance: float
+) -> None:
+    """Refuse a state in which forces are left at a node, or the bone does not bear what the screen does.
+
+    Args:
+        where: step and load.
+        left: largest force left at a node, over ``scale``.
+        loads: what each ridge bears.
+        bone: reaction of the bone (N/m), shape (2,).
+        scale: force (N/m) in which residuals are measured.
+        tolerance: of the solver, in that scale.
+
+    Raises:
+        StepFailed: the state is no equilibrium.
+    """
+    remedy = (
+        f"forces are not balanced to {BALANCED:g} of {scale:g} N/m; try a numerics.tolerance below "
+        f"{tolerance:g}, and no PETSc option that ends a solve before it has converged"
+    )
+    if not left <= BALANCED:
+        raise StepFailed(f"{where}: a force of {left * scale:.4g} N/m is left at a node; {remedy}")
+    screen = np.array([float(loads.f_friction.sum()), float((loads.f_contact - loads.f_attraction).sum())])
+    worst = int(np.argmax(np.abs(screen - bone)))
+    if not abs(screen[worst] - bone[worst]) <= BALANCED * scale:
+        raise StepFailed(
+            f"{where}: the bone bears {bone[worst]:.9g} N/m {('sideways', 'downwards')[worst]} and the screen "
+            f"{screen[worst]:.9g} N/m; {remedy}"
+        )
 
 
 def broken(slip: ContactState | None, error: float, mu_0: float | None) -> str:

@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 
 import fingerpad.started  # noqa: F401
 from fingerpad.io.states import full_slip
+from fingerpad.model.balance import force_error
 from fingerpad.model.gathered import Nodes, Points
-from fingerpad.model.steps import force_error
 from fingerpad.scene.laws import refuse_thickness
 from fingerpad.startup import MPI
 from geometry.mesh import TaggedMesh, load

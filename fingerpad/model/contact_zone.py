@@ -1,10 +1,12 @@
-"""The skin that is not meshed to touch, watched: where it comes near the screen, the run is taken up again with more.
+"""The skin that is not meshed to touch, checked: where it comes near the screen, the run starts again with more.
 
-Ridges far from the contact have coarse elements and no contact forces. Which ones can be told from a scene only
-roughly, so each accepted step is looked at: the last ridge on either side that can touch must not, and skin beyond must
+Ridges far from the contact have coarse elements and no contact forces. Which ones these are follows from a scene only
+roughly. So each accepted step is checked: the last ridge on either side that can touch must not, and skin beyond must
 stay clear of the screen. The last ridge touches long before the next one would: by the outline's curvature that one
 is a tenth of a millimetre higher.
 """
+
+from dataclasses import dataclass
 
 from dolfinx import fem
 
@@ -16,16 +18,19 @@ from geometry.sizing import touching_ridges
 from variational.quantities import Observer, RidgeLoads
 
 _NEAR = 10e-6  # m, height of the skin at which an attraction of 200 V comes to 1 kPa
-_MORE = 2  # ridges on either side that are woken at least, and
-_PART = 0.25  # of those that could touch before
+_MORE = 2  # ridges on either side that are added at least, or
+_PART = 0.25  # this part of those that could touch before
 
 
-class RestartRequired(Exception):
-    """What was left out of the model matters: the loads must be gone through again with scene and plan as given."""
+@dataclass(frozen=True)
+class RestartRequired:
+    """The loads must be gone through again, since an omitted part of the model turned out to matter."""
 
-    def __init__(self, reason: str, scene: Scene, needed: ModelOptions) -> None:
-        super().__init__(reason)
-        self.scene, self.needed = scene, needed
+    reason: str
+    scene: Scene
+    """With more ridges that can touch, or a finer mesh."""
+    options: ModelOptions
+    """With more parts of the model."""
 
 
 class FingerExceeded(RuntimeError):
@@ -33,11 +38,11 @@ class FingerExceeded(RuntimeError):
 
 
 class ContactZone:
-    """Watches a finger's skin."""
+    """Checks the skin of a finger."""
 
-    def __init__(self, scene: Scene, needed: ModelOptions, body: TaggedMesh, observer: Observer) -> None:
+    def __init__(self, scene: Scene, options: ModelOptions, body: TaggedMesh, observer: Observer) -> None:
         """Find the skin that cannot touch."""
-        self._needed = needed
+        self._options = options
         self._scene, self._observer, self._problem = scene, observer, observer.problem
         outside = body.facet_tags.find(tags.OUTER_SKIN)
         self._nodes = fem.locate_dofs_topological(self._problem.V, 1, outside)
@@ -47,35 +52,37 @@ class ContactZone:
         V, u = self._problem.V, self._problem.displacement()
         return self._observer.lowest_outside(V.tabulate_dof_coordinates()[self._nodes, 1] + u[self._nodes, 1])
 
-    def check(self, names: list[int], loads: RidgeLoads) -> None:
-        """Look at the present state; collective.
+    def check(self, ridges: list[int], loads: RidgeLoads) -> RestartRequired | None:
+        """Check the present state; collective.
 
         Args:
-            names: numbers of the ridges that can touch.
+            ridges: numbers of the ridges that can touch.
             loads: their resultants.
 
+        Returns:
+            The scene with more ridges that can touch, where they must; else None.
+
         Raises:
-            RestartRequired: more ridges must be able to touch.
-            FingerExceeded: the same, and there are no more.
+            FingerExceeded: more ridges must be able to touch, and there are no more.
         """
         if self._scene.laws.mesh is not None:
             self._check_file()
-            return
+            return None
         wider = self._wider()
-        last = [j for j, length in ((names[0], loads.length[0]), (names[-1], loads.length[-1])) if length > 0]
+        last = [j for j, length in ((ridges[0], loads.length[0]), (ridges[-1], loads.length[-1])) if length > 0]
         lowest = self._lowest_outside()
         if last:
             reason = f"ridge {last[0]}, the last one that is meshed to touch, is in contact"
         elif lowest < (_NEAR if wider else 0.0):
             reason = f"skin beyond the ridges that are meshed to touch is at a height of {lowest:.3g} m"
         else:
-            return
+            return None
         if wider is None:
             raise FingerExceeded(
                 f"{reason}, and the finger has no more ridges; geometry.ridge_count is "
                 f"{self._scene.geometry.ridge_count} and must be larger, or f_ext smaller"
             )
-        raise RestartRequired(reason, wider, self._needed)
+        return RestartRequired(reason, wider, self._options)
 
     def _check_file(self) -> None:
         """Refuse contact of skin that a mesh file does not give to a ridge."""

@@ -4,7 +4,7 @@ from fingerpad.io.interrupt import Interrupted
 from variational.solvers.continuation import StepFailed
 from variational.solvers.failure import NotConverged
 
-_ADVICE = {
+_HINTS = {
     "NOT_A_NUMBER": "report it with the scene; until then try parameters nearer to the defaults",
     "MUMPS_OUT_OF_MEMORY": "try a larger mesh.contact, fewer ranks, or a machine with more memory",
     "MUMPS_OUT_OF_WORKSPACE": "try -fingerpad_mat_mumps_icntl_14 100, which sets twice the workspace aside",
@@ -17,14 +17,14 @@ _INVERTED = "try a smaller f_ext, or a smaller mesh.contact and mesh.interface, 
 _OTHERWISE = "try a smaller mesh.contact, which lets the edge of the contact move, or another voltage or f_ext"
 
 
-def advice(error: StepFailed) -> str:
-    """Return what to try against a load that could not be reached, empty if the error says it itself."""
+def hint(error: StepFailed) -> str:
+    """Return what to try against a load that could not be reached, empty if the error names it itself."""
     cause = error.__cause__
     if not isinstance(cause, NotConverged):
         return ""
     if cause.inverted:
         return _INVERTED
-    return next((words for name, words in _ADVICE.items() if cause.reason.startswith(name)), _OTHERWISE)
+    return next((words for name, words in _HINTS.items() if cause.reason.startswith(name)), _OTHERWISE)
 
 
 def finer_mesh_may_help(error: StepFailed, coarse_start: bool) -> bool:
@@ -36,4 +36,4 @@ def finer_mesh_may_help(error: StepFailed, coarse_start: bool) -> bool:
     """
     if coarse_start:
         return not isinstance(error, Interrupted)
-    return "smaller mesh.contact" in advice(error)
+    return "smaller mesh.contact" in hint(error)

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from fingerpad.io.views import Profile, View
 from fingerpad.model import symmetry
-from fingerpad.model.simulation import Simulation
-from fingerpad.model.steps import Step
+from fingerpad.model.finger import Finger, Step
 from variational.output import Snapshot, gather_mesh
 from variational.receptors import Receptors
 
@@ -18,41 +17,40 @@ _PROFILE = ("x", "y", "p_n", "t_t", "p_el", "area_x", "area_y")
 
 
 class Viewer:
-    """Looks at the states of a simulation."""
+    """Collects the states of a finger for tables and pictures."""
 
-    def __init__(self, simulation: Simulation) -> None:
-        """Find the receptor sites, if the plan has them."""
-        self._simulation = simulation
-        profiles = simulation.profiles
+    def __init__(self, finger: Finger) -> None:
+        """Find the receptor sites, if they are part of the model."""
+        self._finger = finger
+        profiles = finger.profiles
         sites = np.concatenate([profiles.merkel_sites(), profiles.meissner_sites()])
-        if not simulation.plan.both_halves:  # where their mirror images are
+        if not finger.options.both_halves:  # where their mirror images are
             sites[:, 0] = np.abs(sites[:, 0])
-        self._sites = Receptors(simulation.problem, sites) if simulation.plan.receptors else None
+        self._sites = Receptors(finger.problem, sites) if finger.options.receptors else None
 
-    def view(self) -> View:
-        """Return all that is shown of the present state; collective."""
-        step = self._simulation.present(self._simulation.ridge_loads())
+    def view(self, step: Step) -> View:
+        """Return all that is shown of the present state, that of the step; collective."""
         profile, (snapshot, merkel) = self.profile(step), self.picture()
-        mesh, receptors = self._simulation.scene.mesh, list(self.receptors(step))
+        mesh, receptors = self._finger.scene.mesh, list(self.receptors(step))
         return View(step.state, mesh, profile, snapshot, merkel, list(self.ridges(step)), receptors)
 
     def profile(self, step: Step) -> Profile | None:
-        """Return the skin of a step on rank 0, None elsewhere; collective."""
-        surface = self._simulation.problem.surface
-        values = surface.gather(np.stack([getattr(step.surface, name) for name in _PROFILE]))
+        """Return the skin of a step, the present one, on rank 0, None elsewhere; collective."""
+        surface, skin = self._finger.problem.surface, self._finger.continuation.surface_state
+        values = surface.gather(np.stack([getattr(skin, name) for name in _PROFILE]))
         ridge = surface.gather(surface.ridge[None, :, None].astype(float))
         if values is None or ridge is None:
             return None
         where = ridge[0, :, 0].astype(int)
-        if not self._simulation.plan.both_halves:
+        if not self._finger.options.both_halves:
             values, where = symmetry.profile(_PROFILE, values, where)
         return Profile(where, values, step.state.d_eq)
 
     def picture(self) -> tuple[Snapshot | None, Array | None]:
         """Return the present state of the whole finger, and where the Merkel sites are if wanted; collective."""
-        snapshot, ridges = gather_mesh(self._simulation.problem), np.array(self._simulation.profiles.ridges)
+        snapshot, ridges = gather_mesh(self._finger.problem), np.array(self._finger.profiles.ridges)
         merkel = self._sites.positions()[: len(ridges)] if self._sites else None
-        if not self._simulation.plan.both_halves:
+        if not self._finger.options.both_halves:
             snapshot = symmetry.snapshot(snapshot) if snapshot else None
             if merkel is not None:
                 merkel[ridges < 0, 0] *= -1
@@ -80,7 +78,7 @@ class Viewer:
         """Return the row of each ridge's sites in the present state, that of the step; collective."""
         if self._sites is None:
             return []
-        names, sed = self._simulation.profiles.ridges, self._sites.sed()
+        names, sed = self._finger.profiles.ridges, self._sites.sed()
         merkel, meissner = sed[: len(names)], sed[len(names) :].reshape(-1, 2)
         return [
             {

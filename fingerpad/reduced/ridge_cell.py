@@ -1,6 +1,6 @@
 """One ridge of a scene as a periodic cell, pressed, charged, slid and lifted: the tables of the ridge law.
 
-The cell is a ridge of the scene's skin on flat layers between carried faces (:mod:`variational.solvers.cell`). Its
+The cell is a ridge of the scene's skin on flat layers between faces that move sideways with the bone. Its
 path, at the scene's voltage from the first touch on: pressed by force (normal contact), slid until every point slips,
 lifted by displacement as it slips until it lets go (full slip; also the end of normal contact, below the lightest force
 pressed). How far the flat layers under it yield is one equation a layer, uniaxial compression between rigid walls: it
@@ -145,7 +145,7 @@ class _Cell:
         self.closure = scene.closure()
         made = Body(
             body, skins, interface, self.closure, element=numerics.element, points=numerics.quadrature_points,
-            carried_sides=body.facets(tags.SIDES), coupling_tolerance=numerics.coupling_tolerance,
+            moving_sides=body.facets(tags.SIDES), coupling_tolerance=numerics.coupling_tolerance,
             coupling_cap=numerics.coupling_cap, by_gap=scene.contact.length == "gap", on_accept=self._accepted,
             touch_depth=2e-6,
         )  # fmt: skip

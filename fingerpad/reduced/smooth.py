@@ -168,9 +168,9 @@ def estimated(coarse: ContactState, fine: ContactState | None) -> Errors:
         return Errors()
     names = [field.name for field in fields(Errors)]
     before, after = ({name: getattr(state, name) for name in names} for state in (coarse, fine))
-    knob = MeshParameter()
-    knob.see(before, after)
-    return Errors(**{name: knob.changes[0][name] + knob.safe(name) for name in names})
+    parameter = MeshParameter()
+    parameter.record(before, after)
+    return Errors(**{name: parameter.changes[0][name] + parameter.safe(name) for name in names})
 
 
 def _refuse_coarse(scene: Scene, states: Mapping[str, ContactState], errors: Mapping[str, Errors]) -> None:

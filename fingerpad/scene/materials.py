@@ -1,7 +1,7 @@
 """Materials, insulators and roughness of a scene, with units and the ranges that make sense.
 
-A range is wider than anything that was measured by a factor of ten or more on either side; the docstring of each
-parameter has the reason.
+A range is wider than measured values by a factor of ten or more on either side. The docstring of a key is its text in
+the scene reference, ``docs/scene.md``.
 """
 
 from pathlib import Path
@@ -28,21 +28,22 @@ class Skin(Part):
     """Ogden solid (Eqs. 1 and 2)."""
 
     shear_modulus: Modulus
-    """Initial shear modulus G_0 (Pa): 1 Pa is a slime, 1e12 Pa is diamond."""
+    """Initial shear modulus G_0 (Pa). Range: slime to diamond."""
     alpha: Annotated[Finite, within(1e-2, 50.0, sides=2)]
-    """Power of the stretches, of either sign; at 50 a stretch of 2 has 1e15 times the stress, and below 0.01 the law
-    hardly differs from its logarithmic limit at zero, which it does not have."""
+    """Exponent of the stretches, of either sign. Range: at 50 a stretch of 2 raises the stress by 1e15; zero, the
+    logarithmic limit, is not supported."""
     poisson: Poisson = 0.48
-    """From -0.9 to 0.4999: of a stable solid it is above -1, and beyond a bulk modulus of 5000 G_0 the volume's
-    roundoff decides (only the element "P2-P1" is for so stiff a volume at all)."""
+    """Poisson's ratio of small strains. Range: stability needs more than -1; above 0.4999 roundoff of the volume
+    decides, and such stiff volumes need the element P2-P1."""
 
 
 class Stiff(Part):
     """Saint Venant-Kirchhoff solid: linear elastic at finite rotation (*assumption*; the paper: linear elastic)."""
 
     young: Modulus
-    """Young's modulus (Pa), in the range of the skin's."""
+    """Young's modulus (Pa)."""
     poisson: Poisson = 0.3
+    """Poisson's ratio."""
 
 
 class Materials(Part):
@@ -55,8 +56,8 @@ class Materials(Part):
     nail: Stiff = Stiff(young=170e6)
     nail_bed: Stiff = Stiff(young=1e6)
     exponent: Literal["printed", "abaqus"] = "printed"
-    """Power of the stretches: ``"printed"`` for the paper's -alpha, ``"abaqus"`` for +alpha.
-    *Assumption*: the paper computed with Abaqus but prints -alpha."""
+    """Exponent of the stretches: ``"printed"`` is the paper's -alpha, ``"abaqus"`` is +alpha. *Assumption*: the
+    paper prints -alpha but was computed with Abaqus, whose Ogden law has +alpha."""
 
     @model_validator(mode="before")
     @classmethod
@@ -89,12 +90,12 @@ class Electric(Part):
     """Insulators between finger and electrode (Table 3)."""
 
     eps_sc: Permittivity = 1650.0
-    """Relative permittivity of the stratum corneum, at 3 kHz. From 1, the vacuum's, to 1e7, ten times the skin's at
-    the lowest frequencies."""
+    """Relative permittivity of the stratum corneum at 3 kHz. Range: vacuum to ten times the skin's at the lowest
+    frequencies."""
     d_i: Annotated[Finite, within(1e-9, 1e-2, "m")] = 1e-6
-    """Thickness of the screen's insulating layer (m): from a few atoms to a pane of glass of 10 mm."""
+    """Thickness of the screen's insulating layer (m). Range: a few atoms to a pane of glass."""
     eps_i: Permittivity = 3.9
-    """Relative permittivity of that layer, in the same range, which has ferroelectrics in it."""
+    """Relative permittivity of the screen's insulating layer. Range: vacuum to ferroelectrics."""
 
     def h_0(self, d_sc: float) -> float:
         """Return the effective insulator thickness (m) under stratum corneum of thickness ``d_sc`` (m)."""
@@ -108,17 +109,17 @@ class Topography(Part):
     """A measured height map, from which the roughness is taken; see :mod:`variational.roughness.heightfile`."""
 
     file: str
-    """Of the map: text, NumPy or an instrument's; beside the scene file, or a whole path."""
+    """File of the height map: text, NumPy or an instrument's format; a relative path starts at the scene file."""
     unit: Literal["m", "cm", "mm", "um", "µm", "nm"] | None = None
-    """Of the heights; text and NumPy's files need it, an instrument's have their own."""
+    """Unit of the heights. Text and NumPy files need a unit; files of instruments hold their own."""
     size: tuple[Length, Length] | None = None
-    """Lengths of the map along x and y; a matrix needs them, or those of a pixel."""
+    """Lengths of the map along x and y. A map without coordinates needs these lengths or those of a pixel."""
     pixel: tuple[Length, Length] | None = None
-    """Lengths of a pixel, in place of the map's."""
+    """Lengths of a pixel along x and y, in place of the map's lengths."""
     size_unit: Literal["m", "cm", "mm", "um", "µm", "nm"] | None = None
-    """Of these lengths; without it that of the heights."""
+    """Unit of these lengths; by default the unit of the heights."""
     missing: str | None = None
-    """How missing pixels are marked, beside nan and empty places."""
+    """Mark of missing pixels, besides nan and empty places."""
 
     def roughness(self) -> dict[str, float]:
         """Return h_rms and wavelength (m) of the map.
@@ -144,22 +145,22 @@ class Roughness(Part):
     """Roughness of a ridge (Table 3), see :class:`variational.roughness.bam.BearingArea`."""
 
     h_rms: Annotated[Finite, within(1e-9, 1e-3, "m")] = 3.1e-6
-    """Root mean square height (m): from a cleaved crystal's to that of ridges themselves."""
+    """Root mean square height of the roughness (m)."""
     wavelength: Annotated[Finite, within(1e-8, 1e-2, "m")] = 100e-6
-    """Largest wavelength lambda_0 (m): from a few molecules to the finger itself."""
+    """Largest wavelength lambda_0 of the roughness (m)."""
     young: Modulus = 1e6
     """Elastic modulus of the stratum corneum on the microscale (Pa)."""
     gamma: Annotated[Finite, within(1e-2, 10.0)] = 0.5
-    """Decay of the repulsion over h_rms; Persson's theory has 0.4 to 0.5, a tenth of it to tens of it are allowed."""
+    """Decay length of the repulsion, relative to h_rms; Persson's theory gives 0.4 to 0.5."""
     beta: Annotated[Finite, within(1e-2, 100.0)] = 1.0
-    """Prefactor of the repulsion: 1 in Eq. 9; Eq. 15 takes 3/4. *Assumption*: Eq. 9 is meant. Two powers of ten on
-    either side are allowed."""
+    """Prefactor of the repulsion: 1 in Eq. 9, 3/4 in Eq. 15. *Assumption*: Eq. 9 is meant."""
     p_floor: Annotated[Finite, within(1e-3, 1e9, "Pa")] = 1e3
-    """Pressure (Pa) below which the air gap is held (*assumption*): above that of light, below the pressure at zero
-    separation."""
+    """Mean contact pressure (Pa) below which the air gap is held constant (*assumption*). It must be below the
+    pressure at zero separation."""
 
     topography: Annotated[Topography | None, Field(exclude=True)] = None
-    """Measured height map in place of h_rms and wavelength. It is read at once: a scene holds the two numbers alone."""
+    """Measured height map in place of h_rms and wavelength. The map is read at once: a scene stores only the two
+    numbers."""
 
     @model_validator(mode="before")
     @classmethod

@@ -1,6 +1,7 @@
 """The tables of a scene: loads, accuracy, contact, output and numerics, with units and the ranges that make sense.
 
-:mod:`fingerpad.scene.materials` has the others. The docstring of each parameter has the reason of its range.
+:mod:`fingerpad.scene.materials` has the others. The docstring of a key is its text in the scene reference,
+``docs/scene.md``.
 """
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -22,22 +23,21 @@ Way = Annotated[Finite, within(1e-9, 0.1, "m", zero=True, sides=2)]
 
 
 class Load(Part):
-    """A load to reach from the present one; what is left out stays as it is."""
+    """A load to reach from the present one; omitted values stay as they are."""
 
     name: Annotated[str, AfterValidator(load_name)]
-    """Also of the load's pictures; see :mod:`fingerpad.scene.load_names`."""
+    """Name of the load, also of the load's pictures; see :mod:`fingerpad.scene.load_names`."""
     f_ext: Annotated[Finite, within(1e-3, 5e3, "N/m", zero=True)] | None = None
-    """External normal force on the bone (N/m); zero only under voltage, which then holds the skin on the screen. The
-    range is the default scene's."""
+    """External normal force on the bone (N/m). Zero is allowed only under voltage, which then holds the skin on the
+    screen."""
     bone_height: Way | None = None
-    """Change of the bone's height from the unloaded position (m), negative when pressed; 1 nm is less than an atom of
-    skin feels, 0.1 m is more than any finger."""
+    """Change of the bone's height from the unloaded position (m), negative when pressed."""
     voltage: Voltage | None = None
-    """Instantaneous voltage U (V), in the range of the default scene's."""
+    """Instantaneous voltage U (V)."""
     bone_x: Way | None = None
-    """Horizontal position of the bone (m), zero when unloaded; in the range of the height."""
+    """Horizontal position of the bone (m), zero when unloaded."""
     until_full_slip: Switch = False
-    """Stop as soon as every point in contact slips one way; with bone_x alone."""
+    """Whether the load stops as soon as every point in contact slips one way; only with bone_x."""
 
     @model_validator(mode="after")
     def _consistent(self) -> "Load":
@@ -66,18 +66,22 @@ class Load(Part):
 
 
 class Accuracy(Part):
-    """Discretisation errors that are asked for, relative.
+    """Largest relative discretisation errors allowed.
 
     See :mod:`fingerpad.richardson` and :mod:`fingerpad.accuracy.refinement`. Friction is that of full slip, lengths and
     energy densities are those of normal contact and of full slip.
     """
 
     mu_app: Asked | None = None
-    """This and the others are from 1e-6, to which no mesh comes that a machine can hold, to 0.5, which says nothing."""
+    """Largest relative error of the apparent friction coefficient at full slip. Range: from 1e-6, beyond any mesh
+    that fits into memory, to 0.5, which excludes almost nothing."""
     f_t: Asked | None = None
+    """Largest relative error of the friction force at full slip."""
     contact_length: Asked | None = None
+    """Largest relative error of the contact length, at normal contact and at full slip."""
     sed: Asked | None = None
-    """At the Merkel sites of the ridges that can touch, over the largest of them."""
+    """Largest error of the strain energy density at the Merkel sites of touching ridges, relative to the largest
+    density among the sites."""
 
     @model_validator(mode="after")
     def _asks(self) -> "Accuracy":
@@ -91,31 +95,33 @@ class Accuracy(Part):
 
 
 class Contact(Part):
-    """How contact and friction are discretised, and what is called contact.
+    """Discretisation of contact and friction, and the definition of the contact length.
 
-    A formulation reads the keys of its own; to give it another's is refused.
+    A formulation reads its own keys only; keys of another formulation are refused.
     """
 
     formulation: Literal["penalty", "nitsche", "augmented"] = "penalty"
-    """Springs of the screen, Nitsche's method, or an augmented Lagrangian; see
+    """Penalty (springs of the screen), Nitsche's method or an augmented Lagrangian; see
     :mod:`variational.contact.formulation`."""
     eps_n: Annotated[Finite, within(1e7, 1e17, "Pa/m")] = 1.5e12
-    """Normal stiffness of the penalty and the augmented Lagrangian (Pa/m of reference area). *Assumption*: penetration
-    stays below a tenth of d_eq. The augmented Lagrangian's default is ten times as stiff, for fewer sweeps. With 1e7
-    the finger sinks in by millimetres; with 1e17 roundoff of a length of 1 mm makes 20 kPa."""
+    """Normal stiffness of the penalty and of the augmented Lagrangian (Pa/m of reference area). *Assumption*: the
+    default keeps the penetration below a tenth of d_eq. The augmented Lagrangian's default is ten times as large,
+    which saves coupling iterations. Range: at 1e7 the finger sinks in by millimetres; at 1e17 the roundoff of a
+    length of 1 mm is 20 kPa."""
     eps_t: Annotated[Finite, within(1e6, 1e17, "Pa/m")] = 5e10
-    """Tangential stiffness of the two (Pa/m of reference area) (*assumption*); the augmented Lagrangian's likewise."""
+    """Tangential stiffness of both (Pa/m of reference area) (*assumption*). The augmented Lagrangian's default is
+    ten times as large."""
     tolerance: Annotated[Finite, within(1e-12, 1e-6, "m")] = 5e-9
-    """Penetration and elastic slip that the augmented Lagrangian leaves (m): a three-hundredth of the smallest d_eq.
-    Below 1e-12 it is roundoff, above 1 µm the air gap itself."""
+    """Penetration and elastic slip (m) at which the augmented Lagrangian's iteration ends. The default is a
+    three-hundredth of the smallest d_eq. Range: from roundoff to the size of the air gap."""
     gamma_0: Annotated[Finite, within(1e-3, 1e6)] = 1.0
-    """Nitsche's stiffness over the skin's constrained modulus per facet length; with 10 the default finger finds no
-    equilibrium while it is pressed (``docs/chart.md``). Of order 1 by its meaning, with powers of ten to try."""
+    """Nitsche's stiffness, divided by the skin's constrained modulus per facet length. With 10 no equilibrium was
+    found while the default finger was pressed (``docs/chart.md``)."""
     theta: Literal[-1, 0, 1] = 0
-    """Nitsche's variant; 1 and -1 compile for longer, and 1 needs a larger gamma_0."""
+    """Variant of Nitsche's method. Variants 1 and -1 compile for longer; variant 1 needs a larger gamma_0."""
     length: Literal["pressure", "gap"] = "pressure"
-    """What counts as ridge length L_R in Eq. 4: where there is contact pressure, or where the gap is below d_eq.
-    *Assumption*: the former; the domain printed in Eq. 4 is the whole boundary."""
+    """Ridge length L_R of Eq. 4: ``"pressure"`` is the length under contact pressure, ``"gap"`` the length where
+    the gap is below d_eq. *Assumption*: the former; the domain printed in Eq. 4 is the whole boundary."""
 
     @model_validator(mode="before")
     @classmethod
@@ -160,38 +166,35 @@ FORMULATION_KEYS = frozenset().union(*_FORMULATION_KEYS.values())
 
 
 class Output(Part):
-    """What a run is asked for; what is not wanted is not computed."""
+    """Optional outputs; an output that is switched off is not computed."""
 
     receptors: Switch = True
-    """Strain energy density at the Merkel and Meissner sites, with elements of ``mesh.receptor`` at them."""
+    """Whether strain energy densities at the Merkel and Meissner sites are computed, with elements of size
+    ``mesh.receptor`` there."""
     errors: Switch = True
-    """Discretisation errors of the results; see :mod:`fingerpad.accuracy.refinement`. Where an accuracy is asked for
-    they are estimated in any case."""
+    """Whether discretisation errors are estimated; see :mod:`fingerpad.accuracy.refinement`. With an accuracy they
+    always are."""
 
 
 class Numerics(Part):
     """Discretisation and tolerances."""
 
     element: Literal["P1", "P2", "P2 reduced", "P2-P1", "P3"] = "P2"
-    """Displacement, and pressure where there is one; see :mod:`variational.element`."""
+    """Element of the displacement, and of the pressure in P2-P1; see :mod:`variational.element`."""
     quadrature_points: Annotated[int, Field(strict=True, ge=2, le=8)] = 4
-    """Gauss points on a surface facet."""
+    """Number of Gauss points on a surface facet."""
     tolerance: Rest = 1e-9
-    """Residual of the equilibrium over f_ext at which Newton's method ends: from 1e-12, near roundoff, to 1e-3, with
-    which no force is off by more than some thousandths."""
+    """Residual of the equilibrium, relative to f_ext, at which Newton's method ends."""
     coupling_tolerance: Rest = 1e-6
-    """Relative change of d_eq at which the loop over the scales ends, in the same range. What is left of the loop is
-    its gain g times as much over 1 - g, and the attraction is off by up to twice that: by less than 1e-2 with 1e-3
-    up to a gain of 0.8."""
+    """Relative change of d_eq at which the coupling iteration ends. With a gain g the remaining error of d_eq is up
+    to g / (1 - g) times as large, that of the attraction up to twice that."""
     coupling_cap: Annotated[int, Field(strict=True, ge=1, le=1000)] = 30
-    """Most sweeps of that loop; one that needs a thousand does not converge."""
+    """Largest number of coupling iterations of one solve."""
     step_scale: Annotated[Finite, within(1e-3, 10.0)] = 1.0
-    """Factor on the largest steps of force, voltage and displacement: a thousandth makes thousands of steps of each
-    load, and of ten times the largest steps few are accepted."""
+    """Factor on the largest steps of force, voltage and displacement."""
     memory: Annotated[Finite, within(1e8, 1e15, "B")] = 16e9
-    """Most memory (bytes) that a run may need on all ranks together, by the estimate of :mod:`fingerpad.model.memory`.
-    A scene beyond it is refused before meshing; the default leaves a machine of 24 GB some room. From 0.1 GB, which the
-    program itself takes, to 1000 TB."""
+    """Most memory (bytes) of all ranks together, by the estimate of :mod:`fingerpad.model.memory`. A larger scene
+    is refused before meshing. The default fits a machine of 24 GB."""
 
     @model_validator(mode="after")
     def _consistent(self) -> "Numerics":

@@ -41,19 +41,17 @@ class Scene(Part):
     """
 
     f_ext: Annotated[Finite, within(1e-3, 5e3, "N/m")] = 75.0
-    """External normal force on the bone (N/m): 1e-3 N/m is the weight of a grain of sand on a finger, 5000 N/m are
-    100 N on 20 mm of it, which hurts."""
+    """External normal force on the bone (N/m). Range: the weight of a grain of sand to 100 N on 20 mm of finger."""
     voltage: Voltage = 200.0
-    """Instantaneous voltage U (V). *Assumption*: Eq. 3's, not Table 3's peak to peak. None, or from 1 mV, which
-    attracts with less than 1 µPa, to 5 kV, ten times what displays have."""
+    """Instantaneous voltage U (V). *Assumption*: U is that of Eq. 3, not the peak-to-peak value of Table 3. Range:
+    from 1 mV, which attracts with less than 1 µPa, to ten times the voltage of displays; 0 is no voltage."""
     slide_length: Annotated[Finite, within(1e-9, 0.1, "m")] = 5e-3
-    """Farthest the bone slides (m) on its way to full slip (*assumption*): a screen is no longer than 0.1 m to a
-    finger, and 1 nm is less than the skin's own slip before sliding."""
+    """Largest displacement of the bone (m) on the way to full slip (*assumption*). The slide stops earlier, at full
+    slip."""
     history: Annotated[tuple[Load, ...], Field(min_length=1, max_length=1000)] | None = None
-    """Loads one after the other, in place of the default press, charge and slide; a thousand take a machine days."""
+    """Loads to reach one after the other, at most 1000, in place of the default press, charge and slide."""
     friction: Annotated[Finite, within(1e-6, 2.0, zero=True)] = 0.25
-    """Friction coefficient mu_0 of skin on the screen: none, or from 1e-6, a part of f_ext that the balance of the
-    equilibrium leaves open, to 2, that of rubber."""
+    """Friction coefficient mu_0 of skin on the screen. 0 is no friction; 2 is the coefficient of rubber."""
     geometry: Fingertip = Fingertip()
     mesh: MeshSize = MeshSize()
     materials: Materials = Materials()
@@ -62,7 +60,7 @@ class Scene(Part):
     contact: Contact = Contact()
     numerics: Numerics = Numerics()
     accuracy: Accuracy | None = None
-    """Relative errors within which results are wanted; sizes in ``mesh`` are then those to start from."""
+    """Largest relative errors allowed. The element sizes in ``mesh`` are then those of the first mesh."""
 
     def __init__(self, /, **data: Any) -> None:
         """Check a scene given as nested tables.

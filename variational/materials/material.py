@@ -21,6 +21,7 @@ Its numbers become fields of the compiled form with one value a layer: layers of
 numbers do not compile it again.
 """
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -132,7 +133,7 @@ class Material(Law):
 
     def _refuse_energy(self) -> None:
         try:
-            left = [abs(s) for s in self._unloaded()]
+            left = [abs(s) for s in (_unloaded if _hashable(self) else _unloaded.__wrapped__)(self)]
         except Exception as error:  # whatever the user's energy raises
             raise ValueError(
                 f"the energy of {self}, to be written with arithmetic and ufl's functions, cannot be evaluated "
@@ -144,12 +145,23 @@ class Material(Law):
                 "the stretches of F / J^(1/3) has not"
             )
 
-    def _unloaded(self) -> list[float]:
-        """Return the components of the stress (Pa) of the unloaded solid, without the volumetric part."""
-        F = ufl.variable(ufl.Identity(2) + 0 * ufl.Identity(2))
-        P = ufl.diff(self.distortion(kinematics.displacement_gradient(F)), F)
-        parts = [P[0, 0], P[0, 1], P[1, 0], P[1, 1], self.distortion_zz(F)]
-        return [float(apply_derivatives(apply_algebra_lowering(part))) for part in parts]
+
+@lru_cache(maxsize=64)  # UFL takes 0.1 s a law, and every mesh of a run has its laws checked
+def _unloaded(solid: Material) -> list[float]:
+    """Return the components of the stress (Pa) of the unloaded solid, without the volumetric part."""
+    F = ufl.variable(ufl.Identity(2) + 0 * ufl.Identity(2))
+    P = ufl.diff(solid.distortion(kinematics.displacement_gradient(F)), F)
+    parts = [P[0, 0], P[0, 1], P[1, 0], P[1, 1], solid.distortion_zz(F)]
+    return [float(apply_derivatives(apply_algebra_lowering(part))) for part in parts]
+
+
+def _hashable(solid: Material) -> bool:
+    """Return whether a law can be recognised: one of a user may carry an array beside its numbers."""
+    try:
+        hash(solid)
+    except TypeError:
+        return False
+    return True
 
 
 def _in_space(F, stretch):

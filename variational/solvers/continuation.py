@@ -1,8 +1,8 @@
 """From load to load: adaptive steps with cutback, first touch, snap-off, and accepted states.
 
 A step that fails is halved. Where the loop over the scales cycles there may be no equilibrium in a range of loads (see
-:mod:`~variational.solvers.coupling`), which halved steps only creep up to; so a longer step over that range is tried
-first.
+:mod:`~variational.solvers.coupling`), which halved steps approach and never cross; so a longer step over that range is
+tried first.
 
 History (friction anchors, contact multipliers, air gaps, displacement) is accepted in :meth:`Continuation._accept`
 and nowhere else; a rejected attempt restores the last accepted state.
@@ -15,9 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from variational.contact.formulation import History
+from variational.solvers.accepted import AcceptedState
 from variational.solvers.coupling import Coupling
+from variational.solvers.equations import Control
 from variational.solvers.failure import NotConverged
-from variational.solvers.newton import Control
+from variational.solvers.homotopy import relax
 
 Array = NDArray[np.float64]
 
@@ -44,8 +46,12 @@ _FORCE, _VOLTAGE, _SINK, _SLIDE = 0.067, 0.25, 40e-6, 60e-6
 _SMALLEST = 1e-3  # step below which a load is given up, over the largest
 _MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on when the bone moves
 _LEAP = 1.5  # step tried where the loop over the scales cycles, over the one that led there
-_WAYS = "at once", "settled", "bit by bit", "creeping"  # to an equilibrium from a state from elsewhere
-_SMALLEST_BIT = 1 / 8  # of the forces that such a state is out of balance by
+_WAYS = (
+    "at once",
+    "under held skin",
+    "part by part",
+    "pseudo-transient",
+)  # to an equilibrium from a state from elsewhere
 _FEW = 6  # factorisations; a step that took no more lets the next one grow
 _MANY_STEPS, _FEW_STEPS = 20, 100  # most steps of a load: so many for each of its largest steps, and so many more
 _UNCUT = 3  # steps in a row that were not cut, after which the next one grows however hard they were
@@ -78,14 +84,42 @@ class Attempt:
         return self.pseudo_transient > 0 or bool(self.jumped) or self.stepped_over_fold
 
 
-@dataclass
-class _Accepted:
-    x: Array
-    history: History
-    d_eq: Array
-    control: Control
-    voltage: float
-    reaction: Array
+class _Way:
+    """The loads between an accepted state and a target."""
+
+    def __init__(self, start: AcceptedState, target: Target) -> None:
+        self.start, self.target = start, target
+
+    def at(self, part: float) -> tuple[Control, float]:
+        """Return control and voltage where a part of the target is reached."""
+        a, target = self.start, self.target
+        x1 = a.control.x if target.bone_x is None else target.bone_x
+        u1 = a.voltage if target.voltage is None else target.voltage
+        c = Control(a.control.x + part * (x1 - a.control.x), a.control.y, a.control.force)
+        if target.bone_height is not None:
+            c.y = a.height + part * (target.bone_height - a.height)
+        elif target.f_ext is not None:
+            # equal steps of the root: nearly equal steps of the indentation
+            f0 = max(a.control.force, 0.0)
+            c.y, c.force = None, (np.sqrt(f0) + part * (np.sqrt(target.f_ext) - np.sqrt(f0))) ** 2
+        # equal steps of U^2, which the attraction follows
+        return c, float(np.sqrt(a.voltage**2 + part * (u1**2 - a.voltage**2)))
+
+    def largest_step(self, scale: float) -> float:
+        """Return the largest part of the target that one step may cover; ``scale`` multiplies the usual one."""
+        a, target = self.start, self.target
+        steps: list[tuple[float, float]] = []  # how far one step may go, and how far the target is
+        if target.f_ext is not None:
+            roots = np.sqrt(target.f_ext), np.sqrt(max(a.control.force, 0.0))
+            steps.append((_FORCE * max(roots), abs(roots[0] - roots[1])))
+        if target.voltage is not None:
+            squares = target.voltage**2, a.voltage**2
+            steps.append((_VOLTAGE * max(squares), abs(squares[0] - squares[1])))
+        if target.bone_height is not None:
+            steps.append((_SINK, abs(target.bone_height - a.height)))
+        if target.bone_x is not None:
+            steps.append((_SLIDE, abs(target.bone_x - a.control.x)))
+        return float(min([1.0, *(scale * most / whole for most, whole in steps if whole > 0)]))
 
 
 class Continuation:
@@ -100,7 +134,7 @@ class Continuation:
     def __init__(
         self,
         coupling: Coupling,
-        on_accept: Callable[[Target, float, Attempt], None] = lambda target, part, attempt: None,
+        on_accept: Callable[[Target, float, Attempt], bool | None] = lambda target, part, attempt: None,
         touch_depth: float = 5e-6,
         step_scale: float = 1.0,
     ) -> None:
@@ -108,7 +142,8 @@ class Continuation:
 
         Args:
             coupling: solves at fixed loads.
-            on_accept: called with the target, the part of it reached and how, after each accepted step.
+            on_accept: called with the target, the part of it reached and how, after each accepted step; returns True
+                to stop there.
             touch_depth: how far the bone is lowered by displacement before force takes over (m).
             step_scale: factor on the largest steps of force, voltage and displacement.
         """
@@ -118,101 +153,53 @@ class Continuation:
         self.steps = 0
         self.surface_state = self.observer.state()
         self.slip = (0.0, False)
-        self._now = self._snapshot()
+        self._now = AcceptedState.of(self.coupling)
 
     # -- accepted states -------------------------------------------------------------------------------
-    def _snapshot(self) -> _Accepted:
-        return _Accepted(
-            self.solver.x.array_r.copy(),
-            self.problem.history,
-            self.coupling.d_eq.copy(),
-            replace(self.solver.control),
-            float(self.problem.voltage.value),
-            self.solver.reaction.copy(),
-        )
-
     def _restore(self) -> None:
-        a = self._now
-        self.solver.x.array_w[:] = a.x
-        self.solver.to_fields(self.solver.x)
-        self.coupling.set_air_gaps(a.d_eq.copy())
-        self.problem.set_history(a.history)
-        self.solver.control = replace(a.control)
-        self.problem.voltage.value = a.voltage
-        self.solver.reaction = a.reaction.copy()
+        self._now.restore(self.coupling)
 
     def _accept(self) -> None:
         self.surface_state = self.observer.state()
         self.slip = self.observer.slip(self.surface_state)
         s = self.surface_state
         self.problem.set_history(History(s.anchor, s.p_n, s.x))
-        self._now = self._snapshot()
+        self._now = AcceptedState.of(self.coupling)
         self.steps += 1
 
     # -- targets ---------------------------------------------------------------------------------------
     def run(self, target: Target) -> None:
-        """Reach a target.
+        """Reach a target, or stop on the way where ``on_accept`` returns True.
 
         Raises:
             StepFailed: the load reached and why the next step was not.
         """
         if target.f_ext is not None and self._now.control.y is not None:
-            self._touch(target)
+            if not self._touch(target):
+                return
         self._reach(target)
 
-    def _touch(self, target: Target) -> None:
-        """Lower the bone by displacement until the screen bears it: without contact, force control is singular."""
+    def _touch(self, target: Target) -> bool:
+        """Lower the bone by displacement until the screen bears it: without contact, force control is singular.
+
+        Returns:
+            Whether the screen bears it; False where ``on_accept`` stopped the path.
+        """
         start = self._now.control.y or 0.0
         depth = self.touch_depth
         while self.solver.reaction[1] <= 0 or self.steps == 0:
-            self._reach(Target("touch", bone_height=start - depth))
+            if not self._reach(Target("touch", bone_height=start - depth)):
+                return False
             depth += self.touch_depth
         self.solver.control.y = None
         self.solver.control.force = float(self.solver.reaction[1])
-        self._now = self._snapshot()
+        self._now = AcceptedState.of(self.coupling)
+        return True
 
-    def _loads(self, target: Target) -> Callable[[float], tuple[Control, float]]:
-        """Return control and voltage as functions of the part of the target reached."""
-        a, y0 = self._now, self._height()
-        x1 = a.control.x if target.bone_x is None else target.bone_x
-        u1 = a.voltage if target.voltage is None else target.voltage
-
-        def at(part: float) -> tuple[Control, float]:
-            c = Control(a.control.x + part * (x1 - a.control.x), a.control.y, a.control.force)
-            if target.bone_height is not None:
-                c.y = y0 + part * (target.bone_height - y0)
-            elif target.f_ext is not None:
-                # equal steps of the root: nearly equal steps of the indentation
-                f0 = max(a.control.force, 0.0)
-                c.y, c.force = None, (np.sqrt(f0) + part * (np.sqrt(target.f_ext) - np.sqrt(f0))) ** 2
-            # equal steps of U^2, which the attraction follows
-            return c, float(np.sqrt(a.voltage**2 + part * (u1**2 - a.voltage**2)))
-
-        return at
-
-    def _height(self) -> float:
-        """Return the bone's height (m, change from unloaded) of the accepted state."""
-        y = self._now.control.y
-        return float(self.solver.bone[1]) if y is None else y
-
-    def _largest_step(self, target: Target) -> float:
-        """Return the largest part of a target that one step may cover."""
-        a = self._now
-        steps: list[tuple[float, float]] = []  # how far one step may go, and how far the target is
-        if target.f_ext is not None:
-            roots = np.sqrt(target.f_ext), np.sqrt(max(a.control.force, 0.0))
-            steps.append((_FORCE * max(roots), abs(roots[0] - roots[1])))
-        if target.voltage is not None:
-            squares = target.voltage**2, a.voltage**2
-            steps.append((_VOLTAGE * max(squares), abs(squares[0] - squares[1])))
-        if target.bone_height is not None:
-            steps.append((_SINK, abs(target.bone_height - self._height())))
-        if target.bone_x is not None:
-            steps.append((_SLIDE, abs(target.bone_x - a.control.x)))
-        return float(min([1.0, *(self.step_scale * most / whole for most, whole in steps if whole > 0)]))
-
-    def _reach(self, target: Target) -> None:
-        at, largest = self._loads(target), self._largest_step(target)
+    def _reach(self, target: Target) -> bool:
+        """Reach a target; return False where ``on_accept`` stopped the path before."""
+        way = _Way(self._now, target)
+        largest = way.largest_step(self.step_scale)
         part, step, uncut, cut = 0.0, largest, 0, 0
         first, most = self.steps, _FEW_STEPS + int(np.ceil(_MANY_STEPS / largest))
         while part < 1:
@@ -226,9 +213,9 @@ class Continuation:
             while True:
                 # One or two failures may be a step too large. More in a row, or one in each of several steps, are a
                 # jump, which no step is small enough for.
-                creep = len(attempt.cutbacks) > 1 or cut >= _CUT
+                pseudo_transient = len(attempt.cutbacks) > 1 or cut >= _CUT
                 try:
-                    self._try(at(part + step), attempt, creep)
+                    self._try(way.at(part + step), attempt, pseudo_transient)
                     break
                 except NotConverged as failure:
                     self._restore()
@@ -241,13 +228,15 @@ class Continuation:
                         raise StepFailed(self._describe(target, part, failure)) from failure
             self._accept()
             part += step
-            self.on_accept(target, part, attempt)
+            if self.on_accept(target, part, attempt):
+                return False
             if target.until_full_slip and self.slip[1]:
-                return
+                return True
             uncut, cut = (0, cut + 1) if attempt.cutbacks else (uncut + 1, 0)
             step = within
             if attempt.factorisations <= _FEW or uncut >= _UNCUT:
                 step, uncut = min(2 * step, largest), 0
+        return True
 
     def _describe(self, target: Target, part: float, failure: NotConverged) -> str:
         c = self._now.control
@@ -258,13 +247,13 @@ class Continuation:
         )
 
     # -- a state from elsewhere ------------------------------------------------------------------------
-    def adopt(self, name: str) -> Attempt:
+    def re_equilibrate(self, name: str) -> Attempt:
         """Solve at the present loads from fields and history that were put in from outside, and accept the state.
 
-        On another mesh of the same body the carried skin is nearly right, and the strain in the elements next to it is
+        On another mesh of the same body the restored skin is nearly right, and the strain in the elements next to it is
         not. Where Newton's method does not find an equilibrium from there at once, the body is brought into balance
-        with its skin held where it is, and it is tried again from there; then what is left out of balance is let go bit
-        by bit; then pseudo-transient continuation is tried.
+        with its skin held where it is, and Newton's method starts again from that state. If this fails too, the forces
+        that are out of balance are taken away part by part; the last way is pseudo-transient continuation.
 
         Args:
             name: what the state is called in a failure.
@@ -272,17 +261,17 @@ class Continuation:
         Raises:
             StepFailed: no equilibrium was found from there.
         """
-        self._now = self._snapshot()
+        self._now = AcceptedState.of(self.coupling)
         attempt = Attempt()
         for way in _WAYS:
             try:
-                if way == "settled":
-                    self._let_go(1.0, skin=True)
-                    self._now = self._snapshot()
-                if way == "bit by bit":
-                    self._let_go(0.5)
+                if way == "under held skin":
+                    self._relax(1.0, skin=True)
+                    self._now = AcceptedState.of(self.coupling)
+                if way == "part by part":
+                    self._relax(0.5)
                 load = replace(self._now.control), self._now.voltage
-                self._try(load, attempt, creep=way == "creeping", on_cone=False)
+                self._try(load, attempt, pseudo_transient=way == "pseudo-transient", on_cone=False)
                 self._accept()
                 return attempt
             except NotConverged as failure:
@@ -291,31 +280,9 @@ class Continuation:
                 last = failure
         raise StepFailed(self._describe(Target(name), 0.0, last)) from last
 
-    def _let_go(self, bit: float, skin: bool = False) -> None:
-        """Let go bit by bit, at frozen air gaps, of the forces by which the present state is out of balance.
-
-        Args:
-            bit: part of the forces to start with.
-            skin: hold the skin where it is.
-
-        Raises:
-            NotConverged: not even the smallest bit could be.
-        """
-        solver = self.solver
-        solver.new_load(replace(self._now.control), self._now.voltage, on_cone=False)
-        solver.hold(skin)
-        try:
-            while solver.held > 0:
-                before, held = solver.x.array_r.copy(), solver.held
-                solver.held = max(held - bit, 0.0)
-                try:
-                    solver.solve()
-                except NotConverged:
-                    solver.x.array_w[:], solver.held, bit = before, held, bit / 2
-                    if bit < _SMALLEST_BIT:
-                        raise
-        finally:
-            solver.release()
+    def _relax(self, part: float, skin: bool = False) -> None:
+        self.solver.new_load(replace(self._now.control), self._now.voltage, on_cone=False)
+        relax(self.solver, part, skin)
 
     def probe(self, control: Control) -> tuple[Array, bool] | None:
         """Look where the accepted state would lead, and stay in it.
@@ -329,7 +296,7 @@ class Continuation:
         """
         guess, gain = self.problem.guess.value.copy(), self.coupling.gain.copy()
         try:
-            self._try((control, self._now.voltage), Attempt(), creep=False)
+            self._try((control, self._now.voltage), Attempt(), pseudo_transient=False)
             return self.solver.reaction.copy(), self.observer.slip(self.observer.state())[1]
         except NotConverged:
             return None
@@ -338,13 +305,13 @@ class Continuation:
             self.problem.guess.value, self.coupling.gain = guess, gain
 
     # -- one step --------------------------------------------------------------------------------------
-    def _try(self, load: tuple[Control, float], attempt: Attempt, creep: bool, on_cone: bool = True) -> None:
+    def _try(self, load: tuple[Control, float], attempt: Attempt, pseudo_transient: bool, on_cone: bool = True) -> None:
         counts = self.solver.counts
         newton, factorisations, shifted = counts.newton, counts.factorisations, counts.pseudo_transient
         moves = load[0].x != self._now.control.x
         self.solver.new_load(*load, slipping=moves and self.slip[0] > _MANY, on_cone=on_cone)
         try:
-            self.coupling.solve(creep)
+            self.coupling.solve(pseudo_transient)
         finally:
             attempt.newton += counts.newton - newton
             attempt.factorisations += counts.factorisations - factorisations

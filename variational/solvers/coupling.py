@@ -12,14 +12,14 @@ p_c to infinity. A ridge without contact is attracted across its height where th
 There may be no such state. A ridge about to leave touches with a facet or two, and lets go of them one at a time:
 with one facet less its pressure is higher, its air gap smaller and its attraction stronger, so that the facet comes
 back. Between the loads at which either state is one of equilibrium the loop cycles, however small the step;
-:mod:`~variational.solvers.continuation` leaps over them.
+:mod:`~variational.solvers.continuation` steps over them.
 
 A formulation of contact whose history is corrected after each solve, the augmented Lagrangian, shares the loop: a
 sweep corrects air gaps and multipliers, and the loop ends when both agree. Without a closure, for a path without
 voltage, the multipliers are all there is to correct, and a step is mostly one solve.
 
 The tangent of the macroscale is that of frozen air gaps. When a later sweep of a load that was in equilibrium
-fails, it is because a ridge jumps, and the solver may creep at once.
+fails, it is because a ridge jumps, and pseudo-transient continuation is allowed at once.
 """
 
 from dataclasses import dataclass, field
@@ -100,9 +100,9 @@ class Coupling:
         if self.closure is not None:
             self.solver.problem.set_air_gaps(d_eq)
 
-    def _sweep(self, creep: bool) -> tuple[Array, SurfaceState]:
+    def _sweep(self, pseudo_transient: bool) -> tuple[Array, SurfaceState]:
         """Solve at the current air gaps; return what the closure makes of the pressures (m), and the surface."""
-        self.solver.solve(creep)
+        self.solver.solve(pseudo_transient)
         with self.solver.timings.phase("coupling"):
             state = self.observer.state()
             if self.closure is None:
@@ -113,11 +113,11 @@ class Coupling:
             raise NotConverged(f"NOT_A_NUMBER in the air gap of ridge {ridge}", False)
         return d_eq, state
 
-    def solve(self, creep: bool = False) -> None:
+    def solve(self, pseudo_transient: bool = False) -> None:
         """Find the state in which air gaps and pressures agree, and the contact's conditions hold.
 
         Args:
-            creep: see :meth:`variational.solvers.newton.Solver.solve`.
+            pseudo_transient: see :meth:`variational.solvers.newton.Solver.solve`.
 
         Raises:
             ValueError: the closure returns another shape than the pressures'.
@@ -133,7 +133,7 @@ class Coupling:
         secants, names = Secants(self.d_eq, self.gain), self.observer.surface.names
         for sweep in range(self.cap):
             d = self.d_eq
-            found, state = self._sweep(creep or sweep > 0)
+            found, state = self._sweep(pseudo_transient or sweep > 0)
             r = found - d if charged else np.zeros_like(d)  # without attraction the air gaps do not act
             error = formulation.error(state, contact_history, problem.interface.friction)
             self.history.errors.append(problem.mesh.comm.allreduce(error, op=MPI.MAX))

@@ -73,10 +73,10 @@ class StabilityCheck:
         guess = float(problem.guess.value)
         problem.guess.value, problem.eta.value = SLIPS, eta
         try:
-            self.solver.assemble_tangent(A)
+            self.solver.equations.assemble_tangent(A)
         finally:
             problem.guess.value, problem.eta.value = guess, 0.0
-        A.zeroRowsColumns(rows, diag=self.solver.stiffness)
+        A.zeroRowsColumns(rows, diag=self.solver.equations.stiffness)
         return A
 
     def _mass_matrix(self, rows: Rows) -> PETSc.Mat:
@@ -93,7 +93,7 @@ class StabilityCheck:
             ValueError: the tangent is not symmetric, as where points slip.
             NotConverged: the factorisation failed.
         """
-        K = self._tangent(0.0, self.solver.prescribed_rows())
+        K = self._tangent(0.0, self.solver.equations.prescribed_rows())
         if not K.isSymmetric(1e-9 * K.norm(PETSc.NormType.INFINITY)):
             raise ValueError("the tangent is not symmetric: its inertia says nothing of stability")
         K.setOption(PETSc.Mat.Option.SYMMETRIC, True)
@@ -130,7 +130,7 @@ class StabilityCheck:
         Raises:
             NotConverged: the factorisation failed.
         """
-        kinds = [self.solver.prescribed_rows(), self.solver.antisymmetric_rows()]
+        kinds = [self.solver.equations.prescribed_rows(), self.solver.equations.antisymmetric_rows()]
         with self.solver.timings.phase("stability"):
             found = [self._least(rows, eta) for rows in kinds if rows is not None]
         return min(found, key=lambda stability: stability.lambda_min)

@@ -36,7 +36,7 @@ from variational import compat
 from variational.contact.formulation import History, SurfaceState
 from variational.problem import Problem
 from variational.solvers.coupling import Coupling
-from variational.solvers.newton import Control
+from variational.solvers.equations import Control
 
 Array = NDArray[np.float64]
 _CANDIDATES = 32  # triangles about a point, by their centroids; sizes of neighbours differ by far less

@@ -1,0 +1,134 @@
+"""The states of a path solved for again: on other meshes, with other steps, over a stiffer screen; and their cost."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from fingerpad.accuracy.recompute import Solve, State, StateRecorder, solve_again
+from fingerpad.accuracy.rigid_screen import over_stiffer, stiffened
+from fingerpad.model.contact_zone import RestartRequired
+from fingerpad.model.finger import Step
+from fingerpad.model.memory import refuse_beyond
+from fingerpad.model.options import ModelOptions
+from fingerpad.model.simulation import Simulation
+from fingerpad.scene import Load, Scene
+from geometry.parameters import MeshSize
+from variational.solvers.continuation import StepFailed
+
+
+class Solves:
+    """All solves of a scene's states, the path's first.
+
+    Attributes:
+        found: the solves, in order.
+        restart: what a path with other steps turned out to need, if anything.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        options: ModelOptions,
+        path: Solve,
+        comm: MPI.Comm,
+        show: Callable[[str], None],
+        pause: Callable[[], None],
+    ) -> None:
+        """Start with the path's states; arguments as of :class:`fingerpad.accuracy.refinement.Refinement`."""
+        self._scene, self._options, self._comm, self._show, self._pause = scene, options, comm, show, pause
+        self.found = [path]
+        self.restart: RestartRequired | None = None
+
+    def on_mesh(self, mesh: MeshSize, states: Mapping[str, State]) -> Solve:
+        """Return states on a mesh; collective.
+
+        Args:
+            mesh: element sizes.
+            states: as they were found on another mesh.
+
+        Raises:
+            GeometryError: the mesh would need too much memory.
+            StepFailed: a state was not found.
+        """
+        scene = self._scene.model_copy(update={"mesh": mesh})
+        refuse_beyond(scene, self._options)
+        return self._again(scene, states)
+
+    def over_stiffer_screen(self, base: Solve) -> Solve:
+        """Return states over a screen of twice the stiffness; collective; raises as :meth:`on_mesh`."""
+        scene = self._scene.model_copy(update={"mesh": base.mesh, "contact": stiffened(self._scene.contact)})
+        states = {name: replace(s, carried=over_stiffer(s.carried)) for name, s in base.states.items()}
+        return self._again(scene, states)
+
+    def _again(self, scene: Scene, states: Mapping[str, State]) -> Solve:
+        self._pause()
+        return self._keep(solve_again(scene, self._options, states, self._comm, self._scene.accuracy is not None))
+
+    def with_steps(self, step_scale: float) -> Solve:
+        """Return normal contact on the first mesh from a path with other steps; collective.
+
+        Args:
+            step_scale: factor on the largest steps.
+
+        Raises:
+            StepFailed: the path was lost, or needs more of the model (:attr:`restart`).
+        """
+        numerics = self._scene.numerics.model_copy(update={"step_scale": step_scale})
+        loads = loads_to_normal_contact(self._scene)
+        changes: dict[str, Any] = {"history": loads, "mesh": self.found[0].mesh, "numerics": numerics}
+        self._pause()
+        recorder: StateRecorder | None = None
+
+        def on_step(step: Step, done: float) -> None:
+            assert recorder is not None
+            recorder.record(step)
+
+        simulation = Simulation(self._scene.model_copy(update=changes), self._options, self._comm, on_step)
+        recorder = StateRecorder(simulation)
+        restart = simulation.run()
+        if restart is not None:
+            self.restart = replace(restart, scene=self._scene.model_copy(update={"mesh": restart.scene.mesh}))
+            raise StepFailed(restart.reason)
+        return self._keep(recorder.solve())
+
+    def _keep(self, solve: Solve) -> Solve:
+        self.found.append(solve)
+        m = solve.mesh
+        self._show(
+            f"states on another mesh: facets {m.contact * 1e6:.4g} µm, growth {m.growth:.3g}, "
+            f"junctions {m.interface * 1e6:.4g} µm, receptors {m.receptor * 1e6:.4g} µm: "
+            f"{solve.unknowns} unknowns, {solve.factorisations} factorisations"
+        )
+        return solve
+
+    def cost(self) -> dict[str, Any]:
+        """Return what each solve and all of them took, ready for JSON; collective."""
+        seconds = [float(np.sum(self._comm.allgather(solve.processor_seconds))) for solve in self.found]
+        return {
+            "solves": [
+                {
+                    "mesh": solve.mesh.model_dump(),
+                    "unknowns": solve.unknowns,
+                    "factorisations": solve.factorisations,
+                    "processor_seconds": spent,
+                }
+                for solve, spent in zip(self.found, seconds, strict=True)
+            ],
+            "factorisations": sum(solve.factorisations for solve in self.found),
+            "unknowns_times_factorisations": sum(s.unknowns * s.factorisations for s in self.found),
+            "processor_seconds": sum(seconds),
+        }
+
+
+def loads_to_normal_contact(scene: Scene) -> tuple[Load, ...]:
+    """Return the loads before the bone first moves sideways with the finger pressed."""
+    loads, pressed, place = scene.loads(), False, 0.0
+    for k, load in enumerate(loads):
+        x = place if load.bone_x is None else load.bone_x
+        pressed |= (load.f_ext or 0.0) > 0 or (load.bone_height or 0.0) < 0
+        if pressed and x != place:
+            return loads[:k]
+        place = x
+    return loads

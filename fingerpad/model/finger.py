@@ -1,0 +1,168 @@
+"""A scene's finger, meshed and set up, and its present state in numbers of the whole finger."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from mpi4py import MPI
+from numpy.typing import NDArray
+
+from fingerpad.model import balance, symmetry
+from fingerpad.model.options import ModelOptions
+from fingerpad.scene import Scene
+from geometry import fingertip, mesh, meshfile, tags
+from geometry.profiles import Profiles
+from variational.attraction.electroadhesion import ELECTROSTATIC
+from variational.body import Body
+from variational.contact.formulation import SurfaceState
+from variational.energy import EnergyBook
+from variational.problem import Interface
+from variational.quantities import RidgeLoads
+from variational.solvers.continuation import Attempt, Target
+from variational.state import ContactState, RidgeStates
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Step:
+    """An accepted step."""
+
+    state: ContactState
+    notes: list[str]
+    """Remarks on each ridge's place on the closure, mostly empty."""
+    attempt: Attempt
+
+
+class Finger:
+    """A meshed finger with its solver.
+
+    Attributes:
+        ridges: numbers of the ridges that can touch, of the whole finger.
+        options: the parts of the model.
+        unknowns: number of unknowns.
+        contact_size: size of the facets that can touch (m).
+    """
+
+    def __init__(
+        self, scene: Scene, options: ModelOptions, comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool]
+    ) -> None:
+        """Mesh the finger and set the solver up; collective.
+
+        Args:
+            scene: a checked scene.
+            options: the parts of the model that it needs.
+            comm: communicator of the mesh.
+            on_accept: see :class:`variational.solvers.continuation.Continuation`.
+        """
+        self.scene, self.options, self.profiles = scene, options, Profiles(scene.geometry)
+        contact, numerics, half = scene.contact, scene.numerics, not options.both_halves
+        if scene.laws.mesh is not None:
+            self.mesh = mesh.load(comm, meshfile.file(scene.laws.mesh))
+        else:
+            build = partial(fingertip.build, scene.geometry, scene.mesh, options.receptors, half)
+            self.mesh = mesh.load(comm, build, tags.LAYERS.values())
+        layers = self.mesh.layers().values()
+        self.closure = scene.closure() if options.voltage else None
+        attraction = ELECTROSTATIC if options.voltage else None
+        made = Body(
+            self.mesh,
+            {tag: solid for tag, solid in scene.solids().items() if tag in layers},
+            Interface(contact.law(), scene.friction_law(), scene.h_0, attraction),
+            self.closure,
+            element=numerics.element,
+            points=numerics.quadrature_points,
+            force_scale=max((load.f_ext for load in scene.loads() if load.f_ext), default=1.0),
+            tolerance=numerics.tolerance,
+            mirror=self.mesh.facets(tags.SYMMETRY) if half else None,
+            coupling_tolerance=numerics.coupling_tolerance,
+            coupling_cap=numerics.coupling_cap,
+            by_gap=contact.length == "gap",
+            on_accept=on_accept,
+            step_scale=numerics.step_scale,
+        )
+        self.problem, self.solver, self.observer = made.problem, made.solver, made.observer
+        self.coupling, self.continuation = made.coupling, made.continuation
+        self.ridges = symmetry.names(made.surface.names) if half else made.surface.names
+        shortest = float(np.min(comm.allgather(made.surface.length.min(initial=np.inf))))
+        self.contact_size = scene.mesh.contact if scene.laws.mesh is None else shortest
+        self.unknowns = self.solver.layout.global_size
+
+    @property
+    def voltage(self) -> float:
+        """Present voltage (V)."""
+        return float(self.problem.voltage.value)
+
+    @property
+    def force_error(self) -> float:
+        """What the solves' tolerance leaves of a sum of nodal forces (N/m), see :func:`balance.force_error`."""
+        left = max(self.scene.numerics.tolerance, self.solver.floor)
+        return balance.force_error(self.unknowns, left, self.solver.force_scale)
+
+    def book(self) -> EnergyBook:
+        """Return a book of energies that begins in the present state; collective."""
+        return EnergyBook(self.problem, *self.surface_and_bone(), copies=1 if self.options.both_halves else 2)
+
+    def surface_and_bone(self) -> tuple[SurfaceState, Array, Array, Array]:
+        """Return the skin, the bone's place and reaction, and the air gaps of the present state."""
+        return self.continuation.surface_state, self.solver.bone, self.solver.reaction, self.coupling.d_eq
+
+    def ridge_loads(self) -> RidgeLoads:
+        """Return the resultants of all ridges that can touch, of the whole finger; collective."""
+        loads = self.observer.ridge_loads(self.continuation.surface_state)
+        return loads if self.options.both_halves else symmetry.loads(loads)
+
+    def check_balance(self, loads: RidgeLoads, load: str) -> float:
+        """Return the largest force left at a node, over the solver's force scale.
+
+        Args:
+            loads: resultants of the present state.
+            load: name of the present load.
+
+        Raises:
+            StepFailed: see :func:`balance.refuse_unbalanced`.
+        """
+        left, scale = self.solver.imbalance(), self.solver.force_scale
+        where = f"step {self.continuation.steps} ({load})"
+        balance.refuse_unbalanced(where, left, loads, self.solver.reaction, scale, self.scene.numerics.tolerance)
+        return left
+
+    def present(self, loads: RidgeLoads, load: str, number: int, attempt: Attempt | None = None) -> Step:
+        """Return the present state as a step without a record of energies and work.
+
+        Args:
+            loads: its :meth:`ridge_loads`.
+            load: name of the load.
+            number: of the load in the history, from 1.
+            attempt: how the state was solved, where that is known.
+        """
+        solver, d_eq = self.solver, self.coupling.d_eq
+        if not self.options.both_halves:
+            d_eq = np.array(symmetry.values(list(d_eq)))
+        notes = [self.closure.state(float(p), self.voltage) if self.closure else "" for p in loads.p_c]
+        slipping, all_slip = self.continuation.slip
+        f_ext, f_t = float(solver.reaction[1]), 0.0 - float(solver.reaction[0])  # no negative zero
+        found = ContactState(
+            step=self.continuation.steps,
+            load=load,
+            load_number=number,
+            voltage=self.voltage,
+            bone_x=float(solver.bone[0]),
+            f_ext=f_ext,
+            bone_height=float(solver.bone[1]),
+            f_t=f_t,
+            mu_app=f_t / f_ext if f_ext > balance.BALANCED * solver.force_scale else 0.0,
+            f_contact=float(loads.f_contact.sum()),
+            f_electrostatic=float(loads.f_attraction.sum()),
+            ridges_in_contact=int((loads.length > 0).sum()),
+            contact_length=float(loads.length.sum()),
+            slipping=slipping,
+            all_slip=all_slip,
+            mesh_contact=self.contact_size,
+            ridges=RidgeStates(
+                np.array(self.ridges), loads.length, loads.f_contact, loads.f_friction, loads.f_attraction, loads.p_c,
+                d_eq,
+            ),
+        )  # fmt: skip
+        return Step(found, notes, attempt or Attempt())

@@ -1,0 +1,67 @@
+"""Whether full slip is steady: the same forces over a further 0.2 mm of sliding, since the screen is uniform."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from fingerpad.io.states import SLIDE_ON, full_slip
+from fingerpad.model.finger import Finger
+from variational.solvers.continuation import Target
+from variational.state import ContactState
+
+_STEADY = 1e-6  # relative change of f_t that sliding on at full slip may cause, beside that of gaps not closed
+
+
+class FullSlip:
+    """Slides a finger on at full slip and compares the forces."""
+
+    def __init__(self, finger: Finger) -> None:
+        """Take the finger."""
+        self._finger = finger
+
+    def slides_on(self, load: str, direction: float) -> bool:
+        """Return whether full slip is steady, and slide on by 0.2 mm for that; collective.
+
+        Args:
+            load: name of the load.
+            direction: 1 or -1, the way the bone slides.
+        """
+        path, solver = self._finger.continuation, self._finger.solver
+        before, x = solver.reaction[0], solver.control.x
+        path.run(Target(load, bone_x=x + direction * SLIDE_ON))
+        return path.slip[1] and self._unchanged(before, solver.reaction[0])
+
+    def placed(self, states: Sequence[ContactState], state: ContactState, probe: bool) -> ContactState:
+        """Return a state with the step at which its full slip began and whether that was held; collective.
+
+        Args:
+            states: those before it.
+            state: the present one.
+            probe: whether to slide on where full slip was not held for 0.2 mm yet; none of that is accepted.
+        """
+        began, held = full_slip(states, state, self._steady(), self._finger.force_error)
+        return replace(state, slip_began=began, slip_held=held or (probe and began > 0 and self._holds()))
+
+    def _holds(self) -> bool:
+        """Return whether full slip would go on as it is for a further 0.2 mm; none of that is accepted."""
+        before, control = self._finger.solver.reaction.copy(), self._finger.solver.control
+        further = replace(control, x=control.x - (np.sign(before[0]) or -1.0) * SLIDE_ON)
+        found = self._finger.continuation.probe(further)
+        return found is not None and found[1] and self._unchanged(before, found[0])
+
+    def _unchanged(self, before: Any, after: Any) -> bool:
+        """Return whether forces (N/m) before and after sliding on at full slip are the same."""
+        return bool(np.all(np.abs(after - before) <= self._steady() * np.abs(before) + self._finger.force_error))
+
+    def _steady(self) -> float:
+        """Return the relative change of f_t that is not significant.
+
+        An augmented Lagrangian leaves gaps of up to its tolerance, which close further with each load; the attraction
+        goes with the inverse square of the air gap and the insulator behind it.
+        """
+        finger = self._finger
+        left = finger.scene.contact.law().tolerance
+        gap = float(finger.coupling.d_eq.min()) + finger.scene.h_0 if finger.options.voltage else np.inf
+        return _STEADY + float(2 * left / gap)

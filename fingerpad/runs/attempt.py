@@ -1,0 +1,170 @@
+"""One attempt to run a scene: the path of its loads on one mesh, and the errors of its states."""
+
+from functools import partial
+from typing import Any
+
+from fingerpad.accuracy.recompute import StateRecorder
+from fingerpad.accuracy.refinement import Refinement, with_errors
+from fingerpad.io import petsc_options
+from fingerpad.io.console import Console
+from fingerpad.io.interrupt import Interrupt, Interrupted
+from fingerpad.io.provenance import provenance
+from fingerpad.io.result import Result
+from fingerpad.io.writing import Writer
+from fingerpad.model.balance import broken, force_error
+from fingerpad.model.contact_zone import RestartRequired
+from fingerpad.model.cost import Clock
+from fingerpad.model.finger import Step
+from fingerpad.model.hints import finer_mesh_may_help, hint
+from fingerpad.model.memory import refuse_beyond
+from fingerpad.model.options import ModelOptions
+from fingerpad.model.report import Report
+from fingerpad.model.simulation import Simulation
+from fingerpad.runs.restarts import Restarts
+from fingerpad.scene import Scene
+from fingerpad.scene.laws import coefficient, used
+from fingerpad.startup import MPI
+from geometry.profiles import GeometryError
+from variational.solvers.continuation import StepFailed
+
+FINEST = 5e-6
+"""Contact size (m) down to which a run starts again by itself where the path of its loads cannot be followed."""
+
+
+class Attempt:
+    """A scene's path and the errors of its states.
+
+    Attributes:
+        simulation: the path.
+        report: its states, as they are written.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        options: ModelOptions,
+        comm: MPI.Comm,
+        writer: Writer,
+        console: Console,
+        clock: Clock,
+        interrupt: Interrupt,
+    ) -> None:
+        """Mesh the finger; collective."""
+        self._scene, self._options, self._comm = scene, options, comm
+        self._writer, self._console, self._clock, self._interrupt = writer, console, clock, interrupt
+        with clock.phase("setup"):
+            self.simulation = Simulation(scene, options, comm, self._on_step, self._on_load)
+        self.report = Report(self.simulation, writer, console, clock)
+        self._recorder = StateRecorder(self.simulation) if options.errors else None
+        self._refinement: Refinement | None = None
+        self._ended: dict[str, str] = {}
+
+    def _on_step(self, step: Step, done: float) -> None:
+        petsc_options.refuse_unread()
+        self.report.step(step, done)
+        if self._recorder is not None:
+            self._recorder.record(step)
+        self._interrupt.stop_if_asked(step.state.step)
+
+    def _on_load(self) -> None:
+        self.report.load_reached()
+
+    def follow(self) -> RestartRequired | None:
+        """Reach every load, and estimate or refine; return what must be added to the model, if anything; collective."""
+        reached = False
+        try:
+            restart = self.simulation.run()
+            reached = True
+            if restart is not None or self._recorder is None:
+                return restart
+            pause = partial(self._interrupt.stop_if_asked, self.simulation.finger.continuation.steps)
+            path, show = self._recorder.solve(), self._console.show
+            self._refinement = Refinement(self._scene, self._options, path, self._comm, show, pause)
+            return self._refinement.run()
+        except StepFailed as error:
+            tip = hint(error) if self._scene.laws.mesh is None else ""
+            self._ended["failure"] = "; ".join(filter(None, (str(error), tip)))
+            if isinstance(error, Interrupted):
+                self._ended["interrupted"] = error.signal.name
+            return None if reached else _finer(self._scene, self._options, error)
+
+    def result(self, scene: Scene, restarts: Restarts) -> Result:
+        """Return the result, and write it and the pictures; collective.
+
+        Args:
+            scene: as it was given.
+            restarts: before this attempt.
+        """
+        refinement, finger, record = self._refinement, self.simulation.finger, self.report.record
+        self._writer.take(finger.problem)
+        final = {} if refinement is None else refinement.base.views
+        named = record.named(final)
+        unknowns, notes, more = finger.unknowns, [*restarts.notes], dict[str, Any]()
+        if refinement is not None:
+            named = with_errors(refinement, named)
+            unknowns, more["accuracy"] = refinement.base.unknowns, refinement.summary()
+            notes += refinement.notes
+            self.report.final(final)
+        self._on_load()
+        failure = self._ended.get("failure", "" if refinement is None else refinement.failure)
+        mu_0 = coefficient(scene)
+        with self._clock.phase("output"):
+            size = None if scene.accuracy is None else finger.scene.mesh.contact
+            drawing = record.drawing(mu_0, final, size, named)
+            if drawing is not None and self._writer.folder is not None:
+                drawing.write(self._writer.folder)
+        totals = record.totals()
+        left = max(scene.numerics.tolerance, totals["floor"])
+        error = force_error(unknowns, left, finger.solver.force_scale)
+        more |= self._comm.bcast(self._path() | totals | {"force_error": error})
+        more |= {"restarts": restarts.table, "laws": used(scene), "provenance": provenance()}
+        result = Result(
+            scene,
+            "full",
+            named.get("uncharged"),
+            named.get("charged"),
+            named.get("full_slip"),
+            steps=tuple(record.states),
+            loads=tuple(record.loads()),
+            cost=self._clock.cost(finger.solver.counts, unknowns),
+            failure=failure or broken(named.get("full_slip"), error, mu_0),
+            interrupted=self._ended.get("interrupted", ""),
+            notes=tuple(notes),
+            record=more,
+            folder=self._writer.folder,
+            drawing=drawing,
+        )
+        if result.failure:
+            self._writer.log.error(result.failure)
+        self._writer.summary(result.to_dict())
+        return result
+
+    def _path(self) -> dict[str, Any]:
+        """Return what the summary holds of the mesh, the options and the times of the path, ready for JSON."""
+        finger = self.simulation.finger
+        seconds = finger.solver.timings.seconds | self._clock.seconds
+        return {
+            "unknowns_path": finger.unknowns,
+            "path_mesh": None if finger.scene.laws.mesh else finger.scene.mesh.model_dump(),
+            "omitted": [omission.to_dict() for omission in self.report.omitted],
+            **{f"seconds_{phase}": value for phase, value in seconds.items()},
+        }
+
+
+def _finer(scene: Scene, options: ModelOptions, error: StepFailed) -> RestartRequired | None:
+    """Return a restart with half the contact size, where that may help and is possible.
+
+    Args:
+        scene: whose loads were not reached.
+        options: of its model.
+        error: why not.
+    """
+    helps = scene.laws.mesh is None and finer_mesh_may_help(error, scene.accuracy is not None)
+    if not helps or scene.mesh.contact / 2 < FINEST:
+        return None
+    finer = scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"contact": scene.mesh.contact / 2})})
+    try:
+        refuse_beyond(finer, options)
+    except GeometryError:  # more than the memory allowed
+        return None
+    return RestartRequired(str(error), finer, options)

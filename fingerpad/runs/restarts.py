@@ -1,0 +1,67 @@
+"""Restarts of a run: all loads again, since an omitted part of the model turned out to matter."""
+
+import logging
+from typing import TYPE_CHECKING, Any
+
+from fingerpad.io.console import Console
+from fingerpad.model.contact_zone import RestartRequired
+from fingerpad.model.cost import Clock
+
+if TYPE_CHECKING:
+    from fingerpad.runs.attempt import Attempt
+
+
+class Restarts:
+    """Reports restarts and keeps them.
+
+    Attributes:
+        table: the restarts, ready for JSON.
+        notes: remarks for a reader of the result, on the restarts with smaller elements.
+    """
+
+    def __init__(self, log: logging.Logger, console: Console) -> None:
+        """Start without any."""
+        self._log, self._console = log, console
+        self.table: list[dict[str, Any]] = []
+        self.notes: list[str] = []
+        self._seconds = 0.0
+
+    def record(self, restart: RestartRequired, attempt: "Attempt", clock: Clock) -> None:
+        """Record a restart; collective.
+
+        Args:
+            restart: what is to be added, and why.
+            attempt: the run until here.
+            clock: of the run.
+        """
+        states, finger, mesh = attempt.report.record.states, attempt.simulation.finger, restart.scene.mesh
+        step, load = (states[-1].step, states[-1].load) if states else (0, "start")
+        whole, seconds = restart.options.both_halves, clock.processor_seconds()
+        added = (
+            f"mesh.touching_half_arc {mesh.touching_half_arc:g} m{' and both halves of the finger' if whole else ''}"
+        )
+        if mesh.contact < finger.scene.mesh.contact:
+            added = f"mesh.contact {mesh.contact:g} m"
+            size = finger.scene.mesh.contact * 1e6
+            self.notes.append(
+                f"No equilibrium was found with a contact size of {size:g} µm; the run started again with half of it."
+            )
+        text = f"step {step} ({load}): {restart.reason}; all loads again with {added}"
+        self._console.show(f"fingerpad: {text}")
+        self._log.warning(text)
+        counts = finger.solver.counts
+        self.table.append(
+            {
+                "step": step,
+                "load": load,
+                "reason": restart.reason,
+                "contact": mesh.contact,
+                "touching_half_arc": mesh.touching_half_arc,
+                "both_halves": whole,
+                "unknowns": finger.unknowns,
+                "newton_iterations": counts.newton,
+                "factorisations": counts.factorisations,
+                "processor_seconds": seconds - self._seconds,
+            }
+        )
+        self._seconds = seconds

@@ -1,0 +1,209 @@
+r"""One solve by PETSc SNES: which steps of Newton's method are shortened or refused, and when it ends.
+
+Full steps: with a stiff penalty the iteration is an active-set method, whose residual rises before the right points
+are in contact, and backtracking on the residual only slows it. But the first steps of a solve are shortened where
+they would drive open skin deep through the screen, which the tangent of open skin does not resist, and any step is
+halved that would turn elements inside out or send the residual up tenfold. A factorisation serves as long as the
+residual falls to half an iteration; a step it proposes is refused when the residual would rise, and made anew with the
+tangent of the present iterate. A residual that stalls within some units of roundoff of the forces that cancel in it is
+at its floor, and the solve ends as converged there; :attr:`Iteration.floor` says where that was.
+
+Pseudo-transient continuation (Kelley and Keyes 1998, doi 10.1137/S0036142996304796): the tangent gets a shift
+:math:`\eta` on the touching skin, an implicit Euler step of :math:`\eta \dot u = -r(u)`, and eta falls as the residual
+falls. Every iteration has a tangent of its own then.
+"""
+
+import numpy as np
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from variational.solvers.equations import OUTSIDE, Equations
+from variational.solvers.tangent import Tangent
+from variational.solvers.timing import Counts
+
+PREFIX = "fingerpad_"
+# MUMPS, an LU of an unsymmetric matrix; full Newton steps, see above.
+DEFAULTS = {
+    "snes_type": "newtonls",
+    "snes_linesearch_type": "basic",
+    "snes_max_it": "60",
+    "snes_rtol": "0",
+    "snes_stol": "0",
+    "ksp_type": "preonly",
+    "pc_type": "lu",
+    "pc_factor_mat_solver_type": "mumps",
+}
+_PATIENCE = 4  # iterations in which the least residual must fall
+_CONTRACTS = 0.5  # reduction of the residual an iteration below which a factorisation is kept
+_DEEPEST = 1e-6  # m, how deep open skin may be driven by one of the first steps
+_LIMITED_STEPS = 6
+_HALVINGS = 5  # of a step that would turn elements inside out or
+_GROWS = 10.0  # make the residual grow more than this
+_ROUNDINGS = 4.0  # units of roundoff of the sum of each node's absolute forces, within which a residual may stall,
+_FLOOR = 1e-6  # if that is less than this part of the force scale
+_SHIFT = 2e9  # Pa/m, eta at the start
+_SHIFT_FALL, _SHIFT_RISE = 0.4, 4.0  # of eta an iteration
+
+
+class Iteration:
+    """Newton's method from an iterate on.
+
+    Attributes:
+        tangent: with its factorisation.
+        force_scale: force per length (N/m) in which residuals are measured.
+        f: the residual (N/m) where the last run ended.
+        floor: norm of the nodal forces' imbalance over ``force_scale`` with which the last run ended at the floor of
+            roundoff, above its tolerance; zero if it met that.
+    """
+
+    def __init__(self, equations: Equations, counts: Counts, force_scale: float, tolerance: float) -> None:
+        """Set SNES up; the arguments are those of :class:`variational.solvers.newton.Solver`."""
+        self.equations, self.layout, self.counts = equations, equations.layout, counts
+        self.tangent, self.force_scale = Tangent(equations, counts), force_scale
+        self.f, self._next_x, self._next_f = (self.layout.create_vector() for _ in range(3))
+        self.floor = 0.0
+        self._norms: list[float] = []
+        self._shifted = False  # whether the tangent has the shift of pseudo-transient continuation
+        self._refused = False  # whether the present iteration stayed where it was
+        self._ahead = False  # whether the residual of the next iterate is known
+        self._skin = equations.skin[1]  # vertical displacements of the skin that can touch
+        self._skin_height = equations.problem.V.tabulate_dof_coordinates()[self._skin // 2, 1]
+        self._nodal = np.zeros_like(equations.problem.w.x.array)
+        self.snes = self._create_snes(force_scale * tolerance)
+
+    def _create_snes(self, imbalance: float) -> PETSc.SNES:
+        options = PETSc.Options()
+        for name, value in DEFAULTS.items():
+            if not options.hasName(PREFIX + name):
+                options.setValue(PREFIX + name, value)
+        snes = PETSc.SNES().create(self.layout.comm)
+        snes.setOptionsPrefix(PREFIX)
+        snes.setTolerances(atol=imbalance)
+        snes.setFunction(self._residual, self.f)
+        snes.setJacobian(self.tangent.update, self.tangent.relative, self.tangent.matrix)
+        snes.setConvergenceTest(self._test)
+        snes.setLineSearchPreCheck(self._limit)
+        snes.setFromOptions()
+        snes.getKSP().setPostSolve(self.tangent.make_relative)
+        return snes
+
+    def run(self, x: PETSc.Vec, shifted: bool = False) -> int:
+        """Iterate from ``x`` and leave the last iterate there; return SNES's reason, positive if it converged.
+
+        Args:
+            x: unknowns.
+            shifted: by pseudo-transient continuation.
+        """
+        self._shifted = shifted
+        self.tangent.start()
+        self.tangent.stale |= shifted
+        seconds = self.equations.timings.seconds
+        assembly = seconds["assembly"]
+        with self.equations.timings.phase("factorisation"):
+            self.snes.solve(None, x)
+        seconds["factorisation"] -= seconds["assembly"] - assembly
+        self.counts.newton += self.snes.getIterationNumber()
+        self.tangent.stale |= shifted
+        self.equations.problem.eta.value = 0.0
+        reason = int(self.snes.getConvergedReason())
+        self._ahead = False
+        # Nodes and reaction are those of a rejected iterate, or of one that another solver than Newton's went on from.
+        if reason <= 0 or self.snes.getType() != PETSc.SNES.Type.NEWTONLS:
+            self.equations.residual(x, self.f)
+        return reason
+
+    # -- callbacks -------------------------------------------------------------------------------------
+    def _residual(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
+        if self._ahead:  # the step's length was found with it
+            self._ahead = False
+            self._next_f.copy(f)
+        else:
+            self.equations.residual(x, f)
+
+    def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
+        """Judge an iterate by its residual alone, and set the next shift."""
+        reason, eta = PETSc.SNES.ConvergedReason, self.equations.problem.eta
+        _, atol, _, most = snes.getTolerances()
+        if iteration == 0:
+            self._norms, self._refused = [], False
+            eta.value = _SHIFT if self._shifted else 0.0
+        previous = self._norms[-1] if self._norms else np.inf
+        norm = norms[2]
+        if not self._refused:
+            self._norms.append(norm)
+        self.floor = 0.0
+        if norm <= atol:
+            return reason.CONVERGED_FNORM_ABS
+        if norm >= OUTSIDE / 2:
+            return reason.DIVERGED_FUNCTION_DOMAIN
+        if iteration >= most:
+            return reason.DIVERGED_MAX_IT
+        if iteration > 0:
+            slow = self._refused or norm > _CONTRACTS * previous
+            self.tangent.stale = slow or self._shifted
+            if slow and norm <= self._roundoff(norm):
+                self.floor = norm / self.force_scale
+                return reason.CONVERGED_SNORM_RELATIVE
+        if self._shifted and iteration > 0:
+            eta.value *= min(norm / previous, _SHIFT_RISE) if norm > previous else _SHIFT_FALL
+        # The first norm is left out: it may hold a prescribed displacement not yet made.
+        late, early = self._norms[1:][-_PATIENCE:], self._norms[1:][-2 * _PATIENCE : -_PATIENCE]
+        if not self._shifted and len(early) == _PATIENCE and min(late) > 0.7 * min(early):
+            return reason.DIVERGED_LOCAL_MIN  # cycles
+        return reason.ITERATING
+
+    def _roundoff(self, norm: float) -> float:
+        r"""Return the norm of nodal forces (N/m) that roundoff may leave in the present iterate.
+
+        Each force is a sum of parts that cancel. Their magnitudes are those of the tangent times the relative
+        displacement, so that the roundoff of all of them is some units of
+        :math:`\epsilon \, \| |K| |w| \|`. Measured from the first touch to 10 mm of sliding: 0.13 to 0.4 of it.
+
+        Args:
+            norm: of the residual (N/m); where it is too large to be accepted as roundoff, zero is returned.
+        """
+        if norm > _FLOOR * self.force_scale:
+            return 0.0
+        x, comm = self.snes.getSolution(), self.layout.comm
+        scatter, everywhere = PETSc.Scatter.toAll(x)
+        scatter.scatter(x, everywhere, mode=PETSc.ScatterMode.FORWARD)
+        w = np.abs(everywhere.array_r)
+        w[self.layout.rigid_rows] = 0.0  # a translation of all nodes makes no force between them
+        start, columns, values = self.tangent.matrix.getValuesCSR()
+        parts = np.append(np.abs(values) * w[columns], 0.0)
+        sums = np.add.reduceat(parts, start[:-1]) if len(start) > 1 else np.zeros(0)
+        total = comm.allreduce(float(sums @ sums))
+        return float(_ROUNDINGS * np.finfo(float).eps * np.sqrt(total))
+
+    def _limit(self, x: PETSc.Vec, step: PETSc.Vec) -> bool:
+        """Shorten a step to where its tangent still holds, or refuse it."""
+        if len(self._norms) <= _LIMITED_STEPS:
+            step.scale(self._until_deep(x, step))
+        norm = self._look_ahead(x, step)
+        for _ in range(_HALVINGS):
+            if norm < _GROWS * max(self._norms):
+                break
+            step.scale(0.5)
+            norm = self._look_ahead(x, step)
+        self._refused = self.tangent.kept and len(self._norms) > 1 and norm > self._norms[-1]
+        if self._refused:
+            step.set(0.0)
+            self._look_ahead(x, step)
+        self._ahead = True
+        return True
+
+    def _look_ahead(self, x: PETSc.Vec, step: PETSc.Vec) -> float:
+        """Evaluate the residual where a step leads, and return its norm."""
+        self._next_x.waxpy(-1.0, step, x)
+        self.equations.residual(self._next_x, self._next_f)
+        return float(self._next_f.norm())
+
+    def _until_deep(self, x: PETSc.Vec, step: PETSc.Vec) -> float:
+        """Return the part of a step that drives open skin at most a little through the screen."""
+        self.layout.to_nodes(x, self._nodal)
+        height = self._skin_height + self._nodal[self._skin] + self.layout.rigid_part(x)[1]
+        self.layout.to_nodes(step, self._nodal)
+        sink = self._nodal[self._skin] + self.layout.rigid_part(step)[1]  # PETSc subtracts the step
+        deep = (height > 0) & (height - sink < -_DEEPEST)
+        part = float(np.min((height[deep] + _DEEPEST) / sink[deep], initial=1.0))
+        return float(self.layout.comm.allreduce(part, op=MPI.MIN))
