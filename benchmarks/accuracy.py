@@ -132,7 +132,7 @@ def judged(scene: str, summary: Summary, ends: Mapping[str, Limit]) -> list[Case
 
 def spent(summary: Summary) -> tuple[float, float]:
     """Return factorisations times unknowns, and processor time (s), of all solves and of starts that failed."""
-    a, lost = summary["accuracy"], summary.get("failed_starts", [])
+    a, lost = summary["accuracy"], summary.get("restarts", [])
     work = a["unknowns_times_factorisations"] + sum(s["unknowns"] * s["factorisations"] for s in lost)
     return work, a["processor_seconds"] + sum(s["processor_seconds"] for s in lost)
 
@@ -160,7 +160,7 @@ def of_parameter(name: str, rows: Sequence[Mapping[str, Any]]) -> Iterator[Case]
         end = limit(found) if name == "contact" else Limit(found[-1], 0.0, None)
         parameter, of = MeshParameter(), 100 / abs(end.value)
         for k, (coarse, fine) in enumerate(itertools.pairwise(parts[:-1]), start=1):
-            parameter.see({quantity: coarse}, {quantity: fine})
+            parameter.record({quantity: coarse}, {quantity: fine})
             at = rows[k]["value"] * (1e6 if name != "growth" else 1)
             estimate, error = (of * value for value in (parameter.share(quantity), abs(found[k] - end.value)))
             words = f"{_PARAMETERS[name]}: {at:g}"

@@ -41,7 +41,7 @@ def cases() -> Iterator[Case]:
     for a in HALF_WIDTHS:
         found, parameter = [contact_length(a, facets) for facets in FACETS], MeshParameter()
         for k, (coarse, fine) in enumerate(itertools.pairwise(found), start=1):
-            parameter.see({name: coarse}, {name: fine})
+            parameter.record({name: coarse}, {name: fine})
             scene = f"half-width {1e3 * a:.3f} mm, {a / HALF_WIDTH * FACETS[k]:.1f} facets"
             estimate, error = (100 / (2 * a) * value for value in (parameter.share(name), abs(fine - 2 * a)))
             yield Case(HERTZ, scene, "contact length", k == 1, estimate, error, 100 * BAR)

@@ -71,7 +71,7 @@ def test_energy_density_counts_over_the_largest_site():
 
 def test_cost_has_the_starts_that_failed():
     """700 factorisations times unknowns, and those of a coarser start, 20 of 10; over a default run of 1800."""
-    lost = {"failed_starts": [{"unknowns": 10, "factorisations": 20, "processor_seconds": 1.5}]}
+    lost = {"restarts": [{"unknowns": 10, "factorisations": 20, "processor_seconds": 1.5}]}
     row = accuracy.row(summary(slip_mu_app=(0.5, 0.1, None)) | lost, 1800)
     assert (row["work"], row["seconds"], row["cost"]) == (900, 7.5, 0.5)
     assert row["values"] == {"slip_mu_app": 0.5}
