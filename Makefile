@@ -1,5 +1,6 @@
 # make demo   press, charge and slide the default finger; results in results/demo
-# make test   all tests, then those marked mpi on two ranks
+# make test   all tests, then those marked mpi on two ranks; six minutes on two cores
+# make check  tests of every module that run no whole finger; a minute or so
 # make lint   style, layout and types: ruff and mypy, half a minute
 # make test-order  all tests with other rounding: cells numbered the other way round, other kernels of OpenBLAS
 # make fuzz   10 000 scenes and command lines, each ready to run or refused in one sentence; some minutes
@@ -13,7 +14,7 @@
 
 run := environment/run
 
-.PHONY: help demo lint test test-order fuzz pages verify paper chart
+.PHONY: help demo lint test check test-order fuzz pages verify paper chart
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -25,8 +26,11 @@ lint:
 	environment/lint
 
 test:
-	$(run) python3 -m pytest -q --color=no -n auto tests
-	$(run) mpirun -n 2 python3 -m pytest -q --color=no -p no:cacheprovider tests
+	$(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" tests
+	$(run) mpirun -n 2 python3 -m pytest -q --color=no -p no:cacheprovider -m "not long" tests
+
+check:
+	$(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" --quick tests
 
 test-order:
 	OPENBLAS_CORETYPE=Nehalem $(run) python3 -m pytest -q --color=no -n auto --renumber tests
@@ -39,6 +43,8 @@ pages:
 
 verify:
 	$(run) python3 -m benchmarks.verification
+	$(run) python3 -m pytest -q --color=no -n auto -m long tests
+	$(run) mpirun -n 2 python3 -m pytest -q --color=no -p no:cacheprovider -m long tests
 
 paper:
 	$(run) python3 -m benchmarks.paper

@@ -20,8 +20,7 @@ import numpy as np
 from benchmarks import harness
 from benchmarks.calibration import HERTZ, WHOLE, Case, coverage, coverages, kept, table, tally
 from benchmarks.convergence import Limit, limit
-from benchmarks.errors import DEFAULT, LEVELS, STATES, stiffer
-from fingerpad.accuracy.rigid_screen import ORDER
+from benchmarks.errors import DEFAULT, LEVELS, STATES
 from fingerpad.model.check import check
 from fingerpad.model.touching import by_rule
 from fingerpad.richardson import MORE, ONCE, MeshParameter
@@ -209,9 +208,6 @@ roughness within a quarter of the default finger's. Each was run with two reques
 within the request, but not by its uncertainty; such cases count as met. Cost is factorisations × unknowns of all
 solves, over those of the default scene's whole run. The kept runs are of several versions, in which the estimate alone
 had to meet a request. The program now requires the printed error to meet it, and so may refine further."""
-_RIGID = """Beside its error a run prints the effect of a rigid screen (`fingerpad/accuracy/rigid_screen.py`), from its
-states over a screen of twice the stiffness. The default scene at a contact size of 10 µm checks the law of order
-{order:g}: runs with 500 and 1500 MPa/mm predict the change at 5000 to a factor of {factor:.1f}."""
 _HERTZ = """The contact length of a cylinder is known but for 0.04 %. Its two edges move facet by facet, so that the
 change from one mesh to the next says little of the error of one contact. A finger has some thirty edges, whose errors
 partly cancel."""
@@ -244,9 +240,6 @@ def draw(docs: Path) -> Path:
     numbers, cases = harness.kept("accuracy", docs), kept(docs)
     n, bare, safe = coverage(cases)
     of = {source: [case for case in cases if case.source == source] for source in (WHOLE, *_PARAMETERS, HERTZ)}
-    changes = stiffer(docs)
-    factor = max(max(predicted / change, change / predicted) for predicted, change in changes.values())
-    rigid = [[STATES[state], *(f"{1e3 * v:.3f}" for v in pair)] for state, pair in changes.items()]
     verdicts = "; ".join(_verdicts(numbers.numbers["runs"], cases))
     finding = (
         f"The printed error of a run is at least the known error in {safe} of {n} cases ({100 * safe / n:.0f} %). "
@@ -257,9 +250,6 @@ def draw(docs: Path) -> Path:
     body = [
         "## Coverage",
         coverages(cases),
-        "## Effect of a rigid screen",
-        _RIGID.format(order=ORDER, factor=factor),
-        harness.table(["contact length", "1500 to 5000 MPa/mm, predicted (mm)", "found (mm)"], rigid),
         "## Whole runs",
         tally(of[WHOLE]),
         harness.folded("All cases of whole runs", table(of[WHOLE])),

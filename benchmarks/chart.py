@@ -17,23 +17,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from benchmarks import errors, harness
+from benchmarks import points as all_points
 from benchmarks.convergence import Limit
-from benchmarks.points import (
-    AGAIN,
-    ALL,
-    DEFAULT,
-    KINDS,
-    NO_PATH,
-    OTHER_MODEL,
-    QUANTITIES,
-    REDUCED,
-    REQUESTED,
-    Point,
-    Reference,
-    runs,
-    scenes,
-    without_path,
-)
+from benchmarks.points import ALL, DEFAULT, KINDS, NO_PATH, OTHER_MODEL, QUANTITIES, REDUCED, Point, Reference
 
 _LIMIT = 10800.0  # s of processor time for one run
 MEASURES = {"work": "factorisations × unknowns", "seconds": "processor time"}
@@ -43,12 +29,12 @@ TARGETS = (5e-2, 1e-2, 2e-3)  # errors whose cost is in the tables
 # -- numbers -------------------------------------------------------------------------------------------------
 def compute(args: Any) -> None:
     """Run what is missing and keep the numbers."""
-    wanted = {label: scene for (_, label), scene in scenes().items()}
+    wanted = {label: scene for (_, label), scene in all_points.scenes().items()}
     summaries, reference = harness.run(wanted, args, _LIMIT), errors.known(args.docs)
-    points = [*runs(args.out, reference), *without_path(args.docs, reference)]
+    found = [*all_points.runs(args.out, reference), *all_points.without_path(args.docs, reference)]
     numbers = {
         "reference": {name: vars(reference[name]) for name in QUANTITIES},
-        "points": [asdict(point) for point in points],
+        "points": [asdict(point) for point in found],
         "lost": lost(summaries),
     }
     harness.keep("chart", numbers, harness.made(summaries.values()), args.docs)
@@ -133,7 +119,7 @@ _MARKS = {  # kind of setting: its families, colour, marker
     "mesh sizes": (("contact size", "growth", "size at the sites", "all sizes"), harness.BLUE, "o"),
     "element": (("element",), harness.PURPLE, "D"),
     "solver or steps": (("solver", "steps"), harness.GREY, "X"),
-    "without the path": ((REQUESTED, AGAIN), harness.GREEN, "^"),
+    "without the path": ((all_points.REQUESTED, all_points.AGAIN), harness.GREEN, "^"),
     "smooth finger": ((REDUCED,), harness.ORANGE, "s"),
 }
 _PANELS = ("slip_f_t", "normal_contact_length", "slip_sed_0", ALL)
@@ -171,7 +157,7 @@ def paint(figure: Figure, points: Sequence[Point], reference: Reference) -> None
         ax.set_xlabel("work / work of the default scene")
     for ax in axes[:, 0]:
         ax.set_ylabel("relative error")
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=7)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
 
 
 _HOW = """Each run is the default scene (75 N/m, 200 V, slid to full slip) with one setting changed, around a contact

@@ -81,25 +81,6 @@ def biases(kind: SelfAffine, surfaces: int, n: int = COARSE) -> dict[tuple[float
     }
 
 
-def fits(surfaces: int) -> list[dict[str, Any]]:
-    """Return the fits of single surfaces and of the spots of a surface: mean and scatter over surfaces."""
-    made = [READINGS[0].surface((COARSE, COARSE), (SIDE, SIDE), seed) for seed in range(surfaces)]
-    found = []
-    for window in (SIDE, *reversed(WINDOWS[1:])):
-        mine = []
-        for surface in made:
-            cut = [surface] if window == SIDE else [s.detrended("curvature") for s in spots(surface, window)][:SPOTS]
-            mine.append(power_spectrum(*cut, window="none" if window == SIDE else "hann").fit())
-        quantities = {
-            "hurst": [f.hurst for f in mine],
-            "wavelength": [f.wavelength for f in mine],
-            "h_rms": [f.h_rms(plateau=True) for f in mine],
-        }
-        row = {key: [float(np.mean(v)), float(np.std(v))] for key, v in quantities.items()}
-        found.append({"window": window, "resolved": sum(f.resolved for f in mine)} | row)
-    return found
-
-
 def _rings(spectrum: PowerSpectrum) -> dict[str, list[float]]:
     """Return the radial mean of a spectrum: wavevectors (1/m) and C (m^4)."""
     ring = spectrum.radial()
@@ -125,7 +106,6 @@ def compute(args: Any) -> None:
             for kind in READINGS
             for (window, trend), found in biases(kind, SURFACES).items()
         ],
-        "fits": fits(SURFACES),
     }
     harness.keep("topography", numbers, harness.made(), args.docs)
 
@@ -141,20 +121,15 @@ variance, {part:.2f} µm rms. Without wavelengths above λ0 the prefactor is 4π
 _SPOTS = """Eight spots of 100 µm × 100 µm, curvature removed as in section 3.1, have h_rms {h_rms:.2f} µm,
 skewness {skewness:.2f} and kurtosis {kurtosis:.2f}. Their cumulative distribution differs from a Gaussian's by
 {distance:.3f} at most. Their mean spectrum (Hann's window) gives H = {hurst:.2f}, fitted between wavelengths of
-{longest:.0f} µm and {shortest:.1f} µm. `roughness_table` makes of these spots the table of a scene:
+{longest:.0f} µm and {shortest:.1f} µm. Spots of this length cannot show a roll-off at 100 µm: the window mixes longer
+modes, and detrending weakens them. The paper's λ0 = 100 µm is the length of its spots, which `roughness_table` takes,
+too, when no roll-off is found. `roughness_table` makes of these spots the table of a scene:
 
     [roughness]
     h_rms = {scene_h_rms:.3g}
     wavelength = {scene_wavelength:.3g}"""
 _BIAS = """Rms height (µm) of spots of a surface of {wanted:g} µm rms: mean ± scatter from spot to spot
 over {surfaces} surfaces. In brackets is the root of the expected mean square, summed from the spectrum."""
-_FITS = """Plateau and power law were fitted to {surfaces} surfaces with a plateau and to {spots} spots of each (four of
-400 µm), curvature removed: mean ± scatter over surfaces, pixels of {pixel:.2g} µm."""
-_FITTED = """With Hann's window a fit starts at half the spot's length: the window mixes longer modes and detrending
-weakens them. So spots of 100 µm and of 200 µm cannot show a roll-off at 100 µm. The paper's λ0 = 100 µm is the length
-of its spots. `roughness_table` takes this length, too, when no roll-off is found; the fit's own is a lower bound. The
-window averages C over neighbouring modes. This lifts the steep low end of the spectrum and so H: the more, the fewer
-pixels a spot has."""
 
 
 def _chosen(numbers: Mapping[str, Any], plateau: bool, trend: str) -> list[dict[str, Any]]:
@@ -168,18 +143,6 @@ def _bias_table(numbers: Mapping[str, Any], plateau: bool) -> str:
         cells = (f"{b['mean'] * _UM:.2f} ± {b['scatter'] * _UM:.2f} ({b['expected'] * _UM:.2f})" for b in found)
         rows.append([f"{window * _UM:g}", *cells])
     return harness.table(["window (µm)", *(f"{trend} removed" for trend in TRENDS)], rows)
-
-
-def _fit_table(numbers: Mapping[str, Any]) -> str:
-    rows = []
-    for row in numbers["fits"]:
-        whole = row["window"] == SIDE
-        words = f"{row['window'] * _UM:g} µm, periodic" if whole else f"spots of {row['window'] * _UM:g} µm"
-        (h, dh), (w, dw), (rms, drms) = (row[key] for key in ("hurst", "wavelength", "h_rms"))
-        length = f"{w * _UM:.0f} ± {dw * _UM:.0f}" if row["resolved"] else f"≥ {w * _UM:.0f}"
-        resolved = f"{row['resolved']} of {numbers['surfaces']}"
-        rows.append([words, f"{h:.3f} ± {dh:.3f}", length, f"{rms * _UM:.2f} ± {drms * _UM:.2f}", resolved])
-    return harness.table(["map", "H", "λ0 (µm)", "h_rms of the fit (µm)", "roll-off found"], rows)
 
 
 def _spectrum(ax: Axes, numbers: Mapping[str, Any]) -> None:
@@ -255,8 +218,8 @@ def draw(docs: Path) -> Path:
     of_spots = numbers["heights"] | {"h_rms": numbers["heights"]["h_rms"] * _UM}
     spot = {"longest": longest, "shortest": shortest, "hurst": numbers["fit"]["hurst"]} | of_spots | table
     caption = (
-        "Left: spectra over Eq. 8; spots lose the longest waves. Right: rms height of spots; bars are the scatter from "
-        "spot to spot."
+        "Left: spectra over Eq. 8; spots lose the longest waves, of which a surface has few. Right: rms height of "
+        "spots; bars: scatter from spot to spot."
     )
     surfaces = numbers["surfaces"]
     body = [
@@ -267,10 +230,6 @@ def draw(docs: Path) -> Path:
         f"Without the plateau:\n\n{_bias_table(numbers, False)}",
         "## Eight spots of one surface",
         _SPOTS.format(**spot),
-        "## What a fit finds",
-        _FITS.format(surfaces=surfaces, spots=SPOTS, pixel=SIDE / COARSE * _UM),
-        _fit_table(numbers),
-        _FITTED,
     ]
     path, command = docs / "topography.md", "python3 -m benchmarks.topography"
     return harness.page(path, "Topography of a ridge", finding, how, body, command, kept.made, ["topography"])

@@ -8,23 +8,24 @@ twice the size in use to the size in use. An error of :math:`C_k h_k^{p_k}` each
           E = \sum_k \frac{|\Delta_k|}{2^{p_k} - 1}
 
 (Richardson's extrapolation as an estimate; Roache 1994, doi 10.1115/1.2910291). E adds magnitudes: signs that cancel on
-one mesh need not on the next. It is of the finest mesh solved on: what shows the error also lowers it.
+one mesh need not on the next. It is the error of the finest mesh solved on: the solve that shows the error also lowers
+it.
 
 The estimated error is E with a factor of safety on the share of each parameter: :data:`ONCE` for a parameter that was
 halved once, of which a single change is known, :data:`MORE` for others. Roache takes 3 and 1.25, for two meshes and for
-three. Where an accuracy is asked for, it is this error that has to be within it: a finer mesh is the price.
+three. A requested accuracy has to be met by this error, at the price of a finer mesh.
 
-The orders are those known beforehand: p = 1, that of a contact's edge on a mesh that does not know where it is, for
-forces and lengths, so that the error left is as large as the last change; p = 2, that of the strains of quadratic
-elements, for energy densities at sites deep in the skin that hardly see the edge. An order observed from three meshes
-is mostly noise, since an edge moves facet by facet (``docs/accuracy.md``).
+The orders are prescribed. For forces and lengths p = 1, the order of a contact edge that lies anywhere in a facet; the
+remaining error is then as large as the last change. For energy densities p = 2, the order of the strains of quadratic
+elements, since the sites lie deep in the skin and hardly depend on the edge. An order observed from three meshes is
+mostly noise, since an edge moves facet by facet (``docs/accuracy.md``).
 
-For the same reason a change may come out small by accident. That of a sum over ridges counts as at least the root of
-the sum of their squared changes, what changes of random sign come to; and any as at least a quarter of the one before
-it, which is second order.
+For the same reason a change may be small by accident. So the change of a sum over ridges counts as at least the root of
+the sum of squared changes, the expected value for changes of random sign. Any change counts as at least a quarter of
+the previous one, which is second order.
 
-(A dual-weighted residual would need the adjoint of an active set and of two scales, and says nothing of a state in
-which a ridge has jumped. Another mesh sees all that, and one re-solved state costs some ten factorisations.)
+(A dual-weighted residual would need the adjoint of an active set and of two scales, and does not cover a state in which
+a ridge has jumped. A solution on another mesh covers all of these, and costs some ten factorisations.)
 
 Plain numbers only: no mesh, no solver.
 """
@@ -91,12 +92,12 @@ def errors(parameters: Mapping[str, MeshParameter], names: Sequence[str]) -> dic
 def to_refine(parameters: Mapping[str, MeshParameter], allowed: Mapping[str, float]) -> list[str]:
     """Return the parameters to halve once more on the way to errors within what is allowed, by name.
 
-    Of each quantity that is not within it, as few as will do by their orders, those with the largest shares first, and
-    none that spends no more than its equal part. One halving at a time, since the order is that of small changes, and a
-    mesh finer than need be costs more than one more round.
+    For each quantity above its limit: as few parameters as suffice by their orders, those with the largest shares
+    first, and none whose share is below an equal part. Each is halved once, since the orders hold for small changes,
+    and an unnecessarily fine mesh costs more than a further round.
 
     Args:
-        parameters: that can be halved, with what halving them changed.
+        parameters: mesh parameters that can be halved, with the changes by halving them.
         allowed: largest error of each quantity, in its unit.
 
     Returns:

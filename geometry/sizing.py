@@ -1,5 +1,6 @@
 """Whether a fingertip can be meshed with the sizes given, and which ridges get fine elements; without gmsh."""
 
+from geometry import refusals
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError, Profiles
 
@@ -21,10 +22,10 @@ def check(finger: Fingertip, size: MeshSize) -> Profiles:
     """Return the fingertip's curves if they and the sizes can be meshed.
 
     Raises:
-        GeometryError: see :meth:`geometry.profiles.Profiles.check`; or elements too large for a ridge.
+        GeometryError: see :func:`geometry.refusals.check`; or elements too large for a ridge.
     """
     profiles = Profiles(finger)
-    profiles.check()
+    refusals.check(profiles)
     if size.contact > finger.ridge_wavelength / 4:
         raise GeometryError(
             f"contact size {size.contact:g} m is too large for a ridge of {finger.ridge_wavelength:g} m: "

@@ -19,9 +19,16 @@ from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
 from variational import jit
 
+LONGER = (
+    "accuracy api demo demos element ending energy environment faults formulations light mirror needs own_mesh "
+    "reach results smooth stability_map translation untuned verification zone"
+)
+"""Tests that `make check` leaves out, by the names of their files: whole runs. A new file is checked."""
+
 
 def pytest_addoption(parser):
     """Let the suite be run with other rounding: ``OPENBLAS_CORETYPE`` chooses the kernels, this the order of cells."""
+    parser.addoption("--quick", action="store_true", help="leave out the tests that take longer, as make check does")
     parser.addoption("--renumber", action="store_true", help="mesh with the cells in reverse order")
 
 
@@ -32,12 +39,19 @@ def pytest_configure(config):
         meshing.gmshio.create_mesh = lambda comm, cells, *rest, **more: create(comm, cells[::-1].copy(), *rest, **more)
 
 
+def pytest_ignore_collect(collection_path, config):
+    """Leave out, in a quick run, the files that take longer."""
+    if config.getoption("--quick") and collection_path.stem.removeprefix("test_") in LONGER.split():
+        return True
+    return None
+
+
 def pytest_sessionstart():
     """Delete compiles that were killed, each of which would block its form; give each rank a folder of its own.
 
     Ranks that share one delete its old runs under each other's hands.
     """
-    jit.sweep(MPI.COMM_WORLD)
+    jit.delete_unfinished(MPI.COMM_WORLD)
     if MPI.COMM_WORLD.size > 1:
         root = Path(tempfile.gettempdir()) / f"fingerpad-tests-{os.getuid()}-{MPI.COMM_WORLD.rank}"
         root.mkdir(mode=0o700, exist_ok=True)

@@ -1,6 +1,5 @@
 """A run of the full model as tests look at it: its summary, as it is on disk."""
 
-import tomllib
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -10,10 +9,6 @@ from mpi4py import MPI
 
 from fingerpad.runs import full
 from fingerpad.scene import Scene
-
-_SMALL = Path(__file__).parents[1] / "demos" / "scenes" / "small_finger.toml"
-SMALL_FINGER: dict[str, Any] = tomllib.loads(_SMALL.read_text(encoding="utf-8"))["geometry"]
-"""Nine ridges on 4 mm: half the unknowns of nine ridges on the default finger's width."""
 
 
 def run(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> dict[str, Any]:

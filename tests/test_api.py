@@ -16,7 +16,6 @@ from fingerpad.model.hints import finer_mesh_may_help
 from fingerpad.runs import attempt, full, sweep
 from fingerpad.runs.processes import End
 from fingerpad.scene import from_data
-from tests.runs import SMALL_FINGER
 from variational.solvers.continuation import StepFailed
 from variational.solvers.failure import NotConverged
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
@@ -24,7 +23,7 @@ from variational.state import CONDITIONS, RESULTS, ContactState, Errors
 SMALL = {
     "f_ext": 1.0,
     "voltage": 60.0,
-    "geometry": SMALL_FINGER,
+    "geometry": {"ridge_count": 9},
     "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
     "output": {"receptors": False},
 }

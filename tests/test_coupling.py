@@ -33,7 +33,7 @@ class Stub:
             mesh=SimpleNamespace(comm=MPI.COMM_SELF),
             set_air_gaps=lambda d: setattr(self, "d", d),
         )
-        self.surface, self.state = SimpleNamespace(names=list(range(ridges))), lambda: None
+        self.surface, self.state = SimpleNamespace(ridge_numbers=list(range(ridges))), lambda: None
         self.coupling = Coupling(self, self, closure)
 
     def solve(self, pseudo_transient: bool = False) -> None:
@@ -66,8 +66,8 @@ def flat(p_ext: float, noise: float = 0.0) -> Stub:
 
 
 @pytest.mark.parametrize("gain", [-3.0, -0.9, 0.0, 0.5, 0.9, 0.99])
-def test_linear_ridge_takes_few_sweeps(gain):
-    """The plain loop diverges at a gain of -3 and takes a thousand sweeps at 0.99; the secant is exact.
+def test_linear_ridge_takes_few_iterations(gain):
+    """The plain loop diverges at a gain of -3 and takes a thousand iterations at 0.99; the secant is exact.
 
     Tolerance: the loop's, and roundoff of a secant over changes of a tenth.
     """
@@ -80,7 +80,7 @@ def test_linear_ridge_takes_few_sweeps(gain):
 
 
 def test_ridges_of_different_gains():
-    """Each ridge has a secant of its own: together they take a sweep or two more than the slowest alone."""
+    """Each ridge has a secant of its own: together they take an iteration or two more than the slowest alone."""
     stub = line([-3.0, 0.2, 0.99])
     stub.coupling.solve()
     assert len(stub.coupling.history.changes) <= 7
@@ -145,7 +145,7 @@ def test_towards_the_fold(gain, noise):
 
 @pytest.mark.parametrize("beyond", [1.0, 10.0, 100.0])  # Pa
 def test_past_the_pull_off_fold(beyond):
-    """A little beyond the fold nothing holds the ridge: it goes to the closure's far end, within the cap of sweeps."""
+    """A little beyond the fold nothing holds the ridge: it goes to the closure's far end within the cap."""
     closure = BearingArea(H_0)
     fold = closure.pull_off_fold(FOLD_VOLTAGE)
     stub = flat(float(closure.external_pressure(fold, FOLD_VOLTAGE)) - beyond)

@@ -9,10 +9,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mpi4py import MPI
+
+from fingerpad.runs import full
+from fingerpad.scene import from_data, load
+from tests import runs
 
 ROOT = Path(__file__).resolve().parents[1]
 COARSE = ROOT / "demos" / "scenes" / "coarse.toml"
 MU_0 = 0.25
+NINE = {"geometry": {"ridge_count": 9}, "output": {"errors": False}}
+MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
 
 
 def run(folder: Path, *options: str, ranks: int = 1) -> subprocess.CompletedProcess[str]:
@@ -32,7 +39,7 @@ def steps(folder: Path) -> list[dict[str, str]]:
 @pytest.fixture(scope="module")
 def coarse(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("coarse")
-    done = run(folder, str(COARSE))
+    done = run(folder, str(COARSE), "--set", "output.errors=false")
     assert done.returncode == 0, done.stdout + done.stderr
     return folder
 
@@ -44,14 +51,14 @@ def summary(coarse) -> dict:
 
 def test_reaches_full_slip(summary):
     assert summary["full_slip"] is True
-    assert summary["f_ext"] == pytest.approx(10.0, rel=1e-9)
-    assert summary["voltage"] == 150.0
+    assert summary["f_ext"] == pytest.approx(3.0, rel=1e-9)
+    assert summary["voltage"] == 100.0
 
 
 def test_friction_at_full_slip_is_the_cone(summary):
     """f_T is mu_0 times the contact force; the solver leaves 1e-9 of f_ext, 1e-6 is what physics.md asks for."""
     assert summary["slip_f_t"] == pytest.approx(MU_0 * summary["slip_f_contact"], rel=1e-6)
-    assert summary["slip_mu_app"] == pytest.approx(summary["slip_f_t"] / 10.0, rel=1e-9)
+    assert summary["slip_mu_app"] == pytest.approx(summary["slip_f_t"] / 3.0, rel=1e-9)
 
 
 def test_numbers_are_those_of_this_mesh(summary):
@@ -60,16 +67,16 @@ def test_numbers_are_those_of_this_mesh(summary):
     dolfinx 0.9 and 0.11 agree to 1e-12, steps and tolerances leave some 1e-7; another gmsh may place nodes otherwise.
     """
     found = {name: summary[name] for name in ("slip_f_t", "normal_contact_length", "slip_contact_length")}
-    pinned = {"slip_f_t": 6.9977611, "normal_contact_length": 0.44333347e-3, "slip_contact_length": 0.41410128e-3}
+    pinned = {"slip_f_t": 1.46788783, "normal_contact_length": 0.196157177e-3, "slip_contact_length": 0.1953031e-3}
     assert found == pytest.approx(pinned, rel=1e-6, abs=0)
-    assert (summary["normal_ridges_in_contact"], summary["slip_ridges_in_contact"]) == (9, 9)
+    assert (summary["normal_ridges_in_contact"], summary["slip_ridges_in_contact"]) == (5, 5)
 
 
 @pytest.mark.parametrize("state", ["normal", "slip"])
 def test_bone_bears_contact_less_attraction(summary, state):
     """Force balance at the solver's tolerance, times some hundred nodes."""
     force = summary[f"{state}_f_contact"] - summary[f"{state}_f_electrostatic"]
-    assert force == pytest.approx(10.0, rel=1e-6)
+    assert force == pytest.approx(3.0, rel=1e-6)
 
 
 def test_voltage_adds_friction_and_contact(coarse, summary):
@@ -81,8 +88,8 @@ def test_voltage_adds_friction_and_contact(coarse, summary):
 
 
 def test_normal_contact_is_symmetric(summary):
-    """The mesh is not mirrored, the finger is: f_T of normal contact is below 0.1 % of that at full slip."""
-    assert abs(summary["normal_f_t"]) < 1e-3 * summary["slip_f_t"]
+    """The mesh is not mirrored, the finger is: f_T of normal contact is below 0.3 % of that at full slip."""
+    assert abs(summary["normal_f_t"]) < 3e-3 * summary["slip_f_t"]
 
 
 def test_never_outside_the_cone(coarse):
@@ -98,25 +105,17 @@ def test_leaves_what_it_promises(coarse, summary):
     assert {"displacement.bp", "stress.bp", "sed.bp", "surface.npz"} <= names
     assert {"finger_press.npz", "finger_charge.npz", "finger_slide.npz"} <= names
     assert len(steps(coarse)) == summary["steps"]
-    assert summary["parameters"]["mesh"]["contact"] == 30e-6
+    assert summary["parameters"]["mesh"]["contact"] == 20e-6
 
 
 @pytest.mark.parametrize("state", ["normal", "slip"])
 def test_surface_array_bears_the_contact_force(coarse, summary, state):
-    """Pressure over the current abscissa, by the trapezoidal rule, coarse on a few facets of 30 um a ridge."""
+    """Pressure over the current abscissa, by the trapezoidal rule, coarse on a few facets of 20 um a ridge."""
     with np.load(coarse / "surface.npz") as arrays:
         x, p = arrays[f"{state}_x"], arrays[f"{state}_p"]
     known = np.isfinite(x[1:] + x[:-1])
     force = float((np.diff(x) * (p[1:] + p[:-1]) / 2)[known].sum())
     assert force == pytest.approx(summary[f"{state}_f_contact"], rel=0.1)
-
-
-def test_results_come_with_their_errors(summary):
-    """Of friction, contact lengths and the sites' energy densities, none of them nothing or larger than the value."""
-    quantities = summary["accuracy"]["quantities"]
-    assert {"normal_contact_length", "slip_contact_length", "slip_f_t", "slip_mu_app", "slip_sed_0"} <= set(quantities)
-    for name in ("normal_contact_length", "slip_contact_length", "slip_f_t", "slip_mu_app"):
-        assert 0 < summary[f"{name}_error"] == quantities[name]["error"] < quantities[name]["value"]
 
 
 def test_receptor_sites(coarse):
@@ -127,15 +126,17 @@ def test_receptor_sites(coarse):
     assert merkel > max(left, right) > min(left, right) > 0
 
 
-def test_two_ranks_agree_with_one(summary, tmp_path):
+@pytest.mark.mpi
+@pytest.mark.skipif(MPI.COMM_WORLD.size == 1, reason="one rank has no other to agree with")
+def test_ranks_agree_with_one():
     """The same numbers to 1e-6: the coupling's tolerance on the air gap, times its contraction."""
-    done = run(tmp_path, str(COARSE), ranks=2)
-    assert done.returncode == 0, done.stdout + done.stderr
-    other = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+    scene = load(COARSE).replace(output={"errors": False})
+    found, other = (full.run(scene, None, comm, lines=False).to_dict() for comm in (MPI.COMM_WORLD, MPI.COMM_SELF))
+    assert (found["ranks"], other["ranks"]) == (MPI.COMM_WORLD.size, 1)
     for state in ("normal", "slip"):
         for name in ("f_contact", "f_electrostatic", "contact_length", "bone_height", "ridges_in_contact"):
-            assert other[f"{state}_{name}"] == pytest.approx(summary[f"{state}_{name}"], rel=1e-6), name
-    assert other["slip_mu_app"] == pytest.approx(summary["slip_mu_app"], rel=1e-6)
+            assert other[f"{state}_{name}"] == pytest.approx(found[f"{state}_{name}"], rel=1e-6), name
+    assert other["slip_mu_app"] == pytest.approx(found["slip_mu_app"], rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -158,7 +159,9 @@ def test_bad_input_is_one_sentence(tmp_path, options, sentence):
 
 def test_failure_keeps_the_accepted_steps(tmp_path):
     """A Newton iteration cut short cannot converge: the run names step and reason, and leaves what it has."""
-    done = run(tmp_path, str(COARSE), "-fingerpad_snes_max_it", "2")
+    one_ridge = ("mesh.touching_half_arc=1e-6", "mesh.contact=9e-6", "geometry.ridge_count=3")
+    settings = [word for setting in one_ridge for word in ("--set", setting)]  # too fine to start again with half of it
+    done = run(tmp_path, str(COARSE), *settings, "-fingerpad_snes_max_it", "2")
     assert done.returncode == 1
     assert "found no equilibrium" in done.stdout
     assert "DIVERGED_MAX_IT" in done.stdout
@@ -169,13 +172,10 @@ def test_failure_keeps_the_accepted_steps(tmp_path):
 @pytest.mark.parametrize("formulation", ["nitsche", "augmented"])
 def test_other_formulations(tmp_path, formulation):
     """Pressed lightly and charged, a scene with another formulation balances its forces as the penalty's does."""
-    scene = tmp_path / "scene.toml"
-    loads = '[[history]]\nname = "press"\nf_ext = 0.5\n[[history]]\nname = "charge"\nvoltage = 50.0\n'
-    mesh = COARSE.read_text(encoding="utf-8").partition("[mesh]")
-    scene.write_text(f'{loads}[contact]\nformulation = "{formulation}"\n{mesh[1]}{mesh[2]}', encoding="utf-8")
-    done = run(tmp_path / "out", str(scene))
-    assert done.returncode == 0, done.stdout + done.stderr
-    end = steps(tmp_path / "out")[-1]
+    history = [{"name": "press", "f_ext": 0.5}, {"name": "charge", "voltage": 50.0}]
+    scene = from_data(NINE | {"history": history, "mesh": MESH, "contact": {"formulation": formulation}})
+    assert "failure" not in runs.run(scene, tmp_path)
+    end = steps(tmp_path)[-1]
     force = float(end["f_contact"]) - float(end["f_electrostatic"])
     assert float(end["f_electrostatic"]) > 0
     assert force == pytest.approx(0.5, abs=1e-7)  # some hundred nodal imbalances of 1e-9 of the load
@@ -186,15 +186,13 @@ def test_contact_survives_without_force(tmp_path):
 
     The bone is raised by 4 um at a time: in a step much longer, what is released is less than the error of the work.
     """
-    scene = tmp_path / "scene.toml"
-    loads = [("press", "f_ext = 0.3"), ("charge", "voltage = 150.0"), ("unload", "f_ext = 0.0")]
-    loads += [(f"retract to {height} um", f"bone_height = {height}e-6") for height in (-6, -2, 2, 6, 10, 14, 40)]
-    history = "".join(f'[[history]]\nname = "{name}"\n{load}\n' for name, load in loads)
-    mesh = "contact = 15e-6\nreceptor = 80e-6\ninterface = 150e-6\ngrowth = 0.8\ntouching_half_arc = 1.3e-3\n"
-    scene.write_text(f"{history}[mesh]\n{mesh}", encoding="utf-8")
-    done = run(tmp_path / "out", str(scene))
-    assert done.returncode == 0, done.stdout + done.stderr
-    rows = steps(tmp_path / "out")
+    heights = [
+        {"name": f"retract to {height} um", "bone_height": height * 1e-6} for height in (-6, -2, 2, 6, 10, 14, 40)
+    ]
+    loads = [{"name": "press", "f_ext": 0.3}, {"name": "charge", "voltage": 150.0}, {"name": "unload", "f_ext": 0.0}]
+    scene = from_data(NINE | {"history": loads + heights, "mesh": MESH | {"contact": 15e-6}})
+    assert "failure" not in runs.run(scene, tmp_path)
+    rows = steps(tmp_path)
     unloaded = next(row for row in rows[::-1] if row["load"] == "unload")
     assert float(unloaded["f_ext"]) == pytest.approx(0, abs=1e-7)
     assert float(unloaded["mu_app"]) == 0

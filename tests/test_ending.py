@@ -18,15 +18,23 @@ from tests.measures import accepted
 
 ROOT = Path(__file__).resolve().parents[1]
 GOOD = 2  # steps accepted before a run is disturbed
+COARSE = ROOT / "demos" / "scenes" / "coarse.toml"
+LONG = """# a light finger on a long way: its start is short, and there are a hundred steps to disturb it in
+geometry.ridge_count = 9
+mesh = {contact = 40e-6, receptor = 100e-6, interface = 200e-6, growth = 1.0, touching_half_arc = 1.0e-3}
+output = {errors = false, receptors = false}
+history = [{name = "press", f_ext = 1.0}, {name = "slide", bone_x = 5e-3}]
+"""
 
 
 # -- killed ------------------------------------------------------------------------------------------------
 def start(folder: Path, ranks: int = 1) -> subprocess.Popen:
-    """Start the demo in a process of its own, or in more, and wait for its first steps.
+    """Start a run in a process of its own, or in more, and wait for its first steps.
 
     A pytest in the background has processes ignore SIGINT; here they do not.
     """
-    scene = ROOT / "demos" / "scenes" / "coarse.toml"
+    scene = folder.with_name(f"{folder.name}.toml")
+    scene.write_text(LONG, encoding="utf-8")
     command = ["env", "--default-signal", *(["mpirun", "-n", str(ranks)] if ranks > 1 else []), sys.executable]
     command += ["-m", "fingerpad", "run", str(scene), "--out", str(folder)]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
@@ -139,13 +147,13 @@ run(load(Path(sys.argv[1])), Path(sys.argv[2]), MPI.COMM_WORLD)
 @pytest.mark.parametrize("rank", [0, 1])
 def test_what_one_rank_raises_ends_all(tmp_path, rank):
     """The other one waits in a collective call."""
-    scene = ROOT / "demos" / "scenes" / "coarse.toml"
-    command = ["mpirun", "-n", "2", sys.executable, "-c", RAISES, str(scene), str(tmp_path), str(rank)]
+    (scene := tmp_path / "scene.toml").write_text(LONG, encoding="utf-8")
+    command = ["mpirun", "-n", "2", sys.executable, "-c", RAISES, str(scene), str(tmp_path / "out"), str(rank)]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=200)
     assert done.returncode == 1
     assert done.stderr.count("ValueError: raised on one rank") == 1
-    assert not (tmp_path / "summary.json").exists()
+    assert (tmp_path / "out" / "steps.csv").exists() and not (tmp_path / "out" / "summary.json").exists()
 
 
 # -- a full disk -------------------------------------------------------------------------------------------
@@ -154,8 +162,7 @@ def test_full_disk(tmp_path):
     code = "import resource, runpy, sys\nfrom fingerpad.startup import start; start()\n"
     code += "resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))\n"
     code += "runpy.run_module('fingerpad', run_name='__main__')"
-    scene = ROOT / "demos" / "scenes" / "coarse.toml"
-    command = [sys.executable, "-c", code, "run", str(scene), "--out", str(tmp_path)]
+    command = [sys.executable, "-c", code, "run", str(COARSE), "--out", str(tmp_path)]
     done = subprocess.run(command, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True)
     assert done.returncode == 1
     said = done.stderr.strip()

@@ -211,7 +211,7 @@ def test_points_that_slip_are_expected_to_slip_on():
     "formulation", [Penalty(1e11, 1e10), AugmentedLagrangian(1e11, 1e10, 5e-9), Nitsche(10.0)], ids=repr
 )
 def test_rejected_attempts_leave_no_trace(formulation):
-    """After attempts that were given up in the middle of a sweep, anchors and multipliers are the accepted ones."""
+    """After attempts given up in the middle of a coupling iteration, anchors and multipliers are the accepted ones."""
     run = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), formulation, MU_F, held=False)
     run.run(Target("press", bone_height=-2e-6))
     run.run(Target("slide", bone_x=0.5e-6))
@@ -232,7 +232,7 @@ def test_rejected_attempts_leave_no_trace(formulation):
     assert np.abs(anchor).max(initial=0.0) > 0
 
 
-def test_too_many_sweeps():
+def test_too_many_coupling_iterations():
     """A loop that may not correct its multipliers says by how much the contact is off."""
     run = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), AugmentedLagrangian(1e11, 1e10, 1e-15))
     run.coupling.cap = 1

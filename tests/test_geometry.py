@@ -12,7 +12,7 @@ from mpi4py import MPI
 from pydantic import ValidationError
 from scipy.spatial import cKDTree
 
-from geometry import fingertip, tags
+from geometry import fingertip, refusals, tags
 from geometry.bodies import block
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
@@ -267,32 +267,32 @@ def test_parameters_are_refused(given, message):
 def test_fingertip_is_refused(given, message):
     """What crosses, and the parameter, are named."""
     with pytest.raises(GeometryError, match=message):
-        Profiles(Fingertip(**given)).check()
+        refusals.check(Profiles(Fingertip(**given)))
 
 
 def test_default_is_accepted(profiles):
-    profiles.check()
+    refusals.check(profiles)
 
 
 def test_least_thickness_that_is_named_is_the_least():
     """A micrometre more than the message asks for is accepted, a micrometre less is not."""
     with pytest.raises(GeometryError) as refusal:
-        Profiles(Fingertip(ve_thickness=100e-6)).check()
+        refusals.check(Profiles(Fingertip(ve_thickness=100e-6)))
     least = float(str(refusal.value).split()[-2])
-    Profiles(Fingertip(ve_thickness=least + UM)).check()
+    refusals.check(Profiles(Fingertip(ve_thickness=least + UM)))
     with pytest.raises(GeometryError):
-        Profiles(Fingertip(ve_thickness=least - UM)).check()
+        refusals.check(Profiles(Fingertip(ve_thickness=least - UM)))
 
 
 @pytest.mark.parametrize("wavelength", [460e-6, 483e-6, 500e-6])
 def test_most_ridges_that_are_named_fit(wavelength):
     """The message gives a number that is accepted, and the next odd one is not."""
     with pytest.raises(GeometryError) as refusal:
-        Profiles(Fingertip(ridge_count=101, ridge_wavelength=wavelength)).check()
+        refusals.check(Profiles(Fingertip(ridge_count=101, ridge_wavelength=wavelength)))
     most = int(str(refusal.value).split()[-2])
-    Profiles(Fingertip(ridge_count=most, ridge_wavelength=wavelength)).check()
+    refusals.check(Profiles(Fingertip(ridge_count=most, ridge_wavelength=wavelength)))
     with pytest.raises(GeometryError):
-        Profiles(Fingertip(ridge_count=most + 2, ridge_wavelength=wavelength)).check()
+        refusals.check(Profiles(Fingertip(ridge_count=most + 2, ridge_wavelength=wavelength)))
 
 
 def test_contact_size_is_refused():

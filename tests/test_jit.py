@@ -17,7 +17,7 @@ def test_sweep_takes_what_a_killed_compile_left(tmp_path, monkeypatch):
         (tmp_path / name).touch()
     for name in ("dead.c", "done.c"):
         os.utime(tmp_path / name, times=(time.time() - 600,) * 2)
-    jit.sweep(MPI.COMM_SELF)
+    jit.delete_unfinished(MPI.COMM_SELF)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["done.c", "done.c.cached", "young.c"]
 
 
@@ -30,8 +30,8 @@ def test_sweep_leaves_what_a_compiler_is_at(tmp_path, monkeypatch):
     command = [sys.executable, "-c", "input(print(flush=True))", str(source)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as compiler:
         assert compiler.stdout.readline()  # it runs, so that its command line is its own
-        jit.sweep(MPI.COMM_SELF)
+        jit.delete_unfinished(MPI.COMM_SELF)
         assert source.exists()
         compiler.communicate(b"\n")
-    jit.sweep(MPI.COMM_SELF)
+    jit.delete_unfinished(MPI.COMM_SELF)
     assert not source.exists()

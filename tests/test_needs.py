@@ -121,7 +121,7 @@ def test_one_solve_a_step_without_voltage(body):
 
 
 def test_contact_of_an_augmented_lagrangian_is_corrected_without_voltage(body):
-    """Its sweeps are not those of the scales: depth and slip stay below the tolerance."""
+    """Its coupling iterations are not those of the scales: depth and slip stay below the tolerance."""
     law = AugmentedLagrangian(1.5e13, 5e11, 5e-9)
     errors = Path(body, Interface(law, 0.25, H_0, None)).path.coupling.history.errors
     assert len(errors) > 1 and errors[-1] <= law.tolerance < errors[0]
@@ -206,7 +206,7 @@ def test_unknowns_spared_without_receptors(coarse):
     ("data", "reason"),
     [
         ({"output": {"errors": False}}, "output.errors is false"),
-        ({"numerics": {"element": "P2-P1"}}, "the pressure of P2-P1 cannot be carried to another mesh"),
+        ({"numerics": {"element": "P2-P1"}}, None),
         ({}, None),
         ({"output": {"errors": False}, "accuracy": {"mu_app": 0.01}}, None),
     ],

@@ -14,6 +14,7 @@ from geometry import fingertip
 from geometry.parameters import Fingertip, MeshSize
 from tests.test_meshfile import write
 
+FINGER = Fingertip(ridge_count=13)
 SIZE = {"contact": 100e-6, "receptor": 200e-6, "interface": 200e-6, "growth": 0.5, "coarsest": 1e-3}
 OUTPUT = {"errors": False, "receptors": False}
 
@@ -25,10 +26,10 @@ def scene(f_ext: float = 5.0, **more) -> fp.Scene:
 
 
 def finger(half_arc: float):
-    """Return what meshes the default finger, in metres, whose ridges within an arc can touch."""
+    """Return what meshes the default finger with thirteen ridges, in metres, whose ridges within an arc can touch."""
 
     def build() -> None:
-        fingertip.build(Fingertip(), MeshSize(**SIZE, touching_half_arc=half_arc), False)
+        fingertip.build(FINGER, MeshSize(**SIZE, touching_half_arc=half_arc), False)
         gmsh.model.mesh.affineTransform([1e-3, 0, 0, 0, 0, 1e-3, 0, 0, 0, 0, 1e-3, 0])
 
     return build
@@ -43,7 +44,7 @@ def place(tmp_path) -> Path:
 @pytest.mark.mpi
 def test_same_numbers_as_on_its_own_mesh(place):
     """The file's decimals are good for 1e-15 of a coordinate. A bone moved sideways needs both halves of either."""
-    mesh = {"mesh": SIZE | {"touching_half_arc": 2e-3}}
+    mesh = {"mesh": SIZE | {"touching_half_arc": 2e-3}, "geometry": {"ridge_count": 13}}
     own = fp.run(scene(history=[{"name": "press", "f_ext": 5.0}, {"name": "nudge", "bone_x": 1e-9}], **mesh))
     file = fp.run(
         scene(history=[{"name": "press", "f_ext": 5.0}, {"name": "nudge", "bone_x": 1e-9}]),

@@ -236,7 +236,7 @@ def test_run_is_read(tmp_path):
         "state": ["", "", "", ""],
     }
     receptors = {"step": [1, 1, 2, 2], "ridge": [0, 1, 0, 1], "merkel_sed": [1.0, 2.0, 3.0, 4.0]}
-    leave(tmp_path, scene, {"steps": steps, "ridges": ridges, "receptors": receptors})
+    leave(tmp_path, scene, {"steps": steps, "ridges": ridges, "receptors": receptors}, normal_step=2, slip_step=4)
     run = Run(scene, tmp_path)
     assert (run.normal, run.slip) == (1, 3)
     assert [list(found) for found in run.on_ridges(1, "d_eq")] == [[0, 1], [2e-6, 2.5e-6]]

@@ -31,7 +31,7 @@ def folder(tmp_path) -> Path:
 @pytest.fixture
 def finished(scene, folder) -> dict[str, bytes]:
     """A folder with what an earlier run of the scene may have left."""
-    with Place(folder, scene, MPI.COMM_WORLD) as place:
+    with Place(folder, scene.parameters(), MPI.COMM_WORLD) as place:
         place.take()
     for name in ("summary.json", "steps.csv", "finger_press.png", "notes of mine.txt"):
         (folder / name).write_text("old")
@@ -45,7 +45,7 @@ def kept(folder: Path) -> dict[str, bytes]:
 
 def test_the_same_scene_may_run_again(scene, folder, finished):
     """What it left goes as a whole when there is something new, and what is no result stays."""
-    with Place(folder, scene, MPI.COMM_WORLD) as place:
+    with Place(folder, scene.parameters(), MPI.COMM_WORLD) as place:
         assert kept(folder) == finished
         place.take()
     assert set(kept(folder)) == {".lock", "scene.json", "notes of mine.txt"}
@@ -70,11 +70,14 @@ def test_another_scene_is_refused(folder, finished, change, words):
 def test_results_of_earlier_versions_are_known_by_their_summary(scene, folder):
     folder.mkdir()
     (folder / "summary.json").write_text(json.dumps({"parameters": scene.parameters()}))
-    with Place(folder, scene, MPI.COMM_WORLD):
+    with Place(folder, scene.parameters(), MPI.COMM_WORLD):
         pass
     (folder / "summary.json").unlink()
     (folder / "steps.csv").touch()
-    with pytest.raises(PlaceError, match="results of an unknown scene"), Place(folder, scene, MPI.COMM_WORLD):
+    with (
+        pytest.raises(PlaceError, match="results of an unknown scene"),
+        Place(folder, scene.parameters(), MPI.COMM_WORLD),
+    ):
         pass
 
 
@@ -84,9 +87,9 @@ def test_one_run_at_a_time(scene, folder, finished):
         with pytest.raises(PlaceError, match="another run is writing to"):
             run(scene, folder, MPI.COMM_WORLD)
         assert kept(folder) == finished
-    with Place(folder, scene, MPI.COMM_WORLD), pytest.raises(PlaceError, match="another run"):
-        Place(folder, scene, MPI.COMM_WORLD).__enter__()
-    with Place(folder, scene, MPI.COMM_WORLD):  # it is free again
+    with Place(folder, scene.parameters(), MPI.COMM_WORLD), pytest.raises(PlaceError, match="another run"):
+        Place(folder, scene.parameters(), MPI.COMM_WORLD).__enter__()
+    with Place(folder, scene.parameters(), MPI.COMM_WORLD):  # it is free again
         pass
 
 
@@ -114,7 +117,7 @@ def test_a_crash_before_the_first_step_leaves_the_last_one(scene, folder, finish
     def crash(*_):
         raise ZeroDivisionError
 
-    monkeypatch.setattr("fingerpad.runs.full.Simulation", crash)
+    monkeypatch.setattr("fingerpad.runs.attempt.Simulation", crash)
     with pytest.raises(ZeroDivisionError):
         run(scene, folder, MPI.COMM_WORLD)
     assert kept(folder) == finished

@@ -18,14 +18,14 @@ from fingerpad.model.balance import force_error
 from fingerpad.model.options import plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data
-from tests.runs import SMALL_FINGER, run
+from tests.runs import run
 from variational.contact.friction import CONE_ROUNDOFF
 from variational.solvers.iteration import PREFIX
 from variational.solvers.newton import Solver
 
 MU_0 = 0.25
 SMALL = {
-    "geometry": SMALL_FINGER,
+    "geometry": {"ridge_count": 9},
     "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
 }
 LEAN = SMALL | {"output": {"errors": False, "receptors": False}}
@@ -131,7 +131,7 @@ def test_errors_are_estimated_of_the_headline(more, load):
     for state in ("charged", "full_slip"):
         for name in RESULTS:
             assert getattr(kept[state].state, name) == getattr(found[state], name), (state, name)
-        assert kept[state].carried.voltage == found[state].voltage
+        assert kept[state].snapshot.voltage == found[state].voltage
 
 
 def test_probe_of_full_slip_leaves_no_trace(monkeypatch):

@@ -68,6 +68,7 @@ def test_facets_that_lose_the_ridge_are_refused(tmp_path):
         smooth.solve(rough(200.0, 20e-6), tmp_path)
 
 
+@pytest.mark.long
 def test_error_covers_the_difference_to_finer_facets(tmp_path):
     """Facets of 20 um at 100 V, against those of a quarter of their size."""
     coarse = smooth.solve(rough(100.0, 20e-6), tmp_path)

@@ -113,7 +113,7 @@ def test_every_facet_is_counted_once(name, request):
     surface = make(body)
     lengths = surface.per_ridge(np.ones((len(surface.pairs), 4)))
     ds = ufl.Measure("ds", body.mesh, subdomain_data=body.facet_tags)
-    for k, j in enumerate(surface.names):
+    for k, j in enumerate(surface.ridge_numbers):
         form = fem.form(fem.Constant(body.mesh, 1.0) * ds(tags.ridge(j)))
         length = body.mesh.comm.allreduce(fem.assemble_scalar(form))
         assert lengths[k] == pytest.approx(length, rel=1e-12, abs=0)

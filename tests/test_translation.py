@@ -8,12 +8,11 @@ from mpi4py import MPI
 from fingerpad.model.options import plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data
-from tests.runs import SMALL_FINGER
 from variational.solvers import newton as solver_module
 from variational.solvers.continuation import StepFailed
 
 FINGER = {
-    "geometry": SMALL_FINGER,
+    "geometry": {"ridge_count": 9},
     "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
 }
 

@@ -101,7 +101,7 @@ class Body:
                 :class:`variational.solvers.equations.Equations`.
             mirror: facets at x = 0 of the half of a body that is its own mirror image.
             coupling_tolerance: relative error of air gaps at which the loop over the scales ends.
-            coupling_cap: most sweeps of that loop.
+            coupling_cap: most iterations of that loop.
             by_gap: see :class:`variational.solvers.coupling.Coupling`.
             on_accept: called after each accepted step, see :class:`variational.solvers.continuation.Continuation`.
             touch_depth: how far the bone is lowered by displacement before force takes over (m).

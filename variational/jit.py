@@ -12,7 +12,7 @@ import dolfinx.jit
 from mpi4py import MPI
 
 _CPU = Path("/proc/cpuinfo")
-_DEAD = 300.0  # s after which an unfinished compile that no compiler is at is taken for killed; mostly it takes seconds
+_DEAD = 300.0  # s after which an unfinished compile that no compiler works on counts as killed; mostly it takes seconds
 
 
 def _own() -> dict[str, Any]:
@@ -33,8 +33,8 @@ def options() -> dict[str, Any]:
     return dict(dolfinx.jit.get_options(OPTIONS))
 
 
-def sweep(comm: MPI.Comm) -> None:
-    """Delete unfinished compiles that nobody is at work on: each would block its form for good; collective."""
+def delete_unfinished(comm: MPI.Comm) -> None:
+    """Delete unfinished compiles that no process works on: each would block its form for good; collective."""
     if comm.rank == 0:
         folder = Path(OPTIONS.get("cache_dir", dolfinx.jit.get_options()["cache_dir"]))
         for source in folder.glob("*.c"):
@@ -44,10 +44,10 @@ def sweep(comm: MPI.Comm) -> None:
 
 
 def _dead(source: Path) -> bool:
-    """Return whether nobody has touched a source for long, nor compiles it now, as far as can be seen."""
+    """Return whether a source is old and no visible process compiles it."""
     try:
         old = time.time() - source.stat().st_mtime > _DEAD
-    except FileNotFoundError:  # somebody else was faster
+    except FileNotFoundError:  # another process was faster
         return False
     return old and not any(source.name.encode() in command for command in _commands())
 

@@ -85,7 +85,7 @@ class StepRecord:
     released_error: float
     newton_iterations: int
     factorisations: int
-    sweeps: int
+    coupling_iterations: int
     cutbacks: int
     jump: bool
     """Whether skin or an air gap moved without the loads."""

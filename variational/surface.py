@@ -20,8 +20,8 @@ class Surface:
     """Facets of a set of tags, grouped in ridges, with Gauss points on each.
 
     Attributes:
-        ridge: position of each facet's ridge in ``names``, shape (facets,).
-        names: the ridges' numbers.
+        ridge: position of each facet's ridge in ``ridge_numbers``, shape (facets,).
+        ridge_numbers: the ridges' numbers.
         facets: number of each facet in the mesh.
         length: reference length of each facet (m).
         weights: Gauss weights on [0, 1], shape (points,).
@@ -46,7 +46,7 @@ class Surface:
             ValueError: a cell has two facets on the surface, which leaves no place for their history.
         """
         self.mesh = mesh
-        self.names = list(ridges)
+        self.ridge_numbers = list(ridges)
         self.degree = 2 * points - 1
         tag_list = list(ridges.values())
         degree = {"quadrature_degree": self.degree}
@@ -143,7 +143,7 @@ class Surface:
         return values.reshape(len(self.pairs), len(self.weights), count)
 
     def nodes(self, space: fem.FunctionSpace, ridge: int) -> NDArray[np.int32]:
-        """Return this rank's nodes of a space on a ridge, by its position in ``names``; ghosts as far as known."""
+        """Return this rank's nodes of a space on a ridge, by its position among the ridges; ghosts as far as known."""
         return np.asarray(fem.locate_dofs_topological(space, 1, self.facets[self.ridge == ridge], remote=True))
 
     # -- integrals -------------------------------------------------------------------------------------
@@ -154,7 +154,7 @@ class Surface:
     def sum_over_facets(self, values: Array) -> Array:
         """Sum one value a facet over each ridge and all ranks; shape (ridges,)."""
         # As floats: that of no facets would be of integers.
-        mine = np.asarray(np.bincount(self.ridge, weights=values, minlength=len(self.names)), dtype=np.float64)
+        mine = np.asarray(np.bincount(self.ridge, weights=values, minlength=len(self.ridge_numbers)), dtype=np.float64)
         total = np.empty_like(mine)
         self.mesh.comm.Allreduce(mine, total)
         return total

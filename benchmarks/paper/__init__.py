@@ -1,1 +1,1 @@
-"""What Forsbach, Heß and Papangelo (2023) report, by our model; ``benchmarks/reproduce.py`` runs it."""
+"""What Forsbach, Heß and Papangelo (2023) report, by this model; ``python3 -m benchmarks.paper`` runs it."""

@@ -1,4 +1,4 @@
-"""The runs behind the statements; those of Figs. 6 to 8 are the grid of ``benchmarks/traces.py``."""
+"""The runs behind the statements; those of Figs. 6 to 8 are a grid of forces and voltages."""
 
 from typing import Any
 

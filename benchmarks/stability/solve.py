@@ -47,10 +47,10 @@ _ALPHA = -14.53
 
 
 class PlainCoupling(Coupling):
-    """Sweeps without pseudo-transient continuation."""
+    """Iterations without pseudo-transient continuation."""
 
-    def _sweep(self, pseudo_transient: bool) -> tuple[NDArray[np.float64], SurfaceState]:
-        return super()._sweep(False)
+    def _iterate(self, pseudo_transient: bool) -> tuple[NDArray[np.float64], SurfaceState]:
+        return super()._iterate(False)
 
 
 class Recorder(Continuation):
@@ -141,5 +141,5 @@ def run(case: Case) -> Outcome:
 
 if __name__ == "__main__":
     limit_processor_time(float(sys.argv[2]))
-    jit.sweep(MPI.COMM_WORLD)
+    jit.delete_unfinished(MPI.COMM_WORLD)
     print(json.dumps(asdict(run(Case(**json.loads(sys.argv[1]))))))

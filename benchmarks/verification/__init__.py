@@ -1,1 +1,1 @@
-"""Cases with a known answer, by area; ``benchmarks/verify.py`` runs them all."""
+"""Cases with a known answer, by area; ``python3 -m benchmarks.verification`` runs them all."""

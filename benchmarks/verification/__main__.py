@@ -43,7 +43,7 @@ def main(given: Sequence[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, default=RESULTS / "verification", help="folder of the pictures")
     parser.add_argument("--docs", type=Path, default=DOCS, help="folder of the page and its numbers")
     args = parser.parse_args(given)
-    jit.sweep(MPI.COMM_WORLD)
+    jit.delete_unfinished(MPI.COMM_WORLD)
     results: dict[str, list[tuple[Case, Outcome]]] = {area: [] for area in args.only}
     with progress() as bar:
         cases = [(area, case) for area in args.only for case in AREAS[area]]

@@ -4,9 +4,13 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
+from fingerpad.io.style import CATEGORIES, MARKERS
+
+_FEW = 40  # known points that are drawn one by one
 Lines = Mapping[str, tuple[ArrayLike, ArrayLike]]
 
 
@@ -48,7 +52,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Curves:
-    """The picture of a case: known answers as lines, computed numbers as markers.
+    """The picture of a case: known answers in black, computed numbers as coloured markers.
 
     Attributes:
         x: label of the abscissa, with its unit.
@@ -56,6 +60,7 @@ class Curves:
         known: abscissae and ordinates by name.
         computed: likewise.
         logarithmic: whether both axes are.
+        limits: of the abscissa; None for all there is.
     """
 
     x: str
@@ -63,17 +68,20 @@ class Curves:
     known: Lines
     computed: Lines
     logarithmic: bool = False
+    limits: tuple[float, float] | None = None
 
     def draw(self, figure: Figure) -> None:
         """Draw into an empty figure."""
         ax = figure.subplots()
         for k, (name, (x, y)) in enumerate(self.known.items()):
-            ax.plot(x, y, ("-", "--", ":", "-.")[k % 4], color="black", lw=0.8, label=name)
+            marker = "+" if np.size(x) < _FEW else ""
+            line = ("-", "--", ":", "-.")[k % 4] if np.size(x) > 2 else "none"
+            ax.plot(x, y, ls=line, marker=marker, color="black", lw=0.8, label=name)
         for k, (name, (x, y)) in enumerate(self.computed.items()):
-            ax.plot(x, y, "osv^d"[k % 5], color=f"C{k}", ms=4, mfc="none", label=f"{name}, computed")
+            ax.plot(x, y, MARKERS[k % 7], color=CATEGORIES[k % 7], ms=4, mfc="none", label=f"{name}, computed")
         scale = "log" if self.logarithmic else "linear"
-        ax.set(xlabel=self.x, ylabel=self.y, xscale=scale, yscale=scale)
-        ax.legend(fontsize="small")
+        ax.set(xlabel=self.x, ylabel=self.y, xscale=scale, yscale=scale, xlim=self.limits)
+        figure.legend(fontsize="small", loc="outside right upper")
 
 
 @dataclass(frozen=True)

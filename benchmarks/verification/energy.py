@@ -96,28 +96,14 @@ def closed_cycle(small: bool) -> Outcome:
     turned_over = sum(abs(b.change) for b in cycles[-1]["press"])
     mesh = f"one ridge, P2, {_SIZE * 1e6:g} µm, {counts[-1]} steps a phase"
 
+    left, imbalance = balances[-1][-1].stored / turned_over, "the imbalances at which solves end"
+    inside = "points touch, part and start to slip somewhere inside a step"
+    phases = f"{counts[0]} to {counts[-1]} steps a phase"
     why = "some four times the steps' errors, which fall with their square: a drift shows"
     rows = (
         Row("work over dissipation of the cycle", work[-1] / spent[-1], 1.0, 2e-4 if small else 2e-5, why, mesh),
-        Row(
-            "order of the steps' unexplained energies",
-            order,
-            2.0,
-            0.25,
-            "points touch, part and start to slip somewhere inside a step",
-            f"{counts[0]} to {counts[-1]} steps a phase",
-            order=order,
-            absolute=True,
-        ),
-        Row(
-            "energy left in the body over that of the press",
-            balances[-1][-1].stored / turned_over,
-            0.0,
-            1e-9,
-            "the imbalances at which solves end",
-            mesh,
-            absolute=True,
-        ),
+        Row("order of the steps' unexplained energies", order, 2.0, 0.25, inside, phases, order=order, absolute=True),
+        Row("energy left in the body over that of the press", left, 0.0, 1e-9, imbalance, mesh, absolute=True),
     )
     known = {"order 2": (counts, errors[0] * (counts[0] / np.array(counts)) ** 2)}
     computed = {"sum over all steps": (counts, errors)}

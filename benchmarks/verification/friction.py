@@ -77,7 +77,7 @@ def full_slip(small: bool) -> Outcome:
         rows.append(Row(f"f_T after 0.2 mm more, over that, {name}", f_t / first, 1.0, same, why, mesh))
 
     found = {name: (path[:, 0] * 1e6, path[:, 1] / (mu_f * path[:, 2])) for name, path in paths.items()}
-    known = {"Coulomb": ((0.0, 600.0), (1.0, 1.0))}
+    known = {"Coulomb": (np.linspace(0, 600, 50), np.ones(50))}
     return Outcome(tuple(rows), Curves("bone's displacement (µm)", "f_T / (mu_0 f_c) (–)", known, found))
 
 
@@ -150,7 +150,7 @@ def partial_slip(small: bool) -> Outcome:
     along, unit = np.linspace(-1.2, 1.2, 961), MU_F * 2 * FORCE / (np.pi * HALF_WIDTH)
     known = {f"Cattaneo, Q / μP = {s.part:.2f}": (along, shear(along * HALF_WIDTH, s.part) / unit) for s in states}
     found = {f"Q / μP = {s.part:.2f}": (s.x / HALF_WIDTH, s.t / unit) for s in states}
-    return Outcome(tuple(rows), Curves("x / a (–)", "t / (μ p_0) (–)", known, found))
+    return Outcome(tuple(rows), Curves("x / a (–)", "t / (μ p_0) (–)", known, found, limits=(-1.2, 1.2)))
 
 
 # -- incline -------------------------------------------------------------------------------------------
@@ -172,15 +172,13 @@ def incline(small: bool) -> Outcome:
     return Outcome(tuple(rows))
 
 
+_COULOMB = "Coulomb's law: f_T is mu_0 times the contact force, wherever the plane is"
 _CATTANEO = (
     "Cattaneo 1938, Mindlin 1949, in Johnson, Contact Mechanics, 1985, sec. 7.2(a), doi 10.1017/CBO9781139171731"
 )
+_NAFEMS = "closed form of NAFEMS CGS-4 (R0081, 2001), F / G = (tan alpha + mu) / (1 - mu tan alpha), tan alpha = 0.1"
 CASES = (
-    Case("Full slip", "Coulomb's law: f_T is mu_0 times the contact force, wherever the plane is", full_slip),
+    Case("Full slip", _COULOMB, full_slip),
     Case("Partial slip", _CATTANEO, partial_slip),
-    Case(
-        "Incline",
-        "closed form of NAFEMS CGS-4 (R0081, 2001), F / G = (tan alpha + mu) / (1 - mu tan alpha), tan alpha = 0.1",
-        incline,
-    ),
+    Case("Incline", _NAFEMS, incline),
 )

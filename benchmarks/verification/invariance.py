@@ -65,8 +65,10 @@ def rotations(count: int) -> Array:
     return np.asarray(np.stack([np.stack([c, -s], -1), np.stack([s, c], -1)], -2))
 
 
-def apart(quantity: str, ours: Array, reference: Array, scale: Array, tolerance: float, why: str, mesh="–") -> Row:
-    """Return a row of the largest difference over a scale, both of which are arrays of the same length."""
+def apart(
+    quantity: str, ours: Array, reference: Array, scale: Array | float, tolerance: float, why: str, mesh: str = "–"
+) -> Row:
+    """Return a row of the largest difference over a scale: of each state, or one of all."""
     difference = np.abs(ours - reference).reshape(len(ours), -1).max(axis=1)
     return Row(quantity, float((difference / scale).max()), 0.0, tolerance, why, mesh, absolute=True)
 
@@ -123,18 +125,16 @@ def objectivity(small: bool) -> Outcome:
         rows.append(apart(f"P(QF) - Q P(F), {name}", after[name][1], Q @ P, scale, _ROUNDOFF, why))
         rows.append(apart(f"sigma(QF) - Q sigma(F) Q^T, {name}", after[name][2], turned, scale, _ROUNDOFF, why))
     points = [worst(rows[k::3]) for k in range(3)]
-    bodies, why = (
-        [],
-        "roundings of rotated displacements as long as the body, times the nail's stiffness over the skin's",
-    )
+    bodies = []
+    why = "roundings of rotated displacements as long as the body, times the nail's stiffness over the skin's"
     for element in ELEMENTS:
         problem = layered(element)
         deform(problem)
         energy, forces = fem.assemble_scalar(problem.energy), nodal_forces(problem)
         Q = rotations(5)[1]
         turn(problem, Q)
-        turned_forces, largest = nodal_forces(problem), np.array([np.abs(forces).max()])
-        row = apart("nodal forces", turned_forces[None], (forces @ Q.T)[None], largest, 1e-12, why, _MESH)
+        turned_forces = nodal_forces(problem)
+        row = apart("nodal forces", turned_forces[None], (forces @ Q.T)[None], np.abs(forces).max(), 1e-12, why, _MESH)
         ours = float(fem.assemble_scalar(problem.energy))
         bodies += [row, Row("energy of a body (J/m)", ours, float(energy), 1e-12, why, _MESH)]
     return Outcome((*points, worst(bodies[::2]), worst(bodies[1::2])))
@@ -187,12 +187,10 @@ def tangent(small: bool) -> Outcome:
     for solid in LAYERS:
         G, K = solid.shear_modulus, solid.bulk
         A, expected = in_package(solid, np.eye(2)[None])[3], hooke(K - 2 / 3 * G, G)
-        scale = np.array([K])
-        at_rest.append(apart(f"dP/dF at F = I less Hooke's, {solid.name}", A, expected[None], scale, _ROUNDOFF, why))
+        at_rest.append(apart(f"dP/dF at F = I less Hooke's, {solid.name}", A, expected[None], K, _ROUNDOFF, why))
     constants = saint_venant.lame_constants(*NAIL)
     A = nail()(np.eye(2)[None], *constants)[3]
-    scale = np.array([constants[0]])
-    at_rest.append(apart("dP/dF at F = I less Hooke's, nail", A, hooke(*constants)[None], scale, _ROUNDOFF, why))
+    at_rest.append(apart("dP/dF at F = I less Hooke's, nail", A, hooke(*constants)[None], constants[0], _ROUNDOFF, why))
 
     pulled = []
     for solid in LAYERS:
@@ -200,9 +198,8 @@ def tangent(small: bool) -> Outcome:
             A = in_package(solid, np.diag(stretches)[None])[3][0]
             expected = moduli(solid, (*stretches, 1.0))[:2, :2]
             ours = np.einsum("iijj->ij", A)
-            scale = np.array([np.abs(A).max()])
             quantity = f"dP_i/dλ_j at ({stretches[0]}, {stretches[1]}, 1), {solid.name}"
-            pulled.append(apart(quantity, ours[None], expected[None], scale, _ROUNDOFF, why))
+            pulled.append(apart(quantity, ours[None], expected[None], np.abs(A).max(), _ROUNDOFF, why))
 
     matrices, linear = [], []
     for element in ELEMENTS:
@@ -210,29 +207,19 @@ def tangent(small: bool) -> Outcome:
         solver = Solver(Equations(problem, NOTHING), 1.0)
         deform(problem)
         matrix = dense(solver)
-        largest, quantity = np.array([np.abs(matrix).max()]), f"assembled tangent less its transpose, {element}"
-        matrices.append(
-            apart(quantity, matrix[None], matrix.T[None], largest, 1e-14, "roundings of sums over triangles", _MESH)
-        )
+        quantity, sums = f"assembled tangent less its transpose, {element}", "roundings of sums over triangles"
+        matrices.append(apart(quantity, matrix[None], matrix.T[None], np.abs(matrix).max(), 1e-14, sums, _MESH))
         if element in ("P1", "P2"):
             problem.w.x.array[:] = 0.0
             rows_ = solver.layout.rows
             ours, expected = dense(solver)[np.ix_(rows_, rows_)], linear_stiffness(problem)
-            largest, quantity = (
-                np.array([np.abs(expected).max()]),
-                f"tangent at rest less linear elasticity's, {element}",
-            )
+            quantity, largest = f"tangent at rest less linear elasticity's, {element}", np.abs(expected).max()
             linear.append(apart(quantity, ours[None], expected[None], largest, _ROUNDOFF, why, _MESH))
     return Outcome((symmetry, worst(at_rest), worst(pulled), worst(matrices), worst(linear)))
 
 
+_OGDEN = "Ogden 1984, Non-linear Elastic Deformations"
 CASES = (
-    Case(
-        "Objectivity", "Ogden 1984, Non-linear Elastic Deformations, chapter 4; differences over a scale", objectivity
-    ),
-    Case(
-        "Tangent",
-        "Ogden 1984, Non-linear Elastic Deformations, chapters 4 and 6; differences over a scale",
-        tangent,
-    ),
+    Case("Objectivity", f"{_OGDEN}, chapter 4; differences over a scale", objectivity),
+    Case("Tangent", f"{_OGDEN}, chapters 4 and 6; differences over a scale", tangent),
 )

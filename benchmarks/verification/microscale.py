@@ -80,7 +80,7 @@ def folds(small: bool) -> Outcome:
     )
     known = {"folds at 200 V": ([4.95, 10.7], [-3.46, 0.107])}
     axes = "mean separation ū (µm)", "external pressure (kPa)"
-    return Outcome(rows, Curves(*axes, known, {"200 V": (u[20000::800] / _UM, p[20000::800] / _KPA)}))
+    return Outcome(rows, Curves(*axes, known, {"200 V": (u[30000::2000] / _UM, p[30000::2000] / _KPA)}))
 
 
 def uniform_ridge(small: bool) -> Outcome:

@@ -129,7 +129,7 @@ def hertz(small: bool) -> Outcome:
     x = np.linspace(-1.2, 1.2, 481)
     known = {"Hertz": (x, hertz_pressure(x * HALF_WIDTH) / P_0)}
     found = {name: (r.x / HALF_WIDTH, r.p_n / P_0) for name, r in finest.items()}
-    return Outcome(tuple(rows), Curves("x / a (–)", "p_n / p_0 (–)", known, found))
+    return Outcome(tuple(rows), Curves("x / a (–)", "p_n / p_0 (–)", known, found, limits=(-1.2, 1.2)))
 
 
 def convergence(small: bool) -> Outcome:
@@ -188,7 +188,7 @@ def flat_punch(small: bool) -> Outcome:
     x = np.linspace(-0.98, 0.98, 999)
     known = {"rigid punch on a half-space": (x, 1 / np.sqrt(1 - x**2))}
     found = {name: (at / HALF_WIDTH, p_n * np.pi * HALF_WIDTH / force) for name, at, p_n in finest}
-    return Outcome(tuple(rows), Curves("x / a (–)", "π a p_n / f (–)", known, found))
+    return Outcome(tuple(rows), Curves("x / a (–)", "π a p_n / f (–)", known, found, limits=(-1.2, 1.2)))
 
 
 _HERTZ = "Hertz 1882, in Johnson, Contact Mechanics, 1985, sec. 4.2(c), doi 10.1017/CBO9781139171731"

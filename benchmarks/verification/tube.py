@@ -98,19 +98,13 @@ def inflation(small: bool) -> Outcome:
         reference = float(exact.radius(np.array([B]))[0])
         errors = [abs(widen("P2-P1", k, nu, most).pressure / exact.pressure - 1) for k in meshes[:-1]]
         errors.append(found[-1].error)
+        order = orders.observed(errors)
         moved = (tube.outer_radius - B) * 1e3, (reference - B) * 1e3
         quantity = f"outer surface's displacement, nu = {nu:g}, a/A = {most:g} (mm)"
         rows += [
-            replace(worst(found), order=orders.observed(errors)),
+            replace(worst(found), order=order),
             Row(
-                f"order of the pressure, nu = {nu:g}",
-                orders.observed(errors),
-                2.0,
-                0.1,
-                "not yet asymptotic",
-                mesh,
-                orders.observed(errors),
-                True,
+                f"order of the pressure, nu = {nu:g}", order, 2.0, 0.1, "not yet asymptotic", mesh, order, absolute=True
             ),
             Row(quantity, *moved, tolerance, why, mesh),
         ]

@@ -1,4 +1,4 @@
-"""States of a path that can be solved again: kept on the way, carried to another mesh, solved for there."""
+"""States of a path that can be solved again: kept on the way, restored on another mesh, solved for there."""
 
 import time
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ from fingerpad.model.viewer import Viewer
 from fingerpad.scene import Scene
 from geometry.parameters import MeshSize
 from variational.receptors import Receptors
-from variational.solvers.transfer import StateSnapshot, carry
+from variational.solvers.transfer import StateSnapshot, take_snapshot
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
@@ -32,7 +32,7 @@ def words(name: str) -> str:
 class State:
     """A state that can be solved again, the same on every rank."""
 
-    carried: StateSnapshot
+    snapshot: StateSnapshot
     direction: int
     """The way the bone slides at full slip, zero in normal contact."""
     state: ContactState
@@ -85,7 +85,7 @@ class StateRecorder:
         self._simulation = simulation
         self._start = time.process_time()
         finger = simulation.finger
-        ridges, profiles = finger.problem.surface.names, finger.profiles
+        ridges, profiles = finger.problem.surface.ridge_numbers, finger.profiles
         sites = profiles.merkel_sites()[[profiles.ridges.index(j) for j in ridges]]
         self._sites = Receptors(finger.problem, sites)
         self._begun: State | None = None  # the last full slip, held or not
@@ -112,9 +112,9 @@ class StateRecorder:
         loads = f.ridge_loads()
         lengths = np.zeros(f.profiles.finger.ridge_count)
         lengths[np.array(f.ridges) + len(lengths) // 2] = loads.length
-        sed = {j: float(density) for j, density in zip(f.problem.surface.names, self._sites.sed(), strict=True)}
+        sed = {j: float(density) for j, density in zip(f.problem.surface.ridge_numbers, self._sites.sed(), strict=True)}
         present = self._simulation.present(loads).state
-        return State(carry(f.coupling, f.continuation.surface_state), direction, present, lengths, sed)
+        return State(take_snapshot(f.coupling, f.continuation.surface_state), direction, present, lengths, sed)
 
     def solve(self) -> Solve:
         """Return what was kept."""
@@ -135,12 +135,12 @@ def solve_again(
         views: whether tables and pictures are to show the states (:attr:`Solve.views`).
 
     Raises:
-        StepFailed: see :meth:`fingerpad.model.simulation.Simulation.adopt`.
+        StepFailed: see :meth:`fingerpad.model.simulation.Simulation.re_equilibrate`.
     """
     simulation = Simulation(scene, options, comm)
     recorder, finger = StateRecorder(simulation), simulation.finger
     for name, state in states.items():
-        simulation.adopt(state.carried, words(name), state.direction)
+        simulation.re_equilibrate(state.snapshot, words(name), state.direction)
         recorder.keep(name)
         if views:
             recorder.views[name] = Viewer(finger).view(simulation.present(finger.ridge_loads()))

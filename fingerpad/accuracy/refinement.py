@@ -1,7 +1,7 @@
-r"""Results with their discretisation error, and refined until that is within what a scene asks for.
+r"""Results with their discretisation error, refined until the error is within the accuracy of a scene.
 
-The whole path of the loads is run once, on the mesh that the scene gives (a coarse one where it asks for an accuracy
-and gives no sizes). Two of its states are then carried to other meshes and solved for again
+The whole path of the loads is run once, on the mesh that the scene gives (a coarse one where it has an accuracy and
+no sizes). Two of its states are then carried to other meshes and solved for again
 (:mod:`variational.solvers.transfer`): normal contact, the last state before the bone moves, and full slip. Changing one
 mesh parameter at a time gives each its share of the error (:mod:`fingerpad.richardson`):
 
@@ -35,8 +35,8 @@ from fingerpad.accuracy.solves import Solves
 from fingerpad.io.interrupt import Interrupted
 from fingerpad.io.quantities import in_words, scaled
 from fingerpad.io.states import PREFIXES
-from fingerpad.model.contact_zone import RestartRequired
 from fingerpad.model.options import ModelOptions
+from fingerpad.model.simulation import RestartRequired
 from fingerpad.richardson import MeshParameter, errors, plus_minus, to_refine
 from fingerpad.scene import Scene
 from geometry.profiles import GeometryError
@@ -81,7 +81,8 @@ class Refinement:
         Raises:
             StepFailed: the path has no state in which a quantity asked for is known.
         """
-        self.scene, self._show = scene, show
+        self.scene = scene
+        self._show = show
         self.asked = {} if scene.accuracy is None else scene.accuracy.tolerances()
         for name in {"mu_app", "f_t"} & set(self.asked) if "full_slip" not in path.states else ():
             raise StepFailed(

@@ -1,7 +1,7 @@
-r"""What a penalty changes, from the same states over a screen of twice the stiffness.
+r"""The effect of a penalty, from the same states over a screen of twice the stiffness.
 
-Springs of stiffness :math:`\epsilon` let the skin sink in by :math:`p_n / \epsilon`, and its contact be longer. Of a
-quantity that is off by :math:`C \epsilon^{-p}` two stiffnesses tell what a rigid screen would change:
+Springs of stiffness :math:`\epsilon` let the skin sink in by :math:`p_n / \epsilon`, which makes its contact longer.
+For an error of :math:`C \epsilon^{-p}` of a quantity, two stiffnesses give the change by a rigid screen:
 
 .. math:: q_{rigid} - q(\epsilon) = \frac{q(2 \epsilon) - q(\epsilon)}{1 - 2^{-p}}
 
@@ -14,13 +14,13 @@ ridges of a half-width a of some 50 um. Without attraction the length of a conta
 200 V, facets of 2.5 um) it is 0.7 from three stiffnesses, and p is :data:`ORDER`. The share is known to a factor of
 two: what 5000 MPa/mm change in the default scene is beside what 500 and 1500 predict in ``docs/accuracy.md``. Of that
 light finger's 482 um at full slip 7.1 um are predicted to go; ten times the stiffness takes off 6.6 um, and Nitsche's
-method tends to 6 um less than the penalty. Of friction, which hardly feels the penalty, it tells the order of
-magnitude. On facets far longer than :math:`\ell` a much stiffer screen holds the skin at single Gauss points: an error
-of the mesh, and not in here.
+method tends to 6 um less than the penalty. For friction, which hardly depends on the penalty, only the order of
+magnitude is right. On facets far longer than :math:`\ell` a much stiffer screen holds the skin at single Gauss points:
+an error of the mesh, and not in here.
 
 Nitsche's method has no such part: its conditions are exact on any mesh. An augmented Lagrangian leaves gaps of up to
-``contact.tolerance``, 5 nm by default where the penalty's penetration is of the order of 100 nm: too little to be told
-beside the mesh.
+``contact.tolerance``, 5 nm by default where the penalty's penetration is of the order of 100 nm: negligible beside the
+error of the mesh.
 """
 
 from collections.abc import Mapping
@@ -38,10 +38,10 @@ def stiffened(contact: Contact) -> Contact:
     return contact.model_copy(update={"eps_n": 2 * contact.eps_n, "eps_t": 2 * contact.eps_t})
 
 
-def over_stiffer(carried: StateSnapshot) -> StateSnapshot:
+def over_stiffer(snapshot: StateSnapshot) -> StateSnapshot:
     """Return a state whose springs, of twice the stiffness, bear the same friction."""
-    skin = {j: replace(ridge, elastic_slip=ridge.elastic_slip / 2) for j, ridge in carried.skin.items()}
-    return replace(carried, skin=skin)
+    skin = {j: replace(ridge, elastic_slip=ridge.elastic_slip / 2) for j, ridge in snapshot.skin.items()}
+    return replace(snapshot, skin=skin)
 
 
 def rigid(values: Mapping[str, float], stiffer: Mapping[str, float]) -> dict[str, float]:

@@ -9,11 +9,10 @@ from mpi4py import MPI
 
 from fingerpad.accuracy.recompute import Solve, State, StateRecorder, solve_again
 from fingerpad.accuracy.rigid_screen import over_stiffer, stiffened
-from fingerpad.model.contact_zone import RestartRequired
 from fingerpad.model.finger import Step
 from fingerpad.model.memory import refuse_beyond
 from fingerpad.model.options import ModelOptions
-from fingerpad.model.simulation import Simulation
+from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.scene import Load, Scene
 from geometry.parameters import MeshSize
 from variational.solvers.continuation import StepFailed
@@ -37,7 +36,8 @@ class Solves:
         pause: Callable[[], None],
     ) -> None:
         """Start with the path's states; arguments as of :class:`fingerpad.accuracy.refinement.Refinement`."""
-        self._scene, self._options, self._comm, self._show, self._pause = scene, options, comm, show, pause
+        self._scene = scene
+        self._options, self._comm, self._show, self._pause = options, comm, show, pause
         self.found = [path]
         self.restart: RestartRequired | None = None
 
@@ -59,7 +59,7 @@ class Solves:
     def over_stiffer_screen(self, base: Solve) -> Solve:
         """Return states over a screen of twice the stiffness; collective; raises as :meth:`on_mesh`."""
         scene = self._scene.model_copy(update={"mesh": base.mesh, "contact": stiffened(self._scene.contact)})
-        states = {name: replace(s, carried=over_stiffer(s.carried)) for name, s in base.states.items()}
+        states = {name: replace(s, snapshot=over_stiffer(s.snapshot)) for name, s in base.states.items()}
         return self._again(scene, states)
 
     def _again(self, scene: Scene, states: Mapping[str, State]) -> Solve:

@@ -15,7 +15,7 @@ class DiskFull(OSError):
 
 
 def no_room(error: BaseException) -> DiskFull | None:
-    """Return what to say of an error if a full disk, a quota or a limit of files' sizes is the reason, or None."""
+    """Return the error of a run where a full disk, a quota or a limit of files' sizes is the reason, or None."""
     if isinstance(error, OSError) and error.errno in _FULL:
         return DiskFull(
             error.errno,

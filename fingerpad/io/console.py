@@ -1,4 +1,4 @@
-"""What a person sees of a run: one line a step under a legend, and a progress bar where somebody watches; on rank 0."""
+"""The output of a run in a terminal: one line a step under a legend, and a progress bar; on rank 0."""
 
 from mpi4py import MPI
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn

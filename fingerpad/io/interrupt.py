@@ -1,7 +1,7 @@
-"""A run that is asked to stop ends after the step it is at, with everything on disk.
+"""A run that gets a signal ends after its present step, with everything on disk.
 
-SIGINT, SIGTERM and SIGHUP ask. Open MPI's mpirun kills its ranks a second after any of these; SIGUSR1 and SIGUSR2 it
-passes on, and environment/run sends them in place of SIGINT and SIGTERM.
+The signals are SIGINT, SIGTERM and SIGHUP. Open MPI's mpirun kills its ranks a second after any of these; SIGUSR1 and
+SIGUSR2 it passes on, and environment/run sends them in place of SIGINT and SIGTERM.
 """
 
 import os
@@ -28,14 +28,14 @@ _ONE = 1.0  # s within which signals are one: terminals, launchers and batch sys
 
 
 class Interrupted(StepFailed):
-    """A run that was asked to stop; nothing is wrong with its scene.
+    """A run that was stopped by a signal; nothing is wrong with its scene.
 
     Attributes:
-        signal: that asked.
+        signal: the signal.
     """
 
     def __init__(self, number: signal.Signals, step: int) -> None:
-        """Say what is there after a step."""
+        """Name the signal and what is kept after a step."""
         super().__init__(
             f"stopped by {number.name} after step {step}; every accepted step is in the folder of results, and the "
             "same command starts again from the first"
@@ -44,13 +44,13 @@ class Interrupted(StepFailed):
 
 
 class Interrupt:
-    """Holds signals back until the run asks; another one, a second later or more, acts at once.
+    """Holds signals back until the end of a step; another one, a second later or more, acts at once.
 
     What the caller has the run ignore (nohup: SIGHUP) stays ignored.
     """
 
     def __init__(self, comm: MPI.Comm) -> None:
-        """Remember whom to ask: any rank's signal stops them all."""
+        """Hold nothing back yet; a signal on any rank stops all ranks."""
         self._comm, self._signal, self._time = comm, 0, 0.0
         self._before: dict[int, Any] = {}
 

@@ -12,11 +12,12 @@ import errno
 import fcntl
 import json
 import shutil
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from fingerpad.io.files import replace_json
-from fingerpad.scene import Scene, SceneError
+from fingerpad.scene import SceneError
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -63,17 +64,19 @@ class Place:
         folder: where results go.
     """
 
-    def __init__(self, folder: Path, scene: Scene, comm: "MPI.Comm | Serial", model: str = "full") -> None:
-        """Choose a folder for a scene; nothing is touched before :meth:`take`, except that the folder is made.
+    def __init__(
+        self, folder: Path, parameters: Mapping[str, Any], comm: "MPI.Comm | Serial", model: str = "full"
+    ) -> None:
+        """Choose a folder; nothing is touched before :meth:`take`, except that the folder is made.
 
         Args:
             folder: of the results.
-            scene: that they are of.
+            parameters: of the scene that they are of.
             comm: communicator of the run.
-            model: that answers, see :data:`fingerpad.runs.solve.MODELS`.
+            model: whose results they are, see :data:`fingerpad.runs.solve.MODELS`.
         """
         self.folder, self._comm = folder, comm
-        self._parameters = json.loads(json.dumps(scene.parameters()))  # as they are read back
+        self._parameters = json.loads(json.dumps(parameters))  # as they are read back
         if model != "full":
             self._parameters["model"] = model
         self._lock: TextIO | None = None

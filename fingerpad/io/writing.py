@@ -89,7 +89,7 @@ class Writer:
 
 
 class _LogFile(logging.FileHandler):
-    """A log that says so where it cannot be written, as tables do."""
+    """A log that raises where it cannot be written, as tables do."""
 
     def handleError(self, record: logging.LogRecord) -> None:
         """Raise what went wrong."""

@@ -25,6 +25,7 @@ import fingerpad.started  # noqa: F401
 from fingerpad.io.states import full_slip
 from fingerpad.model.balance import force_error
 from fingerpad.model.gathered import Nodes, Points
+from fingerpad.model.state import contact_state, step_record
 from fingerpad.scene.laws import refuse_thickness
 from fingerpad.startup import MPI
 from geometry.mesh import TaggedMesh, load
@@ -35,19 +36,18 @@ from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.contact.formulation import Formulation
 from variational.contact.friction import Friction
 from variational.contact.penalty import Penalty
-from variational.energy import Balance, EnergyBook
+from variational.energy import EnergyBook
 from variational.materials.material import Material
 from variational.problem import Interface
 from variational.roughness.closure import Closure, check
 from variational.solvers.continuation import Attempt, StepFailed, Target
-from variational.state import ContactState, RidgeStates, Skin, StepRecord
+from variational.state import ContactState, Skin, StepRecord
 
 Array = NDArray[np.float64]
 Quantity = float | str
 """A number in SI, or a text with a unit: ``"0.0044 N/mm"``."""
 _TOLERANCE = 1e-9  # of the solves, over the force scale
 _STEADY = 1e-6  # relative change of a force by sliding on at full slip that means nothing
-_BEARS = 1e-6  # part of the force scale above which the bone is said to be pressed
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ class Body:
         if roughness is not None:
             refuse_thickness(roughness, h_0)
         law = Interface(contact, friction, h_0, ELECTROSTATIC if roughness else None)
-        self._closure, self._force_scale = roughness, force_scale
+        self._closure = roughness
         made = setup.Body(
             self.mesh, _solids(self.mesh, material), law, roughness, element=element, force_scale=force_scale,
             tolerance=_TOLERANCE, on_accept=self._accepted, touch_depth=touch_depth, step_scale=step_scale,
@@ -234,58 +234,19 @@ class Body:
             balance.stored, self.energy.dissipated + balance.dissipation, self.energy.released + balance.released
         )
         self.displacement = self._nodes.gather(self.problem)
-        self.state = self._present(self._record(balance, attempt))
+        record = step_record(self._made.continuation, balance, solver.imbalance(), attempt)
+        self.state = self._present(record)
         self.states.append(self.state)
 
     def _present(self, record: StepRecord | None) -> ContactState:
-        made, solver = self._made, self._made.solver
-        surface = made.continuation.surface_state
-        loads = made.observer.ridge_loads(surface)
-        slipping, all_slip = made.continuation.slip
-        f_ext, f_t = float(solver.reaction[1]), 0.0 - float(solver.reaction[0])  # no negative zero
-        found = ContactState(
-            step=made.continuation.steps,
-            load=self._load,
-            load_number=self._loads,
-            f_ext=f_ext,
-            voltage=float(self.problem.voltage.value),
-            bone_x=float(solver.bone[0]),
-            bone_height=float(solver.bone[1]),
-            f_t=f_t,
-            mu_app=f_t / f_ext if f_ext > _BEARS * self._force_scale else 0.0,
-            f_contact=float(loads.f_contact.sum()),
-            f_electrostatic=float(loads.f_attraction.sum()),
-            ridges_in_contact=int((loads.length > 0).sum()),
-            contact_length=float(loads.length.sum()),
-            slipping=slipping,
-            all_slip=all_slip,
-            record=record,
-            ridges=RidgeStates(
-                np.array(made.surface.names), loads.length, loads.f_contact, loads.f_friction, loads.f_attraction,
-                loads.p_c, self._d_eq.copy(),
-            ),
-            skin=self._points.gather(surface),
+        path, solver = self._made.continuation, self._made.solver
+        found = contact_state(
+            path, self._made.observer.ridge_loads(path.surface_state), self._made.surface.ridge_numbers, self._d_eq,
+            load=self._load, load_number=self._loads, record=record, skin=self._points.gather(path.surface_state),
         )  # fmt: skip
         least = force_error(solver.layout.global_size, max(_TOLERANCE, solver.floor), solver.force_scale)
         began, held = full_slip(self.states, found, _STEADY, least)
         return replace(found, slip_began=began, slip_held=held)
-
-    def _record(self, balance: Balance, attempt: Attempt) -> StepRecord:
-        made = self._made
-        return StepRecord(
-            penetration=made.observer.penetration(made.continuation.surface_state),
-            imbalance=made.solver.imbalance(),
-            floor=made.solver.floor,
-            stored=balance.stored,
-            dissipation=balance.dissipation,
-            energy_released=balance.released,
-            released_error=balance.released_error,
-            newton_iterations=attempt.newton,
-            factorisations=attempt.factorisations,
-            sweeps=attempt.sweeps,
-            cutbacks=len(attempt.cutbacks),
-            jump=attempt.jump,
-        )
 
 
 def _solids(mesh: TaggedMesh, material: Material | Mapping[str, Material]) -> dict[int, Material]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from fingerpad.model import balance, symmetry
 from fingerpad.model.options import ModelOptions
+from fingerpad.model.state import contact_state
 from fingerpad.scene import Scene
 from geometry import fingertip, mesh, meshfile, tags
 from geometry.profiles import Profiles
@@ -20,7 +21,7 @@ from variational.energy import EnergyBook
 from variational.problem import Interface
 from variational.quantities import RidgeLoads
 from variational.solvers.continuation import Attempt, Target
-from variational.state import ContactState, RidgeStates
+from variational.state import ContactState
 
 Array = NDArray[np.float64]
 
@@ -56,7 +57,8 @@ class Finger:
             comm: communicator of the mesh.
             on_accept: see :class:`variational.solvers.continuation.Continuation`.
         """
-        self.scene, self.options, self.profiles = scene, options, Profiles(scene.geometry)
+        self.scene = scene
+        self.options, self.profiles = options, Profiles(scene.geometry)
         contact, numerics, half = scene.contact, scene.numerics, not options.both_halves
         if scene.laws.mesh is not None:
             self.mesh = mesh.load(comm, meshfile.file(scene.laws.mesh))
@@ -84,7 +86,7 @@ class Finger:
         )
         self.problem, self.solver, self.observer = made.problem, made.solver, made.observer
         self.coupling, self.continuation = made.coupling, made.continuation
-        self.ridges = symmetry.names(made.surface.names) if half else made.surface.names
+        self.ridges = symmetry.names(made.surface.ridge_numbers) if half else made.surface.ridge_numbers
         shortest = float(np.min(comm.allgather(made.surface.length.min(initial=np.inf))))
         self.contact_size = scene.mesh.contact if scene.laws.mesh is None else shortest
         self.unknowns = self.solver.layout.global_size
@@ -137,32 +139,9 @@ class Finger:
             number: of the load in the history, from 1.
             attempt: how the state was solved, where that is known.
         """
-        solver, d_eq = self.solver, self.coupling.d_eq
+        d_eq = self.coupling.d_eq
         if not self.options.both_halves:
             d_eq = np.array(symmetry.values(list(d_eq)))
         notes = [self.closure.state(float(p), self.voltage) if self.closure else "" for p in loads.p_c]
-        slipping, all_slip = self.continuation.slip
-        f_ext, f_t = float(solver.reaction[1]), 0.0 - float(solver.reaction[0])  # no negative zero
-        found = ContactState(
-            step=self.continuation.steps,
-            load=load,
-            load_number=number,
-            voltage=self.voltage,
-            bone_x=float(solver.bone[0]),
-            f_ext=f_ext,
-            bone_height=float(solver.bone[1]),
-            f_t=f_t,
-            mu_app=f_t / f_ext if f_ext > balance.BALANCED * solver.force_scale else 0.0,
-            f_contact=float(loads.f_contact.sum()),
-            f_electrostatic=float(loads.f_attraction.sum()),
-            ridges_in_contact=int((loads.length > 0).sum()),
-            contact_length=float(loads.length.sum()),
-            slipping=slipping,
-            all_slip=all_slip,
-            mesh_contact=self.contact_size,
-            ridges=RidgeStates(
-                np.array(self.ridges), loads.length, loads.f_contact, loads.f_friction, loads.f_attraction, loads.p_c,
-                d_eq,
-            ),
-        )  # fmt: skip
-        return Step(found, notes, attempt or Attempt())
+        more = {"load": load, "load_number": number, "mesh_contact": self.contact_size}
+        return Step(contact_state(self.continuation, loads, self.ridges, d_eq, **more), notes, attempt or Attempt())

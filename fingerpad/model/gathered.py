@@ -51,7 +51,7 @@ class Points:
         self._flip = x[:, 0] > x[:, -1]
         middle = ((z[:, 0] + z[:, -1]) / 2 for z in (y, x))
         self._order = np.lexsort((*middle, ridge[:, 0]))
-        self._ridge = np.array(surface.names)[ridge[self._order, 0].astype(int)]
+        self._ridge = np.array(surface.ridge_numbers)[ridge[self._order, 0].astype(int)]
 
     def _gather(self, *mine: Array) -> Array:
         stacked = np.stack([np.asarray(values, dtype=np.float64) for values in mine])

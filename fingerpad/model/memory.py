@@ -1,4 +1,4 @@
-"""What a scene asks of a machine, estimated before anything is meshed, and refused where it is beyond what may be used.
+"""The memory that a scene needs, estimated before anything is meshed, and refused where it is more than allowed.
 
 The number of triangles is :mod:`geometry.count`'s, of unknowns what the element makes of it. Memory, of which the
 factors of MUMPS are most, grows as the power 1.13 of the unknowns: runs on one rank that pressed, charged and slid took

@@ -65,18 +65,16 @@ def plan(scene: Scene) -> ModelOptions:
         omitted.append(Omission("friction and its history", "the friction coefficient is 0"))
     if not receptors:
         omitted.append(Omission("receptor sites and their fine elements", "output.receptors is false"))
-    carried, errors = scene.numerics.element != "P2-P1", scene.output.errors or scene.accuracy is not None
-    if not carried:
-        omitted.append(Omission("discretisation errors", "the pressure of P2-P1 cannot be carried to another mesh"))
-    elif not errors:
+    errors = scene.output.errors or scene.accuracy is not None
+    if not errors:
         omitted.append(Omission("discretisation errors", "output.errors is false"))
     both_halves = any(load.bone_x for load in scene.loads())
     if scene.laws.mesh is not None:  # the whole of it, and no other mesh of the same finger
         if receptors:
             omitted.append(Omission("receptor sites", _FILE))
-        if carried and errors:
+        if errors:
             omitted.append(Omission("discretisation errors", f"{_FILE} and cannot be refined"))
         return ModelOptions(voltage, friction, False, True, False, tuple(omitted))
     if not both_halves:
         omitted.append(_HALF)
-    return ModelOptions(voltage, friction, receptors, both_halves, carried and errors, tuple(omitted))
+    return ModelOptions(voltage, friction, receptors, both_halves, errors, tuple(omitted))

@@ -68,15 +68,15 @@ class Report:
             for name, found in (("ridges", self._viewer.ridges(step)), ("receptors", receptors)):
                 for each in found:
                     self._writer.row(name, each | size)
-            for sweep, change in enumerate(step.attempt.changes):
-                self._writer.row("coupling", {"step": state.step, "sweep": sweep + 1, "change": change})
+            for iteration, change in enumerate(step.attempt.changes):
+                self._writer.row("coupling", {"step": state.step, "iteration": iteration + 1, "change": change})
             self._console.step(state, done)
             if self._simulation.finger.problem.mesh.comm.rank == 0:
                 self._log(step, state)
 
     def _log(self, step: Step, state: ContactState) -> None:
         log = self._writer.log
-        log.info("step %s sweeps %s", json.dumps(state.row()), step.attempt.changes)
+        log.info("step %s coupling iterations %s", json.dumps(state.row()), step.attempt.changes)
         for cut in step.attempt.cutbacks:
             log.warning("step %d cut: %s", state.step, cut)
         ridges = self._simulation.finger.ridges

@@ -1,22 +1,35 @@
 """The path of a scene's loads: from one load to the next, every accepted state checked and reported."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from mpi4py import MPI
 
 from fingerpad.io.states import SLIDE_ON
-from fingerpad.model.contact_zone import ContactZone, FingerExceeded, RestartRequired
+from fingerpad.model.contact_zone import ContactZone, FingerExceeded
 from fingerpad.model.finger import Finger, Step
 from fingerpad.model.full_slip import FullSlip
 from fingerpad.model.options import ModelOptions
 from fingerpad.model.stability import StabilityChecks
+from fingerpad.model.state import step_record
+from fingerpad.model.touching import with_ridges
 from fingerpad.scene import Load, Scene
 from variational.quantities import RidgeLoads
 from variational.solvers.continuation import Attempt, StepFailed, Target
-from variational.solvers.transfer import StateSnapshot, give
-from variational.state import ContactState, StepRecord
+from variational.solvers.transfer import StateSnapshot, restore
+from variational.state import ContactState
+
+
+@dataclass(frozen=True)
+class RestartRequired:
+    """The loads must be gone through again, since an omitted part of the model turned out to matter."""
+
+    reason: str
+    scene: Scene
+    """With more ridges that can touch, or a finer mesh."""
+    options: ModelOptions
+    """With more parts of the model."""
 
 
 class Simulation:
@@ -52,7 +65,8 @@ class Simulation:
         self.checks = StabilityChecks(finger)
         self._loads, self._load, self._loads_done = scene.loads(), "", 0
         self._slip = FullSlip(finger)
-        self._zone = ContactZone(scene, options, finger.mesh, finger.observer)
+        count, file = scene.geometry.ridge_count, scene.laws.mesh
+        self._zone = ContactZone(finger.mesh, finger.observer, finger.ridges, count, file)
         self._restart: RestartRequired | None = None
 
     def run(self) -> RestartRequired | None:
@@ -90,11 +104,11 @@ class Simulation:
     def _ahead(self, load: Load) -> float:
         return (load.bone_x or 0.0) - float(self.finger.solver.control.x)
 
-    def adopt(self, carried: StateSnapshot, name: str, direction: int = 0) -> None:
+    def re_equilibrate(self, snapshot: StateSnapshot, name: str, direction: int = 0) -> None:
         """Solve again for a state that was reached on another mesh of the same finger; collective.
 
         Args:
-            carried: the state.
+            snapshot: the state.
             name: what it is called in a failure.
             direction: 1 or -1 for a state of full slip, the way the bone slides; zero for another.
 
@@ -103,7 +117,7 @@ class Simulation:
                 expected to touch), or full slip is no longer full or not steady.
         """
         finger, again = self.finger, f"{name}, solved again with a contact size of {self.finger.contact_size:g} m"
-        give(carried, finger.coupling, direction * SLIDE_ON)
+        restore(snapshot, finger.coupling, direction * SLIDE_ON)
         self._load = name
         finger.continuation.re_equilibrate(name)
         self.energy = finger.book()  # what was dissipated on the way is not known
@@ -111,7 +125,7 @@ class Simulation:
         finger.check_balance(loads, name)
         self.states.append(self._slip.placed(self.states, self.present(loads).state, probe=False))
         try:
-            self._restart = self._zone.check(finger.ridges, loads)
+            self._restart = self._zone_exceeded(loads)
             steady = self._restart is not None or not direction or self._slip.slides_on(name, direction)
         except FingerExceeded as error:
             raise StepFailed(f"{again}: {error}") from error
@@ -139,6 +153,13 @@ class Simulation:
         reason = "the half of the finger is not stable, so that the whole may not be symmetric"
         return RestartRequired(reason, self.finger.scene, options.with_both_halves())
 
+    def _zone_exceeded(self, loads: RidgeLoads) -> RestartRequired | None:
+        """Return that more ridges must be able to touch, where they must; collective."""
+        wider, finger = self._zone.check(loads), self.finger
+        if wider is None:
+            return None
+        return RestartRequired(wider.reason, with_ridges(finger.scene, wider.last), finger.options)
+
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> bool:
         """Check and report an accepted state; return whether the path must stop here."""
         finger, touches = self.finger, target.name == "touch"
@@ -150,30 +171,14 @@ class Simulation:
                 return True
         step = self.present(loads, attempt, touches)
         state = self._slip.placed(self.states, step.state, probe=part >= 1 and not target.until_full_slip)
-        state = replace(state, record=self._record(imbalance, attempt))
+        energy = self.energy.step(*finger.surface_and_bone())
+        record = step_record(finger.continuation, energy, imbalance, attempt)
+        state = replace(state, record=record)
         self.states.append(state)
         done = min((self._loads_done + (0.0 if touches else part)) / len(self._loads), 1.0)
         self.on_step(replace(step, state=state), done)
         try:
-            self._restart = self._zone.check(finger.ridges, loads)
+            self._restart = self._zone_exceeded(loads)
         except FingerExceeded as error:
             raise StepFailed(f"step {finger.continuation.steps} ({self._load}): {error}") from error
         return self._restart is not None
-
-    def _record(self, imbalance: float, attempt: Attempt) -> StepRecord:
-        """Return energies and work of the step to the present state; collective."""
-        finger, energy = self.finger, self.energy.step(*self.finger.surface_and_bone())
-        return StepRecord(
-            penetration=finger.observer.penetration(finger.continuation.surface_state),
-            imbalance=imbalance,
-            floor=finger.solver.floor,
-            stored=energy.stored,
-            dissipation=energy.dissipation,
-            energy_released=energy.released,
-            released_error=energy.released_error,
-            newton_iterations=attempt.newton,
-            factorisations=attempt.factorisations,
-            sweeps=attempt.sweeps,
-            cutbacks=len(attempt.cutbacks),
-            jump=attempt.jump,
-        )

@@ -34,7 +34,12 @@ def by_rule(scene: Scene) -> Scene:
     lowered = math.sqrt(2 * radius * max(depth, 0.0)) / finger.ridge_wavelength
     friction = 0.0 if law is None else law.coefficient(_PRESSURE)
     last = math.ceil(max(ridges, lowered, _LEAST) * max(friction / _FRICTION, 1.0) ** _ROLLS)
-    half_arc = min(last, max(finger.ridge_count // 2, 1)) * finger.ridge_wavelength
+    return with_ridges(scene, min(last, max(finger.ridge_count // 2, 1)))
+
+
+def with_ridges(scene: Scene, last: int) -> Scene:
+    """Return the scene with ridges -last to last meshed to touch."""
+    half_arc = last * scene.geometry.ridge_wavelength
     return scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"touching_half_arc": half_arc})})
 
 

@@ -1,6 +1,6 @@
 """What the reduced models have in common: a scene in, normal contact and full slip out, as a full run has them.
 
-A quantity that a model cannot know is NaN in its states, and a note says so.
+A quantity that is not part of a model is NaN in its states, and a note names it.
 """
 
 import time

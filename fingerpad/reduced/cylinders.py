@@ -1,19 +1,19 @@
 r"""The model "cylinders": every ridge in contact the same charged cylinder, an answer in a fraction of a second.
 
-n ridges bear :math:`f = f_{ext} / n` each; :mod:`variational.attraction.cylinder` says what contact force, attraction
-and air gap that makes. Friction at full slip is the limit of the friction law at the mean pressure, over the length in
-contact; Coulomb's is :math:`f_T = \mu_0 (f_{ext} + f_{el})`. What the cylinders cannot say by themselves is how many
-ridges there are and how long their contact is, for that is the finger's doing. A :class:`Footprint` says so, of normal
-contact and full slip:
+n ridges bear :math:`f = f_{ext} / n` each; :mod:`variational.attraction.cylinder` gives contact force, attraction and
+air gap of a ridge. Friction at full slip is the limit of the friction law at the mean pressure, over the length in
+contact; Coulomb's is :math:`f_T = \mu_0 (f_{ext} + f_{el})`. The number of ridges in
+contact and the length of their contact depend on the finger. They come from a :class:`Footprint` of normal contact and
+full slip:
 
 - :func:`fitted`: of the default finger *without* voltage, interpolated between full runs. The modulus E* of the
-  cylinders is then the one with which Hertz's law gives that length, by which it knows of finite strain, layers and
-  shear; and the length under voltage follows from Maugis's equations.
+  cylinders is then the one with which Hertz's law gives that length, which includes finite strain, layers and
+  shear. The length under voltage follows from Maugis's equations.
 - :func:`given`: the length *at* the scene's voltage, from a user or a run. E* is the stratum corneum's,
   :math:`2 G_0 / (1 - \nu)`, and acts on the attraction beyond the contact's ends alone.
 
-It leaves out that ridges in the middle bear more than those at the edge, and that ridges come and go with the
-voltage; how much that is: ``docs/models.md``.
+The model leaves out that ridges in the middle bear more than those at the edge, and that ridges come and go with the
+voltage. ``docs/models.md`` has its errors.
 """
 
 import json
@@ -176,17 +176,17 @@ def _ridge(scene: Scene, footprint: Footprint, state: str) -> RidgeState:
 
 
 def _remarks(scene: Scene, state: str, ridge: RidgeState) -> list[str]:
-    """Say where on the closure the ridges are, and whether there are other equilibria."""
-    said = []
+    """Return remarks on the ridges' place on the closure and on other equilibria."""
+    remarks = []
     place = scene.closure().state(ridge.p_c, scene.voltage)
     if place:
-        said.append(f"{WORDS[state]}: a mean pressure of {ridge.p_c:.4g} Pa is {place}")
+        remarks.append(f"{WORDS[state]}: a mean pressure of {ridge.p_c:.4g} Pa is {place}")
     if ridge.others:
         pressures = ", ".join(f"{p:.4g}" for p in ridge.others)
-        said.append(
+        remarks.append(
             f"{WORDS[state]}: further equilibria at a mean pressure of {pressures} Pa, of ridges not on the screen yet"
         )
-    return said
+    return remarks
 
 
 def tip_radius(finger: Fingertip) -> float:

@@ -56,7 +56,7 @@ _NOWHERE = 500e-6  # m, height at which the attraction is no more
 
 @dataclass(frozen=True)
 class Tables:
-    """What a cell says of its ridge."""
+    """The tables of a cell's ridge."""
 
     name: str
     """Of the file."""

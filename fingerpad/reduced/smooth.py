@@ -9,7 +9,7 @@ one step. There is no strain energy at receptors, since near the skin the field 
 The discretisation error is that of the tables. Under attraction the pressure at an edge of contact falls over the air
 gap and insulators, a micrometre or two, so that on facets of ``mesh.contact`` an edge moves by fits and starts, and a
 ridge that is lifted may not be followed to where it lets go. So the finger is solved with the tables of facets of half
-the size as well. What that changes, and the error estimated of these by :mod:`fingerpad.richardson`, is the error told.
+the size as well. The change, and the error estimated from it by :mod:`fingerpad.richardson`, make the estimated error.
 The finger's own elements, a quarter of a ridge, have no part in it: halving all of them changes friction and contact
 lengths by 0.1 % and the bone's height by 0.13 % (default finger, 15 and 75 N/m, 200 V).
 """

@@ -12,14 +12,13 @@ from fingerpad.io.provenance import provenance
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
 from fingerpad.model.balance import broken, force_error
-from fingerpad.model.contact_zone import RestartRequired
 from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Step
 from fingerpad.model.hints import finer_mesh_may_help, hint
 from fingerpad.model.memory import refuse_beyond
 from fingerpad.model.options import ModelOptions
 from fingerpad.model.report import Report
-from fingerpad.model.simulation import Simulation
+from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene
 from fingerpad.scene.laws import coefficient, used
@@ -50,8 +49,9 @@ class Attempt:
         interrupt: Interrupt,
     ) -> None:
         """Mesh the finger; collective."""
-        self._scene, self._options, self._comm = scene, options, comm
-        self._writer, self._console, self._clock, self._interrupt = writer, console, clock, interrupt
+        self._scene = scene
+        self._options, self._comm, self._interrupt = options, comm, interrupt
+        self._writer, self._console, self._clock = writer, console, clock
         with clock.phase("setup"):
             self.simulation = Simulation(scene, options, comm, self._on_step, self._on_load)
         self.report = Report(self.simulation, writer, console, clock)

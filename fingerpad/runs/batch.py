@@ -1,7 +1,7 @@
 """Many scenes, each run in a process of its own and kept by what it is made of.
 
 A scene's folder is named by a hash of all its parameters: run again, a sweep computes only what has changed, and one
-that is killed has lost the runs in hand. The hash knows nothing of the program: after a change of the mechanics the
+that is killed has lost the runs in hand. The hash does not depend on the program: after a change of the mechanics the
 folder must be deleted.
 
     python3 -m fingerpad.runs.batch SCENE.json FOLDER LIMIT MODEL    one run, as the sweep starts it

@@ -53,7 +53,7 @@ def run(scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True) -
     petsc_options.check()
     console = Console(comm, lines)
     try:
-        with nullcontext() if folder is None else Place(folder, scene, comm) as place:
+        with nullcontext() if folder is None else Place(folder, scene.parameters(), comm) as place:
             return _run(scene, Writer(place, comm), comm, console)
     except GeometryError as error:
         what = "the finger cannot be meshed" if scene.laws.mesh is None else "mesh"
@@ -64,7 +64,7 @@ def run(scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True) -
 
 def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console) -> Result:
     """Run a scene until nothing must be added to its model."""
-    jit.sweep(comm)
+    jit.delete_unfinished(comm)
     writer.log.info("scene %s", json.dumps(scene.parameters()))
     clock, restarts = Clock(comm), Restarts(writer.log, console)
     present, options = by_rule(scene), plan(scene)

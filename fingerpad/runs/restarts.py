@@ -4,8 +4,8 @@ import logging
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.io.console import Console
-from fingerpad.model.contact_zone import RestartRequired
 from fingerpad.model.cost import Clock
+from fingerpad.model.simulation import RestartRequired
 
 if TYPE_CHECKING:
     from fingerpad.runs.attempt import Attempt

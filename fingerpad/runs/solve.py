@@ -128,7 +128,7 @@ def kept(result: Result, out: Path | None, comm: "MPI.Comm | Serial") -> Result:
     if out is None:
         return result
     result = replace(result, folder=out)
-    with Place(out, result.scene, comm, result.model) as place:
+    with Place(out, result.scene.parameters(), comm, result.model) as place:
         place.take()
         if comm.rank == 0:
             replace_json(out / "summary.json", result.to_dict())

@@ -27,14 +27,9 @@ def refuse_contradictions(scene: "Scene") -> None:
 
 
 def _refuse_accuracy(scene: "Scene") -> None:
-    """Refuse an accuracy whose states cannot be moved to another mesh, or of sites that are not there."""
+    """Refuse an accuracy of receptor sites that are not there."""
     if scene.accuracy is None:
         return
-    if scene.numerics.element == "P2-P1":
-        raise ValueError(
-            "accuracy is given and numerics.element is 'P2-P1', whose pressure cannot be carried to another mesh; "
-            "take 'P2'"
-        )
     if scene.accuracy.sed is not None and not scene.output.receptors:
         raise ValueError(
             f"accuracy.sed is {show(scene.accuracy.sed)} and output.receptors is false, without which there are no "

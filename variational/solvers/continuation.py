@@ -68,7 +68,7 @@ class Attempt:
 
     newton: int = 0
     factorisations: int = 0
-    sweeps: int = 0
+    coupling_iterations: int = 0
     changes: list[float] = field(default_factory=list)
     cutbacks: list[str] = field(default_factory=list)
     pseudo_transient: int = 0
@@ -316,6 +316,6 @@ class Continuation:
             attempt.newton += counts.newton - newton
             attempt.factorisations += counts.factorisations - factorisations
             attempt.pseudo_transient += counts.pseudo_transient - shifted
-            attempt.sweeps = len(self.coupling.history.changes)
+            attempt.coupling_iterations = len(self.coupling.history.changes)
             attempt.changes = self.coupling.history.changes
             attempt.jumped = self.coupling.history.jumped

@@ -14,11 +14,11 @@ with one facet less its pressure is higher, its air gap smaller and its attracti
 back. Between the loads at which either state is one of equilibrium the loop cycles, however small the step;
 :mod:`~variational.solvers.continuation` steps over them.
 
-A formulation of contact whose history is corrected after each solve, the augmented Lagrangian, shares the loop: a
-sweep corrects air gaps and multipliers, and the loop ends when both agree. Without a closure, for a path without
+A formulation of contact whose history is corrected after each solve, the augmented Lagrangian, shares the loop: an
+iteration corrects air gaps and multipliers, and the loop ends when both agree. Without a closure, for a path without
 voltage, the multipliers are all there is to correct, and a step is mostly one solve.
 
-The tangent of the macroscale is that of frozen air gaps. When a later sweep of a load that was in equilibrium
+The tangent of the macroscale is that of frozen air gaps. When a later iteration of a load that was in equilibrium
 fails, it is because a ridge jumps, and pseudo-transient continuation is allowed at once.
 """
 
@@ -40,14 +40,14 @@ Array = NDArray[np.float64]
 
 @dataclass
 class CouplingHistory:
-    """Sweeps of one loop."""
+    """Coupling iterations of one loop."""
 
     changes: list[float] = field(default_factory=list)
-    """Largest |closure(p_c) - d_eq| / d_eq of each sweep."""
+    """Largest |closure(p_c) - d_eq| / d_eq of each iteration."""
     ridges: list[int] = field(default_factory=list)
     """Number of the ridge it belongs to."""
     errors: list[float] = field(default_factory=list)
-    """Largest error of the contact's conditions in each sweep (m), zero where there is nothing to correct."""
+    """Largest error of the contact's conditions in each iteration (m), zero where there is nothing to correct."""
     jumped: set[int] = field(default_factory=set)
     """Numbers of the ridges that went past a fold: their gain was above one and their air gap changed by far."""
 
@@ -57,7 +57,7 @@ class Coupling:
 
     Attributes:
         d_eq: equivalent air gap of each ridge (m); NaN without a closure.
-        history: sweeps of the last solve.
+        history: iterations of the last solve.
         gain: d closure(p_c) / d d_eq of each ridge, the last secant of the last solve that moved its air gap;
             NaN where none did yet. Below one the ridge's loop contracts: its state is stable if that of
             frozen air gaps is.
@@ -79,7 +79,7 @@ class Coupling:
             observer: evaluates its surface.
             closure: the microscale; None where there is never a voltage.
             tolerance: relative error of d_eq, r / (1 - gain), at which the loop ends; gains count up to 0.99.
-            cap: most sweeps.
+            cap: most iterations.
             by_gap: take the length below d_eq, not the length under pressure, as L_R of Eq. 4.
 
         Raises:
@@ -90,7 +90,7 @@ class Coupling:
         self.solver, self.observer, self.closure = solver, observer, closure
         self.tolerance, self.cap, self.by_gap = tolerance, cap, by_gap
         self.history = CouplingHistory()
-        ridges = len(observer.surface.names)
+        ridges = len(observer.surface.ridge_numbers)
         self.d_eq = np.full(ridges, np.nan) if closure is None else air_gaps(closure, np.zeros(ridges))
         self.gain = np.full_like(self.d_eq, np.nan)
 
@@ -100,8 +100,8 @@ class Coupling:
         if self.closure is not None:
             self.solver.problem.set_air_gaps(d_eq)
 
-    def _sweep(self, pseudo_transient: bool) -> tuple[Array, SurfaceState]:
-        """Solve at the current air gaps; return what the closure makes of the pressures (m), and the surface."""
+    def _iterate(self, pseudo_transient: bool) -> tuple[Array, SurfaceState]:
+        """Solve at the current air gaps; return the air gaps by the closure (m), and the surface."""
         self.solver.solve(pseudo_transient)
         with self.solver.timings.phase("coupling"):
             state = self.observer.state()
@@ -109,7 +109,7 @@ class Coupling:
                 return self.d_eq, state
             d_eq = air_gaps(self.closure, self.observer.ridge_loads(state, self.by_gap).p_c)
         if not np.isfinite(d_eq).all():
-            ridge = self.observer.surface.names[int(np.argmin(np.isfinite(d_eq)))]
+            ridge = self.observer.surface.ridge_numbers[int(np.argmin(np.isfinite(d_eq)))]
             raise NotConverged(f"NOT_A_NUMBER in the air gap of ridge {ridge}", False)
         return d_eq, state
 
@@ -130,19 +130,19 @@ class Coupling:
         formulation = problem.interface.formulation
         charged = self.closure is not None and float(problem.voltage.value) != 0.0
         contact_history = problem.history
-        secants, names = Secants(self.d_eq, self.gain), self.observer.surface.names
-        for sweep in range(self.cap):
+        secants, numbers = Secants(self.d_eq, self.gain), self.observer.surface.ridge_numbers
+        for iteration in range(self.cap):
             d = self.d_eq
-            found, state = self._sweep(pseudo_transient or sweep > 0)
+            found, state = self._iterate(pseudo_transient or iteration > 0)
             r = found - d if charged else np.zeros_like(d)  # without attraction the air gaps do not act
             error = formulation.error(state, contact_history, problem.interface.friction)
             self.history.errors.append(problem.mesh.comm.allreduce(error, op=MPI.MAX))
             change = np.abs(r) / d if charged else np.zeros_like(d)
             worst = int(np.argmax(change))
             self.history.changes.append(float(change[worst]))
-            self.history.ridges.append(names[worst])
-            secants.see(d, r)
-            self.history.jumped = {names[k] for k in np.flatnonzero(secants.jumped())}
+            self.history.ridges.append(numbers[worst])
+            secants.record(d, r)
+            self.history.jumped = {numbers[k] for k in np.flatnonzero(secants.jumped())}
             scales = not charged or secants.settled(self.tolerance)
             contact = self.history.errors[-1] <= formulation.tolerance
             if scales and contact:

@@ -34,6 +34,7 @@ class RigidRimLayout:
         rows: global row of each of the space's local unknowns, ghosts included.
         rigid_rows: global rows (2,) of the rigid body's translation in x and y.
         owns_rigid: whether this rank owns those rows.
+        displacement_rows: this rank's global rows of displacements, the rigid body's included.
         rim: this rank's nodes on the rim, ghosts included.
     """
 
@@ -62,6 +63,7 @@ class RigidRimLayout:
         first = comm.scan(self.local_size) - self.local_size
         rigid = self.global_size - 2
         self.rigid_rows = np.array([rigid, rigid + 1], dtype=PETSc.IntType)
+        self.displacement_rows = np.arange(first + pressures, first + self.local_size, dtype=PETSc.IntType)
         numbers = dolfinx.la.vector(index_map, 1, np.int64)
         numbers.array[:owned] = np.where(free, first + pressures + 2 * (np.cumsum(free) - 1), rigid)
         numbers.scatter_forward()

@@ -14,9 +14,10 @@ equilibrium that is lost and ends in one of the unchanged equations.
 import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
+from petsc4py import PETSc
 
 from variational.problem import SLIPS, STICKS
-from variational.solvers.equations import Control, Equations
+from variational.solvers.equations import OUTSIDE, Control, Equations
 from variational.solvers.failure import snes_failure
 from variational.solvers.iteration import Iteration
 from variational.solvers.timing import Counts
@@ -85,9 +86,34 @@ class Solver:
         return self.iteration.floor
 
     def set_displacement(self, u: Array, bone: Array) -> None:
-        """Start from a displacement (m) of all nodes, shape (nodes, 2), and the bone's translation (m), (2,)."""
+        """Start from a displacement (m) of all nodes, shape (nodes, 2), and the bone's translation (m), (2,).
+
+        A mixed element's pressure becomes that of the displacement.
+        """
         self.layout.from_nodes((u - bone).ravel(), bone, self.x)
+        if self.problem.pressure:
+            self._set_pressure()
         self.equations.to_fields(self.x)
+
+    def _set_pressure(self) -> None:
+        """Solve the second equation, which is linear in the pressure, at the present displacement.
+
+        Where elements are inside out there is no such pressure, and the last one stays.
+        """
+        A, f, step = self.layout.create_matrix(), self.layout.create_vector(), self.layout.create_vector()
+        self.equations.residual(self.x, f)
+        if f.norm() >= OUTSIDE / 2:
+            return
+        self.equations.assemble_tangent(A)
+        A.zeroRows(self.layout.displacement_rows)
+        f.array_w[self.equations.local(self.layout.displacement_rows)] = 0.0
+        ksp = PETSc.KSP().create(self.layout.comm)
+        ksp.setOperators(A)
+        ksp.setType(PETSc.KSP.Type.PREONLY)
+        ksp.getPC().setType(PETSc.PC.Type.LU)
+        ksp.getPC().setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
+        ksp.solve(f, step)
+        self.x.axpy(-1.0, step)
 
     def new_load(self, control: Control, voltage: float, slipping: bool = False, on_cone: bool = True) -> None:
         """Prescribe a load; the next solve starts from the tangent of the present state, not from a kept one.

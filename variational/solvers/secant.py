@@ -4,8 +4,8 @@ With :math:`r(d) = d_{eq}(p_c(d)) - d` over a ridge's air gap d,
 
 .. math:: d \leftarrow d + \frac{r}{1 - g}, \qquad g = \frac{d}{dd} d_{eq}(p_c(d))
 
-The screen bears a change of the attraction mostly where it acts, so ridges hardly feel each other's air gap. The
-secant needs a few sweeps where the gain g is -3 or 0.99 and the plain loop, d + r, diverges or needs hundreds.
+The screen bears a change of the attraction mostly where it acts, so a ridge hardly depends on the others' air gaps. The
+secant needs a few iterations where the gain g is -3 or 0.99 and the plain loop, d + r, diverges or needs hundreds.
 
 It is not let converge where g > 1. There the micro layer is unstable: a gap that opens a little opens on. On a flat
 ridge, :math:`g = d_{eq}'(p_c) \, \sigma_{el}'(d)` whatever the body and its loads: no control of the bone's height or
@@ -39,13 +39,13 @@ class Secants:
         """Start from air gaps (m) and the gains with which an earlier loop ended."""
         self.gain = gain.copy()
         self._start, self._d, self._r = d, d, np.zeros_like(d)
-        self._seen_any = False
-        self._past: NDArray[np.bool_] = np.zeros(len(d), dtype=bool)  # whether a gain of one was seen
+        self._has_stepped = False
+        self._past: NDArray[np.bool_] = np.zeros(len(d), dtype=bool)  # whether a gain reached one
         self._steep: NDArray[Any] = np.zeros(len(d), dtype=np.int64)  # secants in a row near a gain of one or above
 
-    def see(self, d: Array, r: Array) -> None:
-        """Take note of what the closure would add, ``r`` (m), to air gaps ``d`` (m)."""
-        if self._seen_any:
+    def record(self, d: Array, r: Array) -> None:
+        """Record the change ``r`` (m) that the closure makes to air gaps ``d`` (m)."""
+        if self._has_stepped:
             moved = d - self._d
             part = np.abs(moved) / d
             seen = part > max(_SEEN, _LEADS * float(part.max()))
@@ -63,9 +63,9 @@ class Secants:
     def step(self) -> Array:
         """Return the next air gaps (m)."""
         first = np.maximum(np.abs(self._r), _FIRST * self._d)
-        most = np.inf if self._seen_any else first
+        most = np.inf if self._has_stepped else first
         step = np.clip(self._r * self._amplification(self._steep), -most, most)
-        self._seen_any = True
+        self._has_stepped = True
         return self._d + np.clip(step, -self._d / 3, self._d / 2)
 
     def jumped(self) -> NDArray[np.bool_]:

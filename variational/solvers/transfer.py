@@ -1,8 +1,9 @@
-r"""An accepted state carried from one mesh of a body to another, as the guess from which it is solved again.
+r"""A snapshot of an accepted state, restored on another mesh of the body as the guess from which it is solved again.
 
 On another mesh of the same body an equilibrium is found from one known already, instead of along the whole path of the
-loads. What is carried is the displacement, the bone's translation, the ridges' air gaps, and the history of contact
-and friction. The carried fields are no equilibrium; what is solved for from them is.
+loads. A snapshot holds the displacement, the bone's translation, the ridges' air gaps, and the history of contact
+and friction. The restored fields are no equilibrium; the state that is solved for from them is. A mixed element's
+pressure is not in the snapshot: it follows from the restored displacement by the second equation.
 
 **Displacement.** The old mesh is gathered on every rank (it is two-dimensional: some MB). A node of the new one takes
 the value of the old polynomial in the triangle that it is inside of or, beyond a polygon that cuts off a curved
@@ -81,93 +82,88 @@ class StateSnapshot:
     voltage: float
 
 
-def carry(coupling: Coupling, state: SurfaceState) -> StateSnapshot:
+def take_snapshot(coupling: Coupling, state: SurfaceState) -> StateSnapshot:
     """Take the accepted state of a coupling; collective.
 
     Args:
         coupling: whose fields and controls are those of the state.
         state: its surface.
-
-    Raises:
-        ValueError: the element has a pressure of its own, which is not carried.
     """
     problem, solver = coupling.solver.problem, coupling.solver
-    _refuse_pressure(problem)
-    mesh, surface = problem.mesh, problem.surface
+    mesh, surface, numbers = problem.mesh, problem.surface, problem.surface.ridge_numbers
     cells = np.arange(mesh.topology.index_map(2).size_local)
     corners = mesh.geometry.x[compat.cell_geometry(mesh)[cells]][:, :, :2]
     u = problem.displacement()[problem.V.dofmap.list[cells]]
     here = np.stack([*_reference(problem, state), state.anchor - _u_x(problem), state.p_n, state.x, state.y])
     points, ridge = _all(mesh.comm, here, 1), _all(mesh.comm, surface.ridge, 0)
-    skin = {name: _ridge(points[:, ridge == k].reshape(6, -1), here.shape[2]) for k, name in enumerate(surface.names)}
+    skin = {j: _ridge(points[:, ridge == k].reshape(6, -1), here.shape[2]) for k, j in enumerate(numbers)}
     return StateSnapshot(
         _all(mesh.comm, corners, 0),
         _all(mesh.comm, u, 0),
         skin,
-        {name: float(d) for name, d in zip(surface.names, coupling.d_eq, strict=True)},
-        {name: float(g) for name, g in zip(surface.names, coupling.gain, strict=True)},
+        {j: float(d) for j, d in zip(numbers, coupling.d_eq, strict=True)},
+        {j: float(g) for j, g in zip(numbers, coupling.gain, strict=True)},
         solver.bone,
         replace(solver.control),
         float(problem.voltage.value),
     )
 
 
-def give(carried: StateSnapshot, coupling: Coupling, slide: float = 0.0) -> None:
-    """Give a coupling on another mesh of the same body the fields, history and controls of a state; collective.
+def restore(snapshot: StateSnapshot, coupling: Coupling, slide: float = 0.0) -> None:
+    """Set a coupling on another mesh of the same body to the fields, history and controls of a state; collective.
 
     Args:
-        carried: the state.
+        snapshot: the state.
         coupling: on the other mesh.
         slide: how far the body is moved on sideways without its anchors (m), for a state of full slip: against the
             friction on the skin, and farther than the skin will move when the state is solved for.
 
     Raises:
-        ValueError: another body, other ridges, or an element with a pressure of its own; on every rank.
+        ValueError: another body or other ridges; on every rank.
     """
     problem, solver = coupling.solver.problem, coupling.solver
-    _refuse_pressure(problem)
-    names = problem.surface.names
-    if names != list(carried.d_eq):
+    numbers = problem.surface.ridge_numbers
+    if numbers != list(snapshot.d_eq):
         raise ValueError(
-            f"the state has ridges {min(carried.d_eq)} to {max(carried.d_eq)} that can touch and the mesh "
-            f"{min(names)} to {max(names)}; they must be the same"
+            f"the state has ridges {min(snapshot.d_eq)} to {max(snapshot.d_eq)} that can touch and the mesh "
+            f"{min(numbers)} to {max(numbers)}; they must be the same"
         )
     nodes = problem.V.tabulate_dof_coordinates()[:, :2]
-    u, outside = interpolate(carried, nodes)
+    u, outside = interpolate(snapshot, nodes)
     farthest = float(np.max(problem.mesh.comm.allgather(outside)))
     if farthest > _OUTSIDE:
         raise ValueError(f"a node lies {farthest:.3g} triangles outside the state's mesh; it is of another body")
-    for k, name in enumerate(names):
-        skin, on_ridge = carried.skin[name], problem.surface.nodes(problem.V, k)
+    for k, j in enumerate(numbers):
+        skin, on_ridge = snapshot.skin[j], problem.surface.nodes(problem.V, k)
         there = place(skin, skin.position, nodes[on_ridge]) - nodes[on_ridge]
         lower = there[:, 1] < u[on_ridge, 1]
         u[on_ridge[lower]] = there[lower]
     shift = np.array([slide, 0.0])
-    solver.set_displacement(u + shift, carried.bone + shift)
-    solver.control = replace(carried.control, x=carried.control.x + slide)
-    problem.voltage.value = carried.voltage
-    coupling.set_air_gaps(np.array([carried.d_eq[name] for name in names]))
-    coupling.gain = np.array([carried.gain[name] for name in names])
+    solver.set_displacement(u + shift, snapshot.bone + shift)
+    solver.control = replace(snapshot.control, x=snapshot.control.x + slide)
+    problem.voltage.value = snapshot.voltage
+    coupling.set_air_gaps(np.array([snapshot.d_eq[j] for j in numbers]))
+    coupling.gain = np.array([snapshot.gain[j] for j in numbers])
 
     state = coupling.observer.state()
     elastic_slip, pressure = np.zeros_like(state.x), np.zeros_like(state.x)
     reference = np.stack(_reference(problem, state), axis=-1)
-    for k, name in enumerate(names):
-        mine, ridge = problem.surface.ridge == k, carried.skin[name]
+    for k, j in enumerate(numbers):
+        mine, ridge = problem.surface.ridge == k, snapshot.skin[j]
         along = (reference[mine] - ridge.origin) @ ridge.chord
         elastic_slip[mine] = np.interp(along, ridge.along, ridge.elastic_slip)
         pressure[mine] = np.interp(along, ridge.along, ridge.pressure)
     problem.set_history(History(_u_x(problem) - slide + elastic_slip, pressure, state.x - slide))
 
 
-def interpolate(carried: StateSnapshot, points: Array) -> tuple[Array, float]:
+def interpolate(snapshot: StateSnapshot, points: Array) -> tuple[Array, float]:
     """Return the displacement (m) at reference points (m), shape (n, 2) both, and how far one is outside at most.
 
     The distance is in altitudes of the triangle that the value is taken from, zero if every point is inside.
     """
     if len(points) == 0:
         return np.zeros((0, 2)), 0.0
-    a, b, c = np.moveaxis(carried.corners, 1, 0)
+    a, b, c = np.moveaxis(snapshot.corners, 1, 0)
     tree = cKDTree((a + b + c) / 3)
     near = tree.query(points, min(_CANDIDATES, len(a)))[1].reshape(len(points), -1)
     edges = np.stack([b - a, c - a], axis=-1)
@@ -177,12 +173,12 @@ def interpolate(carried: StateSnapshot, points: Array) -> tuple[Array, float]:
     best = least.argmax(axis=1)
     row = np.arange(len(points))
     cell, X = near[row, best], local[row, best]
-    degree = {3: 1, 6: 2, 10: 3}[carried.u.shape[1]]
+    degree = {3: 1, 6: 2, 10: 3}[snapshot.u.shape[1]]
     element = basix.create_element(
         basix.ElementFamily.P, basix.CellType.triangle, degree, basix.LagrangeVariant.gll_warped
     )
     basis = np.asarray(element.tabulate(0, X))[0, :, :, 0]
-    return np.einsum("nk,nki->ni", basis, carried.u[cell]), float(max(0.0, -least[row, best].min()))
+    return np.einsum("nk,nki->ni", basis, snapshot.u[cell]), float(max(0.0, -least[row, best].min()))
 
 
 def place(ridge: SkinState, position: Array, nodes: Array) -> Array:
@@ -198,11 +194,6 @@ def place(ridge: SkinState, position: Array, nodes: Array) -> Array:
     facet = np.clip(np.searchsorted(start, along, side="right") - 1, 0, len(start) - 1)
     powers = np.vander((along - start[facet]) / length[facet], n)
     return np.einsum("nk,nki->ni", powers @ np.linalg.inv(np.vander(gauss, n)), position[facet])
-
-
-def _refuse_pressure(problem: Problem) -> None:
-    if problem.pressure is not None:
-        raise ValueError("the element has a pressure of its own, which cannot be carried to another mesh; use P2")
 
 
 def _u_x(problem: Problem) -> Array:
