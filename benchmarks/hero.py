@@ -36,9 +36,9 @@ def main(folder: str) -> None:
             outlines += [{"layer": int(tag), "points": _rows(_thinned(xy[loop]))} for loop in _loops(edges)]
     with np.load(Path(folder) / "surface_slide.npz") as a:
         ridge = {name: a[f"end_{name}"][a["end_ridge"] == RIDGE] for name in ("x", "y", "p", "p_el", "d_eq")}
-    scenes = kept("models").numbers["scenes"]  # full runs, contact size 10 µm
+    compared = kept("models").numbers["scenes"]  # full runs, contact size 10 µm
     friction = {
-        str(f): [[u, scenes[f"{f} N/m, {u} V"]["full"]["summary"]["slip_mu_app"]] for u in range(0, 201, 50)]
+        str(f): [[u, compared[f"{f} N/m, {u} V"]["full"]["summary"]["slip_mu_app"]] for u in range(0, 201, 50)]
         for f in FORCES
     }
     along = {name: _rows([float(f"{v:.6g}") for v in values]) for name, values in ridge.items()}
