@@ -20,16 +20,21 @@ slip = result.full_slip                                            # also .uncha
 print(f"µ_app = {slip.mu_app:.4f} ± {slip.error.mu_app:.4f}, {slip.ridges_in_contact} ridges in contact")
 result.plot("surface", "surface.png")                              # pressure, attraction and gap along the skin
 
+# fmt: on
 # %% [markdown]
 # Next: one ridge by itself.
 
 # %%
-ridge = fp.Body(fp.geometry.ridge(size=10e-6), fp.Ogden(86.76e3, -14.53, 0.48),
-                contact=fp.Penalty(1.5e12, 5e10), friction=0.25, roughness=fp.BearingArea(h_0=0.51e-6))
+ridge = fp.Body(
+    fp.geometry.ridge(size=10e-6),
+    fp.Ogden(86.76e3, -14.53, 0.48),
+    contact=fp.Penalty(1.5e12, 5e10),
+    friction=0.25,
+    roughness=fp.BearingArea(h_0=0.51e-6),
+)
 ridge.press(4.4).charge(200.0).slide(until_full_slip=True)
-print(ridge.state.mu_app, ridge.state.d_eq, ridge.displacement.shape)          # arrays with documented shapes
+print(ridge.state.mu_app, ridge.state.d_eq, ridge.displacement.shape)  # arrays with documented shapes
 
-# fmt: on
 # %% [markdown]
 # Two laws hold at full slip, whatever the body. The screen bears the bone's load and the attraction. The friction force
 # is the friction coefficient times the contact force, since every point in contact slips.

@@ -148,7 +148,7 @@ def test_bone_and_screen_disagree(scene, tmp_path, monkeypatch):
 
 
 def test_last_ridge_of_the_finger_touches(tmp_path):
-    """There are no more ridges to wake: the run stops where contact reaches the last one, and says what to change."""
+    """There are no more ridges to add: the run stops where contact reaches the last one, and names what to change."""
     geometry = {"ridge_count": 3}
     scene = from_data({"mesh": MESH, "geometry": geometry, "history": [{"name": "press", "f_ext": 8.0}]})
     summary = run(scene, tmp_path, MPI.COMM_WORLD)

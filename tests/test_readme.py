@@ -60,6 +60,14 @@ def test_full_run_of_the_readme_is_the_kept_one():
     assert float(found[1]) == pytest.approx(float(kept[1]), abs=6e-5)
 
 
+def test_claims_of_the_readme_are_those_of_its_pages():
+    """The effect is that of the output below it; the count of verified numbers is that of docs/verification.md."""
+    found = re.search(r"µ_app = ([0-9.]+) ± ", README)
+    count = re.search(r"(\d+ of \d+) numbers", README)
+    assert found is not None and f"from 0.25 to {float(found[1]):.2f}" in README
+    assert count is not None and count[1] in (ROOT / "docs" / "verification.md").read_text(encoding="utf-8")
+
+
 @pytest.mark.slow
 def test_own_laws_run_as_written(monkeypatch):
     """With another scene; each law acts: the gap is constant, and friction is its limit summed over the skin."""

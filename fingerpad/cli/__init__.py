@@ -1,7 +1,7 @@
 """The command ``fingerpad``: one module a subcommand, imported when it is called.
 
-Each module has a function ``main(argv) -> int`` that returns the exit code: 0, 1 for a run that failed, 2 for what was
-refused in one sentence, and what the shell calls a signal for a run that was stopped.
+Each module has a function ``main(argv) -> int``. It returns the exit code: 0, 1 for a run that failed, 2 for a refusal,
+128 and the number of the signal for a run that was stopped.
 """
 
 import importlib
@@ -19,11 +19,11 @@ from fingerpad.scene.messages import SceneError, clip
 
 COMMANDS = {
     "estimate": "friction over force and voltage by a closed form, in seconds, without finite elements",
-    "run": "press, charge and slide a finger: tables, pictures and fields",
-    "sweep": "run a scene over values of its keys; a table, kept on disk and taken up again",
-    "compare": "cheaper models of a scene beside the full one, with what each of them costs",
-    "check": "what a run will hold, leave out and cost, and a picture of its mesh; solves nothing",
-    "mesh": "write the finger's mesh for gmsh, with names of its parts",
+    "run": "contact and friction of a finger that is pressed, charged and slid: tables, pictures, fields",
+    "sweep": "a scene over values of its keys: a table; a stopped sweep continues",
+    "compare": "models of a scene side by side: their results and their cost",
+    "check": "what a run contains, omits and costs, and a picture of its mesh; solves nothing",
+    "mesh": "the mesh of the finger as a file for gmsh, with names of its parts",
     "microscale": "air gap, attraction and real area of contact of a ridge over its pressure",
     "topography": "roughness of a scene from a measured height map",
     "params": "every key of a scene: unit, default, range and meaning",
@@ -54,10 +54,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 1
 
 
-def refuse(sentence: str) -> int:
-    """Print one sentence on rank 0; return the exit code of a refusal."""
+def refuse(message: str) -> int:
+    """Print a message on rank 0; return the exit code of a refusal."""
     if terminal.rank() == 0:
-        print(f"fingerpad: {sentence}", file=sys.stderr)
+        print(f"fingerpad: {message}", file=sys.stderr)
     return 2
 
 
@@ -108,4 +108,4 @@ examples:
   fingerpad estimate --f-ext 20:75:3 --voltage 0:200:5
   fingerpad run --set voltage=150 --out results/mine
 
-fingerpad COMMAND --help says more. --version prints the version."""
+fingerpad COMMAND --help lists the options of a command. --version prints the version."""

@@ -195,7 +195,7 @@ def writable(file: Path | None) -> None:
         raise SceneError(f"{name} cannot be written, since its folder is not there; make it first")
 
 
-def say(text: str = "", end: str = "\n") -> None:
+def echo(text: str = "", end: str = "\n") -> None:
     """Print on rank 0."""
     if terminal.rank() == 0:
         print(text, end=end, file=sys.stdout)

@@ -1,11 +1,11 @@
-"""``fingerpad check``: what a run of a scene will hold, leave out and cost; solves nothing."""
+"""``fingerpad check``: what a run of a scene contains, omits and costs; solves nothing."""
 
 import importlib.util
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from fingerpad.cli import cost
-from fingerpad.cli.arguments import Parser, say, scene_of
+from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.io.folder import check_folder
 from fingerpad.model.memory import estimate
 from fingerpad.model.options import ModelOptions, plan
@@ -23,7 +23,7 @@ _EXAMPLES = """
 def main(argv: Sequence[str]) -> int:
     """Describe a run; return the exit code."""
     parser = Parser(
-        "fingerpad check", "What a run will hold, leave out and cost, and its mesh; solves nothing.", _EXAMPLES
+        "fingerpad check", "Compute what a run contains, omits and costs, and draw its mesh; solve nothing.", _EXAMPLES
     )
     parser.add_scene()
     parser.add_out("results", "folder of the picture mesh.png (default: results)")
@@ -35,13 +35,13 @@ def main(argv: Sequence[str]) -> int:
         ("Loads, in order", _loads(scene)),
         ("Laws, numbers in SI units", (f"{name.replace('_', ' ')}: {law}" for name, law in used(scene).items())),
         ("Model", _model(scene, needed)),
-        ("Left out", (f"{omission.what}: {omission.reason}" for omission in needed.omitted)),
+        ("Omitted", (f"{omission.what}: {omission.reason}" for omission in needed.omitted)),
         ("Cost, within a factor of 2", _cost(scene, needed)),
     ):
-        said = list(lines) or ["nothing"]
-        say("\n".join([title, *(f"  {line}" for line in said)]))
-    say(_picture(scene, needed, args.out))
-    say("The scene can be run.")
+        shown = list(lines) or ["nothing"]
+        echo("\n".join([title, *(f"  {line}" for line in shown)]))
+    echo(_picture(scene, needed, args.out))
+    echo("The scene can be run.")
     return 0
 
 

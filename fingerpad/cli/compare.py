@@ -1,9 +1,9 @@
-"""``fingerpad compare``: models of one scene side by side, the cheapest first."""
+"""``fingerpad compare``: results and cost of several models of one scene side by side, the cheapest first."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
-from fingerpad.cli.arguments import Parser, path, positive, say, scene_of
+from fingerpad.cli.arguments import Parser, echo, path, positive, scene_of
 from fingerpad.io.folder import check_folder
 from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
@@ -19,7 +19,11 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Compare models; return the exit code."""
-    parser = Parser("fingerpad compare", "Models of a scene side by side, with what each of them costs.", _EXAMPLES)
+    parser = Parser(
+        "fingerpad compare",
+        "Compute a scene by several models; print their results and their cost side by side.",
+        _EXAMPLES,
+    )
     parser.add_scene()
     parser.add_out("results", "folder of the full run and of the ridge's tables (default: results)")
     parser.add_argument(
@@ -56,7 +60,7 @@ def main(argv: Sequence[str]) -> int:
             return Result(scene, model, None, None, None, failure=str(error))
 
     results = [answer_or_refusal(model) for model in MODELS if model in args.model]
-    say(compare.table(results))
+    echo(compare.table(results))
     return max(1 if result.failure else 0 for result in results)
 
 

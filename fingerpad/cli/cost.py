@@ -6,7 +6,7 @@ slide to full slip, fitted to the 40 full runs of ``docs/models.json`` (0.83 to 
 .. math:: n = 160 \, (f_{ext} / 75 N/m)^{0.33} \, e^{0.74 (U / 200 V)^2}
 
 of which the three loads of the default run have 0.26, 0.10 and 0.64; time, shares and the factors of the formulations
-are those of ``docs/chart.json``. ``tests/test_command.py`` derives all of them again.
+are those of ``docs/chart.json``. ``tests/test_command_mesh.py`` derives all of them again.
 """
 
 import math

@@ -5,14 +5,14 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.cli import ranges, tables
-from fingerpad.cli.arguments import Parser, say, scene_of
+from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.io.quantities import PER_LENGTH
 from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError
 
 # Largest errors at full slip against the full runs of the default finger in docs/models.json, over their forces (N/m)
-# and voltages (V); tests/test_command.py compares.
+# and voltages (V); tests/test_command_tables.py compares.
 KNOWN_ERROR = {"mu_app": 0.0243, "contact_length": 0.0618}
 KNOWN_RUNS, KNOWN_FORCES, KNOWN_VOLTAGES = 40, (5.0, 150.0), (0.0, 200.0)
 _COLUMNS = (
@@ -33,7 +33,9 @@ _EXAMPLES = """
 def main(argv: Sequence[str]) -> int:
     """Estimate friction over a grid; return the exit code."""
     parser = Parser(
-        "fingerpad estimate", "Friction at full slip, every ridge taken for the same charged cylinder.", _EXAMPLES
+        "fingerpad estimate",
+        "Compute friction at full slip by a closed form: every ridge in contact is the same charged cylinder.",
+        _EXAMPLES,
     )
     parser.add_scene()
     parser.add_argument("--f-ext", metavar="RANGE", help="forces (N/m): 75, or 20,50,75, or first:last:count")
@@ -44,12 +46,12 @@ def main(argv: Sequence[str]) -> int:
     scene = scene_of(args, meshed=False)
     forces, voltages = (_axis(scene, key, getattr(args, key)) for key in ("f_ext", "voltage"))
     rows, lost = grid(scene, forces, voltages)
-    say("Friction at full slip by a closed form, every ridge in contact the same charged cylinder.")
-    say(f"Friction coefficient {scene.friction:g}.\n")
-    say(tables.text(_COLUMNS, rows))
-    say("\nmu_app is friction over force, at full slip; contact is the length of skin on the screen.")
+    echo("Friction at full slip by a closed form, every ridge in contact the same charged cylinder.")
+    echo(f"Friction coefficient {scene.friction:g}.\n")
+    echo(tables.text(_COLUMNS, rows))
+    echo("\nmu_app is friction over force, at full slip; contact is the length of skin on the screen.")
     for note in (PER_LENGTH, *_known(scene, rows), *lost):
-        say(note)
+        echo(note)
     tables.write_files(args, _COLUMNS, rows, draw)
     return 0
 
@@ -67,7 +69,7 @@ def _with(scene: Scene, **values: float | str) -> Scene:
 
 
 def grid(scene: Scene, forces: Sequence[float], voltages: Sequence[float]) -> tuple[list[dict[str, Any]], list[str]]:
-    """Return a row for each force (N/m) and voltage (V), and what was refused, a sentence a point.
+    """Return a row for each force (N/m) and voltage (V), and a message for each point that was refused.
 
     Raises:
         SceneError: every point is refused.

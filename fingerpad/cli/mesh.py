@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from fingerpad.cli.arguments import Parser, path, say, scene_of, writable
+from fingerpad.cli.arguments import Parser, echo, path, scene_of, writable
 from fingerpad.scene.messages import SceneError
 
 _EXAMPLES = """
@@ -14,7 +14,9 @@ _EXAMPLES = """
 def main(argv: Sequence[str]) -> int:
     """Write a mesh; return the exit code."""
     parser = Parser(
-        "fingerpad mesh", "Write the mesh of the whole unloaded finger, in m, with names of its parts.", _EXAMPLES
+        "fingerpad mesh",
+        "Compute the mesh of the whole unloaded finger; write it for gmsh, in m, with names of its parts.",
+        _EXAMPLES,
     )
     parser.add_scene()
     parser.add_out("finger.msh", "file for gmsh (default: finger.msh)")
@@ -23,14 +25,14 @@ def main(argv: Sequence[str]) -> int:
     for file in (args.out, args.plot):
         writable(file)
     if args.out.suffix != ".msh":
-        raise SceneError(f"--out {args.out.name[:60]} does not end with .msh, by which gmsh knows its format")
+        raise SceneError(f"--out {args.out.name[:60]} does not end with .msh, the ending of the format of gmsh")
     scene = scene_of(args)
     from fingerpad.cli import section
 
     found = section.write(scene, args.out)
-    say(f"{len(found.triangles)} triangles, {len(found.points)} vertices, {found.ridges} ridges that can touch")
-    say(f"Written: {args.out}")
+    echo(f"{len(found.triangles)} triangles, {len(found.points)} vertices, {found.ridges} ridges that can touch")
+    echo(f"Written: {args.out}")
     if args.plot:
         section.draw(args.plot, found, scene)
-        say(f"Written: {args.plot}")
+        echo(f"Written: {args.plot}")
     return 0

@@ -1,4 +1,4 @@
-"""``fingerpad microscale``: what the roughness of a ridge makes of its pressure, without finite elements."""
+"""``fingerpad microscale``: air gap, attraction and real area of contact of a rough ridge over its pressure."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from fingerpad.cli import ranges, tables
-from fingerpad.cli.arguments import Parser, say, scene_of
+from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError
 
@@ -30,7 +30,9 @@ _EXAMPLES = """
 def main(argv: Sequence[str]) -> int:
     """Print the microscale over pressure; return the exit code."""
     parser = Parser(
-        "fingerpad microscale", "Bearing area model of a rough ridge over its mean contact pressure.", _EXAMPLES
+        "fingerpad microscale",
+        "Compute air gap, attraction and real area of contact of a rough ridge over its mean contact pressure.",
+        _EXAMPLES,
     )
     parser.add_scene()
     parser.add_argument("--voltage", metavar="RANGE", help="voltages (V): 200, or 0,100, or first:last:count")
@@ -42,16 +44,16 @@ def main(argv: Sequence[str]) -> int:
     voltages = [scene.voltage] if args.voltage is None else _voltages(scene, args.voltage)
     rows = table(scene, voltages, _pressures(args.p))
     closure = scene.roughness.bearing_area(scene.h_0)
-    say(
+    echo(
         f"A ridge of rms roughness {scene.roughness.h_rms * 1e6:.3g} µm, largest wavelength "
         f"{scene.roughness.wavelength * 1e6:.3g} µm; insulators: h_0 = {scene.h_0 * 1e6:.3g} µm.\n"
     )
-    say(tables.text(_COLUMNS, rows))
-    say("\npressure: mean contact pressure of the ridge; external: that less the attraction, what the finger presses")
-    say("with; separation: mean, of skin and screen; air gap: equivalent one; real area: of the nominal area.")
-    say(f"The air gap is held below {scene.roughness.p_floor * 1e-3:g} kPa (roughness.p_floor); at zero separation")
-    say(f"the pressure is {closure.full_pressure * 1e-3:.4g} kPa. A ridge would stick without any force from ", end="")
-    say(f"{closure.threshold():.0f} V.")
+    echo(tables.text(_COLUMNS, rows))
+    echo("\npressure: mean contact pressure of the ridge; external: that less the attraction, what the finger presses")
+    echo("with; separation: mean, of skin and screen; air gap: equivalent one; real area: of the nominal area.")
+    echo(f"The air gap is held below {scene.roughness.p_floor * 1e-3:g} kPa (roughness.p_floor); at zero separation")
+    echo(f"the pressure is {closure.full_pressure * 1e-3:.4g} kPa. A ridge would stick without any force from ", end="")
+    echo(f"{closure.threshold():.0f} V.")
     tables.write_files(args, _COLUMNS, rows, draw)
     return 0
 

@@ -4,7 +4,7 @@ import textwrap
 from collections.abc import Sequence
 from typing import Any
 
-from fingerpad.cli.arguments import Parser, say
+from fingerpad.cli.arguments import Parser, echo
 from fingerpad.cli.keys import Key, every
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError, clip
@@ -33,7 +33,7 @@ This page is written by `fingerpad params --markdown` from the program's own def
 
 def main(argv: Sequence[str]) -> int:
     """Print keys; return the exit code."""
-    parser = Parser("fingerpad params", "Every key of a scene: unit, default, range and meaning.", _EXAMPLES)
+    parser = Parser("fingerpad params", "Print every key of a scene: unit, default, range and meaning.", _EXAMPLES)
     parser.add_argument("filter", nargs="?", default="", metavar="FILTER", help="keys with this in their name")
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--toml", action="store_true", help="as a complete scene file of the defaults, with comments")
@@ -42,7 +42,7 @@ def main(argv: Sequence[str]) -> int:
     found = [key for key in every() if args.filter.lower() in key.name.lower()]
     if not found:
         raise SceneError(f"no key of a scene has {clip(args.filter)} in its name; fingerpad params lists all of them")
-    say(toml(found) if args.toml else page(found) if args.markdown else table(found))
+    echo(toml(found) if args.toml else page(found) if args.markdown else table(found))
     return 0
 
 

@@ -1,9 +1,12 @@
 """Pictures of commands: panels side by side, curves with a colour, a dash and a marker each."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import chdir, contextmanager
 from pathlib import Path
 from typing import Any
+
+with chdir("/"):  # a matplotlibrc of the current folder is not obeyed, see fingerpad.startup
+    import matplotlib  # noqa: F401
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

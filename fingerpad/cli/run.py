@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from fingerpad.cli.arguments import Parser, say, scene_of
+from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.io import terminal
 from fingerpad.io.folder import check_folder
 from fingerpad.runs.solve import MODELS, solved
@@ -16,7 +16,11 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Run a scene; return the exit code."""
-    parser = Parser("fingerpad run", "Press, charge and slide a finger: tables, pictures and fields.", _EXAMPLES)
+    parser = Parser(
+        "fingerpad run",
+        "Compute contact and friction of a finger that is pressed, charged and slid: tables, pictures, fields.",
+        _EXAMPLES,
+    )
     parser.add_scene()
     parser.add_out("results", "folder of the results (default: results)")
     parser.add_argument(
@@ -31,7 +35,7 @@ def main(argv: Sequence[str]) -> int:
     if args.model == "cylinders":
         if petsc:
             raise SceneError(f"{petsc[0]} is given and --model is cylinders, which solves nothing by PETSc")
-        say(str(solved(scene, args.model, args.out if terminal.rank() == 0 else None)))
+        echo(str(solved(scene, args.model, args.out if terminal.rank() == 0 else None)))
         return 0
     from fingerpad.startup import start
 
@@ -41,5 +45,5 @@ def main(argv: Sequence[str]) -> int:
 
     result = solved(scene, args.model, args.out, lines=True)
     if args.model != "full":
-        say(str(result))
+        echo(str(result))
     return exit_code(result)

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.cli import ranges
-from fingerpad.cli.arguments import Parser, positive, say
+from fingerpad.cli.arguments import Parser, echo, positive
 from fingerpad.io.folder import check_folder
 from fingerpad.runs.solve import MODELS
 from fingerpad.runs.sweep import sweep
@@ -22,7 +22,9 @@ _EXAMPLES = """
 def main(argv: Sequence[str]) -> int:
     """Run a study; return the exit code."""
     parser = Parser(
-        "fingerpad sweep", "A scene over values of its keys; runs that are in the folder are not repeated.", _EXAMPLES
+        "fingerpad sweep",
+        "Compute a scene over values of its keys; runs that are in the folder are not repeated.",
+        _EXAMPLES,
     )
     parser.add_scene()
     parser.add_argument(
@@ -36,8 +38,8 @@ def main(argv: Sequence[str]) -> int:
     base, axes = study(args.scene, args.set, args.over)
     scene = from_data(base)
     found = sweep(scene, args.out, jobs=args.jobs, model=args.model, **axes)
-    say(str(found))
-    say(f"Written: {args.out / 'table.csv'}")
+    echo(str(found))
+    echo(f"Written: {args.out / 'table.csv'}")
     return 1 if any(result.failure for result in found) else 0
 
 

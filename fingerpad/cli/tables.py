@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from fingerpad.cli.arguments import Parser, path, say, writable
+from fingerpad.cli.arguments import Parser, echo, path, writable
 from fingerpad.io.files import replace
 
 
@@ -50,7 +50,7 @@ def write(file: Path, columns: Sequence[Column], rows: Sequence[Mapping[str, Any
 
 
 def add_files(parser: Parser, picture: str) -> None:
-    """Add the options of a picture and of a table in a file; ``picture`` says what the picture shows."""
+    """Add the options of a picture and of a table in a file; ``picture`` is the help of the picture."""
     parser.add_argument("--plot", type=path, metavar="PNG", help=picture)
     parser.add_argument("--csv", type=path, metavar="CSV", help="table in SI units, unrounded")
 
@@ -78,4 +78,4 @@ def write_files(
         draw(args.plot, rows)
     for file in (args.csv, args.plot):
         if file:
-            say(f"Written: {file}")
+            echo(f"Written: {file}")

@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from fingerpad.cli.arguments import Parser, path, positive, say, writable
+from fingerpad.cli.arguments import Parser, echo, path, positive, writable
 from fingerpad.scene.messages import SceneError, clip
 from variational.roughness.heightfile import UNITS, Found, is_plain, scan
 from variational.roughness.spectrum import Fit, power_spectrum, roughness_table
@@ -20,7 +20,9 @@ _EXAMPLES = """
 def main(argv: Sequence[str]) -> int:
     """Print the table of roughness that a height map gives; return the exit code."""
     parser = Parser(
-        "fingerpad topography", "Roughness of a scene from a height map: text, NumPy or an instrument's.", _EXAMPLES
+        "fingerpad topography",
+        "Compute the roughness of a scene from a height map: text, NumPy or an instrument's.",
+        _EXAMPLES,
     )
     parser.add_argument("file", type=path, metavar="FILE", help="matrix of heights, or points x y z")
     units = ", ".join(unit for unit in UNITS if unit.isascii())
@@ -42,10 +44,10 @@ def main(argv: Sequence[str]) -> int:
         fit = power_spectrum(flat, window="hann").fit()
     except ValueError as error:
         raise SceneError(f"{clip(str(args.file), 80)}: {error}") from None
-    say("\n".join(_said(args.file, found, table, fit)))
+    echo("\n".join(_report(args.file, found, table, fit)))
     if args.plot:
         draw(args.plot, args.file.name, found, fit)
-        say(f"# Written: {args.plot}")
+        echo(f"# Written: {args.plot}")
     return 0
 
 
@@ -68,7 +70,7 @@ def _scan(args: argparse.Namespace) -> Found:
         ) from None
 
 
-def _said(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iterator[str]:
+def _report(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iterator[str]:
     """Yield the table of a scene, and as comments what was found."""
     m, um = found.map, 1e6
     heights = distribution(m.detrended("curvature"))
@@ -87,7 +89,7 @@ def _said(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iterat
     if fit.resolved:
         yield f"# roll-off at {fit.wavelength * um:.3g} µm: the largest wavelength"
     else:
-        yield "# no roll-off is seen: the largest wavelength is not known, and the map's shorter side stands for it"
+        yield "# no roll-off within the map: the shorter side of the map stands for the largest wavelength"
     yield ""
     yield "[roughness]"
     for key, value in table.items():

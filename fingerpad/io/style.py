@@ -4,11 +4,10 @@ Categories have Okabe and Ito's colours, magnitudes viridis, voltages a ramp of 
 """
 
 from collections.abc import Iterator
-from contextlib import chdir, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
 
-with chdir("/"):  # a matplotlibrc of the current folder is not obeyed, see fingerpad.startup
-    import matplotlib
+import matplotlib
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator

@@ -17,7 +17,7 @@ def refuse_contradictions(scene: "Scene") -> None:
     """Refuse the first contradiction between keys.
 
     Raises:
-        ValueError: the keys, their values and the remedy, in one sentence.
+        ValueError: the keys, their values and the remedy.
     """
     _refuse_accuracy(scene)
     _refuse_endless_gap(scene)

@@ -39,7 +39,7 @@ class Laws:
     Laws are equal where their :meth:`parameters` are.
 
     Raises:
-        SceneError: what is no law, or a layer that there is not; in one sentence.
+        SceneError: an object that is no law, or a layer that does not exist.
     """
 
     closure: Closure | None = None
@@ -190,16 +190,16 @@ def used(scene: "Scene") -> dict[str, str]:
         if mine is not None:
             found[layer] = _words(mine)
         elif layer.startswith("nail"):
-            found[layer] = _sentence("SaintVenant", getattr(m, layer).model_dump())
+            found[layer] = _call("SaintVenant", getattr(m, layer).model_dump())
         else:
-            found[layer] = _sentence("Ogden", getattr(m, layer).model_dump() | {"convention": m.exponent})
+            found[layer] = _call("Ogden", getattr(m, layer).model_dump() | {"convention": m.exponent})
     contact = scene.contact
     numbers = contact.model_dump(exclude=contact.unread() | {"formulation", "length"})
-    found["contact"] = _sentence(_FORMULATIONS[contact.formulation], numbers)
+    found["contact"] = _call(_FORMULATIONS[contact.formulation], numbers)
     friction = scene.friction_law()
     found["friction"] = "none" if friction is None else _words(friction)
     charged = any(load.voltage for load in scene.loads())
-    found["attraction"] = _sentence("electrostatic", {"h_0": scene.h_0}) if charged else "none"
+    found["attraction"] = _call("electrostatic", {"h_0": scene.h_0}) if charged else "none"
     found["closure"] = _words(scene.closure()) if charged else "none"
     return found | ({} if laws.mesh is None else {"mesh": str(laws.mesh)})
 
@@ -207,12 +207,13 @@ def used(scene: "Scene") -> dict[str, str]:
 _FORMULATIONS = {"penalty": "Penalty", "nitsche": "Nitsche", "augmented": "AugmentedLagrangian"}
 
 
-def _sentence(name: str, numbers: Mapping[str, Any]) -> str:
+def _call(name: str, numbers: Mapping[str, Any]) -> str:
+    """Return a law as it would be made in Python: its name, and its numbers in brackets."""
     return f"{name}({', '.join(f'{key}={_shown(value)}' for key, value in numbers.items())})"
 
 
 def _words(law: Any) -> str:
-    return _sentence(type(law).__name__, _numbers(law))
+    return _call(type(law).__name__, _numbers(law))
 
 
 def _shown(value: Any) -> str:

@@ -1,7 +1,7 @@
-"""What is wrong with a scene, in one sentence: the dotted key, the value given, and what is allowed.
+"""Messages about an impossible scene: the dotted key, the value given, and what is allowed.
 
-No sentence is longer than :data:`MOST` characters, whatever a user wrote: texts of the user's own are shortened where
-they are quoted, and their control characters are written out.
+A message has one sentence and at most :data:`MOST` characters, whatever a user wrote. Texts of the user are shortened
+where they are quoted, and their control characters are written out.
 """
 
 import re
@@ -13,7 +13,7 @@ from pydantic import BaseModel, ValidationError
 
 from geometry.bounds import OUT_OF_RANGE
 
-MOST = 280  # characters of a sentence; with the name of the program before it less than 300
+MOST = 280  # characters of a message; with the name of the program before it less than 300
 _MOST_VALUE = 60  # of a value that is quoted
 _MOST_KEY = 40  # of a key
 _MOST_LIST = 150  # of a list of keys
@@ -39,7 +39,7 @@ _BOUNDS = {
 
 
 class SceneError(ValueError):
-    """A scene that cannot be run; one sentence that names the key, its value and what is allowed."""
+    """A scene that cannot be run; the message names the key, its value and what is allowed."""
 
     def __init__(self, message: str) -> None:
         super().__init__(clip(message, MOST))
@@ -75,7 +75,7 @@ def key_of(parts: Iterable[int | str]) -> str:
 
 # -- errors --------------------------------------------------------------------------------------------
 def first_error(error: ValidationError, root: type[BaseModel]) -> str:
-    """Return the first error of a validation of ``root`` as one sentence."""
+    """Return the first error of a validation of ``root`` as a message."""
     first = error.errors(include_url=False)[0]
     kind, context, given, loc = first["type"], first.get("ctx", {}), show(first["input"]), first["loc"]
     key = key_of(loc)
@@ -152,7 +152,7 @@ def _keys(model: type[BaseModel], table: str = "") -> Iterator[tuple[str, str]]:
 
 
 def qualify(message: str, prefix: str, names: Iterable[str]) -> str:
-    """Put the table's name before the keys a message speaks of, but not inside quotations."""
+    """Put the table's name before the keys that a message names, but not inside quotations."""
     parts = re.split(r"""((?<!\w)(?:'[^']*'|"[^"]*"))""", message)
     for k in range(0, len(parts), 2):
         for name in names:

@@ -17,7 +17,7 @@ _MOST_BYTES = 1_000_000  # of a file; the longest scene that comes along has 100
 _MOST_DEPTH = 8  # of tables in lists in tables; a scene has 3
 _DEPTH = f"a scene has at most {_MOST_DEPTH} inside one another"
 _MOST_BITS = 1000  # of a whole number; floating point has 1024
-_PATH = 80  # characters of a path in a sentence
+_PATH = 80  # characters of a path in a message
 _NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
 _KEY = re.compile(rf"{_NAME}(\.{_NAME})*")
 

@@ -1,4 +1,4 @@
-"""Scenes: everything a run needs, from Python, TOML or the command line, and refused in one sentence if impossible.
+"""Scenes: everything a run needs, from Python, TOML or the command line, and refused with a message if impossible.
 
 A number is in SI units, or a text with its unit (:mod:`geometry.units`).
 """

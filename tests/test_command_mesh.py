@@ -1,0 +1,69 @@
+"""The commands check and mesh: loads, laws and cost of a run, and its mesh."""
+
+import numpy as np
+import pytest
+
+from fingerpad.cli import cost, main
+from fingerpad.model.options import plan
+from fingerpad.scene import Scene, from_data
+from tests.commands import COARSE, kept, refused
+
+
+def test_check(tmp_path, capsys):
+    """Loads in order, what is left out with its reason, and a picture."""
+    argv = ["check", "--set", "voltage=0", "--out", str(tmp_path)]
+    assert main([*argv, *(word for text in COARSE for word in ("--set", text))]) == 0
+    text = capsys.readouterr().out
+    assert text.index("1. press: force to 75 N/m") < text.index("3. slide: bone sideways to 5 mm, or until full slip")
+    assert "attraction and the air gaps of the ridges: no load has a voltage" in text
+    assert "friction: Coulomb(mu_f=0.25)" in text and "closure: none" in text
+    assert (tmp_path / "mesh.png").stat().st_size > 10_000
+
+
+def test_rule_of_the_cost_is_that_of_kept_runs():
+    """Shares, factors and time are the default run's of docs/chart.json; factorisations fit docs/models.json."""
+    points = {point["label"]: point for point in kept("chart.json")["points"]}
+    work = points["default"]["work"]
+    slip, charged, pressed = work["slip"], work["normal"], work["uncharged"]
+    shares = {"force": pressed / slip, "voltage": (charged - pressed) / slip, "slide": (slip - charged) / slip}
+    assert cost.SHARES == pytest.approx(shares, abs=0.01)
+    at_10_um = points["10 µm"]["work"]["slip"]
+    for name, label in (("nitsche", "Nitsche, γ_0 = 1"), ("augmented", "augmented Lagrangian")):
+        assert cost.FORMULATIONS[name] == pytest.approx(points[label]["work"]["slip"] / at_10_um, rel=0.01)
+    own = ("contact size", "growth", "all sizes", "element", "formulation", "solver", "steps")
+    took = [p["seconds"]["slip"] / p["work"]["slip"] for p in points.values() if p["family"] in own and p["seconds"]]
+    assert cost.SECONDS == pytest.approx(np.median(took), rel=0.02)
+    for name, found in kept("models.json")["scenes"].items():
+        f_ext, voltage = (float(part.split()[0]) for part in name.split(","))
+        scene = from_data({"f_ext": f_ext, "voltage": voltage})
+        ratio = cost.expected(scene, plan(scene)).factorisations / found["full"]["cost"]["factorisations"]
+        assert 0.5 < ratio < 2, name
+
+
+def test_cost_of_a_press_is_a_part():
+    scene = from_data({"history": [{"name": "press", "f_ext": 75.0}]})
+    assert cost.expected(scene, plan(scene)).factorisations == pytest.approx(0.26 * 160)
+
+
+def test_mesh_is_read_again_with_its_names(tmp_path, capsys):
+    """Lengths in m, groups by name; a facet of 30 um takes 1 um off the tip of a ridge, of a radius of 0.12 mm."""
+    import gmsh
+
+    file = tmp_path / "finger.msh"
+    assert main(["mesh", "--out", str(file), *(word for text in COARSE for word in ("--set", text))]) == 0
+    assert "ridges that can touch" in capsys.readouterr().out
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.open(str(file))
+        groups = {gmsh.model.getPhysicalName(*group) for group in gmsh.model.getPhysicalGroups()}
+        y = gmsh.model.mesh.getNodes()[1].reshape(-1, 3)[:, 1]
+    finally:
+        gmsh.finalize()
+    assert {"stratum corneum", "dermis", "bone rim", "outer skin", "ridge 0", "ridge -1"} <= groups
+    assert y.min() == pytest.approx(0, abs=2e-6)
+    assert y.max() == pytest.approx(Scene().geometry.height, rel=1e-3)  # chords of an ellipse
+
+
+def test_mesh_refuses_another_name(capsys):
+    assert "does not end with .msh" in refused(capsys, "mesh", "--out", "finger.stl")

@@ -1,0 +1,169 @@
+"""Commands that print tables: closed form, microscale, keys, studies and models side by side."""
+
+import csv
+
+import pytest
+
+from fingerpad.cli import estimate, keys, main, microscale, sweep
+from fingerpad.reduced import cylinders
+from fingerpad.scene import Scene, from_data, load
+from tests.commands import kept, refused
+from variational.roughness.bam import BearingArea
+
+
+# -- estimate ----------------------------------------------------------------------------------------------
+def test_known_error_is_that_of_the_kept_runs():
+    """The figures printed are the largest differences of closed form and full runs in docs/models.json, rounded up."""
+    runs = kept("models.json")["scenes"]
+    assert len(runs) == estimate.KNOWN_RUNS
+    points = [tuple(float(part.split()[0]) for part in name.split(",")) for name in runs]
+    assert estimate.KNOWN_FORCES == (min(f for f, _ in points), max(f for f, _ in points))
+    assert estimate.KNOWN_VOLTAGES == (min(u for _, u in points), max(u for _, u in points))
+    for key, known in estimate.KNOWN_ERROR.items():
+        ratios = [
+            found["cylinders"]["summary"][f"slip_{key}"] / found["full"]["summary"][f"slip_{key}"]
+            for found in runs.values()
+        ]
+        worst = max(abs(ratio - 1) for ratio in ratios)
+        assert worst <= known < worst + 1e-4
+
+
+def test_estimate_is_the_closed_form(tmp_path, capsys):
+    file = tmp_path / "mu.csv"
+    assert main(["estimate", "--f-ext", "50,75", "--voltage", "0:100:2", "--csv", str(file)]) == 0
+    assert "Known error: mu_app within 2.4 %" in capsys.readouterr().out
+    with file.open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert [(float(r["f_ext"]), float(r["voltage"])) for r in rows] == [(50, 0), (50, 100), (75, 0), (75, 100)]
+    one = cylinders.solve(from_data({"f_ext": 75.0, "voltage": 100.0})).full_slip
+    assert float(rows[-1]["mu_app"]) == one.mu_app
+    assert float(rows[0]["mu_app"]) == pytest.approx(0.25, rel=1e-12)
+
+
+def test_estimate_says_where_its_error_is_not_known(capsys):
+    assert main(["estimate", "--f-ext", "75,500", "--set", "friction=0.3"]) == 0
+    text = capsys.readouterr().out
+    assert "1 of 2 points are outside of that" in text
+    assert "Those runs have the default friction" in text
+
+
+def test_estimate_refuses(capsys):
+    assert "f_ext is -5 N/m" in refused(capsys, "estimate", "--f-ext=-5,20")
+    assert refused(capsys, "estimate", "--set", "geometry.width=19e-3").startswith(
+        "geometry is not that of the default"
+    )
+    assert "its folder is not there" in refused(capsys, "estimate", "--csv", "nowhere/mu.csv")
+
+
+def test_estimate_draws_a_curve_for_each_force(tmp_path):
+    """The picture is there; the labels are those of the forces."""
+    rows, _ = estimate.grid(Scene(), [25.0, 75.0], [0.0, 100.0])
+    estimate.draw(tmp_path / "mu.png", rows)
+    assert (tmp_path / "mu.png").stat().st_size > 10_000
+
+
+# -- microscale --------------------------------------------------------------------------------------------
+def test_real_area_is_the_bearing_area():
+    """Half of the surface is above its mean, a sixth above one rms height (15.87 % of a Gaussian)."""
+    law = BearingArea(0.5e-6)
+    assert law.contact_area([0.0, law.h_rms]) == pytest.approx([0.5, 0.158655], rel=1e-5)
+
+
+def test_microscale_table_is_the_closure():
+    """External pressure is that of Eq. 9, attraction that across the equivalent air gap (Eq. 12), to roundoff."""
+    scene = Scene()
+    law = scene.roughness.bearing_area(scene.h_0)
+    for row in microscale.table(scene, [100.0, 200.0], [5e3, 5e4]):
+        assert row["p_ext"] == pytest.approx(float(law.external_pressure(row["u_bar"], row["voltage"])), rel=1e-9)
+        across = 8.854e-12 * row["voltage"] ** 2 / 2 / (scene.h_0 + row["d_eq"]) ** 2
+        assert row["p_el"] == pytest.approx(across, rel=1e-9)
+
+
+def test_microscale_refuses(capsys):
+    assert refused(capsys, "microscale", "--p", "0:1e5:3").startswith("--p has the value 0.0;")
+
+
+# -- params ------------------------------------------------------------------------------------------------
+def test_params_as_a_scene_is_the_default(tmp_path, capsys):
+    assert main(["params", "--toml"]) == 0
+    file = tmp_path / "scene.toml"
+    file.write_text(capsys.readouterr().out, encoding="utf-8")
+    assert load(file) == Scene()
+
+
+def test_every_key_is_listed():
+    """Those that a scene writes down are among them, with a meaning, a unit where it has one, and a range."""
+    found = {key.name: key for key in keys.every()}
+    named = {key for key in _flat(Scene().parameters())}
+    assert named <= set(found)
+    assert (found["roughness.h_rms"].unit, found["roughness.h_rms"].default) == ("m", 3.1e-6)
+    assert found["roughness.h_rms"].meaning.startswith("Root mean square height")
+    assert found["mesh.touching_half_arc"].allowed == "1e-06 to 0.2"
+    assert found["contact.formulation"].allowed == '"penalty", "nitsche", "augmented"'
+    assert found["geometry.ridge_count"].allowed == "whole, 1 to 101"
+    assert found["history[].name"].required
+
+
+def _flat(data: dict, table: str = "") -> list[str]:
+    return [k for n, v in data.items() for k in (_flat(v, f"{table}{n}.") if isinstance(v, dict) else [table + n])]
+
+
+def test_params_refuses_a_filter_without_keys(capsys):
+    assert refused(capsys, "params", "zebra").startswith("no key of a scene has zebra in its name")
+
+
+# -- studies -----------------------------------------------------------------------------------------------
+def test_study_of_a_file_and_of_options(tmp_path):
+    """Keys of a table may be dotted, ranges are written alike, and an option wins over the file."""
+    file = tmp_path / "study.toml"
+    file.write_text('friction = 0.3\n[sweep]\nvoltage = "0:200:3"\nf_ext = [25, 75]\nroughness.h_rms = [2e-6, 3e-6]\n')
+    base, axes = sweep.study(file, ["slide_length=1e-3"], ["voltage=50"])
+    assert base == {"friction": 0.3, "slide_length": 1e-3}
+    assert axes == {"voltage": [50.0], "f_ext": [25, 75], "roughness.h_rms": [2e-6, 3e-6]}
+
+
+def test_sweep_prints_and_keeps_a_table(tmp_path, capsys):
+    """A range with a unit; values come out in SI."""
+    argv = ["sweep", "--over", "voltage=0:0.2:2 kV", "--model", "cylinders", "--out", str(tmp_path)]
+    assert main(argv) == 0
+    assert "apparent" not in capsys.readouterr().err
+    with (tmp_path / "table.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert [float(row["voltage"]) for row in rows] == [0.0, 200.0]
+    assert float(rows[0]["slip_mu_app"]) == pytest.approx(0.25, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("argv", "message"),
+    [
+        ([], "nothing is varied; give a table [sweep]"),
+        (["--over", "voltage"], "--over voltage is no KEY=RANGE"),
+        (["--over", "voltage=0:1"], "--over voltage is 0:1; write one value"),
+        (["--over", "voltage=0,-5"], "voltage is -5 V; it must be"),
+        (["--over", "volts=0,5"], "volts is not a key of a scene; did you mean voltage?"),
+        (["--over", "voltage=0,5", "--set", "voltage=5"], "--set voltage is given and voltage is varied"),
+        (["--over", "voltage=0:200:200", "--over", "f_ext=1:200:200"], "the sweep has 40000 points"),
+    ],
+)
+def test_sweep_refuses(argv, message, capsys, tmp_path):
+    assert refused(capsys, "sweep", *argv, "--out", str(tmp_path / "new")).startswith(message)
+    assert not list(tmp_path.iterdir())
+
+
+# -- models side by side -----------------------------------------------------------------------------------
+def test_compare_prints_keys_and_notes(capsys):
+    assert main(["compare", "--model", "cylinders", "--set", "f_ext=50", "--set", "voltage=0"]) == 0
+    printed = capsys.readouterr().out
+    assert "0.25" in next(line for line in printed.splitlines() if "full slip: apparent friction" in line)
+    assert "uncharged contact length interpolated" in printed
+
+
+@pytest.mark.parametrize(
+    ("argv", "message"),
+    [
+        (["--ridges", "3"], "one of --contact-length and --ridges is given without the other"),
+        (["--model", "smooth", "--ridges", "3"], "--ridges is given without the model cylinders"),
+    ],
+)
+def test_compare_refuses(argv, message, capsys):
+    assert refused(capsys, "compare", *argv).startswith(message)

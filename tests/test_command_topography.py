@@ -1,0 +1,102 @@
+"""Roughness from a measured height map, by the command and in a scene."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fingerpad.cli import main
+from fingerpad.scene import from_data, load
+from fingerpad.scene.messages import SceneError
+from tests.commands import refused
+from variational.roughness.selfaffine import SelfAffine
+
+
+def heights(folder: Path) -> np.ndarray:
+    found = SelfAffine().surface((64, 64), (400e-6, 400e-6), 3).heights * 1e6
+    found[np.random.default_rng(1).random(found.shape) < 0.03] = np.nan
+    return found
+
+
+def table_of(text: str) -> dict[str, float]:
+    lines = text.partition("[roughness]\n")[2].splitlines()
+    return {line.split(" = ")[0]: float(line.split(" = ")[1]) for line in lines if " = " in line}
+
+
+def test_topography_whatever_the_layout(tmp_path, capsys):
+    """Semicolons and decimal commas with empty places, and points x, y, z without them: the same table."""
+    h = heights(tmp_path)
+    comma = "\n".join(";".join("" if np.isnan(v) else f"{v:.6f}".replace(".", ",") for v in row) for row in h)
+    (tmp_path / "map.csv").write_text("height in um\n" + comma)
+    x, y = np.meshgrid(*(np.arange(64) * 6.25,) * 2, indexing="ij")
+    points = np.stack([x, y, h], axis=-1).reshape(-1, 3)
+    np.savetxt(tmp_path / "map.xyz", points[np.isfinite(points[:, 2])], fmt="%.6f")
+    found = []
+    for words in (
+        ["map.csv", "--pixel", "6.25", "6.25"],
+        ["map.csv", "--size", "0.4", "0.4", "--size-unit", "mm"],
+        ["map.xyz"],
+    ):
+        assert main(["topography", str(tmp_path / words[0]), "--unit", "um", *words[1:]]) == 0
+        text = capsys.readouterr().out
+        assert "pixels missing" in text and "Hurst exponent" in text
+        found.append(table_of(text))
+    assert found[0] == found[1] == found[2]
+    assert (
+        load(None, {f"roughness.{key}": value for key, value in found[0].items()}).roughness.h_rms == found[0]["h_rms"]
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "message"),
+    [
+        ("1 2 3 4\n" * 4, ["--size", "1", "1"], "holds numbers without a unit; give --unit"),
+        ("1 2 3 4\n" * 4, ["--unit", "um"], "holds heights alone; give --size or --pixel too"),
+        ("1 2 3 4\n1 2 3\n", ["--unit", "um", "--size", "1", "1"], "line 2 has 3 of them, the first one 4"),
+        ("1 2 3 4\n1 2 x 4\n", ["--unit", "um", "--size", "1", "1"], "line 2 has 'x'; a mark of missing pixels"),
+        ("1 2 nan nan\n" * 4, ["--unit", "um", "--size", "1", "1"], "8 of 16 heights are missing or infinite"),
+        ("no numbers\n", ["--unit", "um", "--size", "1", "1"], "no line starts with one"),
+    ],
+)
+def test_topography_refuses(text, options, message, tmp_path, capsys):
+    (tmp_path / "map.txt").write_text(text)
+    assert message in refused(capsys, "topography", str(tmp_path / "map.txt"), *options)
+
+
+def test_scene_may_name_a_height_map(tmp_path, capsys):
+    """Beside the scene file; h_rms and wavelength are those that the command prints, to its four digits."""
+    h = SelfAffine().surface((64, 64), (400e-6, 400e-6), 3).heights
+    np.savetxt(tmp_path / "skin.csv", h * 1e6, delimiter=";")
+    (tmp_path / "scene.toml").write_text(
+        '[roughness.topography]\nfile = "skin.csv"\nunit = "um"\nsize = [0.4, 0.4]\nsize_unit = "mm"\n'
+    )
+    scene = load(tmp_path / "scene.toml")
+    size = ("--size", "400", "400")
+    assert main(["topography", str(tmp_path / "skin.csv"), "--unit", "um", *size]) == 0
+    table = table_of(capsys.readouterr().out)
+    assert (scene.roughness.h_rms, scene.roughness.wavelength) == pytest.approx(
+        (table["h_rms"], table["wavelength"]), rel=1e-3
+    )
+    again = from_data(scene.parameters())
+    assert again == scene and scene.replace(voltage=100.0).roughness == scene.roughness
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ({"file": "none.csv", "unit": "um"}, "roughness.topography.file is 'none.csv': No such file"),
+        ({"file": "none.csv"}, "roughness.topography.unit is missing"),
+        ({"file": "none.csv", "unit": "inch"}, "roughness.topography.unit is 'inch'; it must be 'm'"),
+        ({"fil": "none.csv"}, "roughness.topography.file is missing"),
+        ("skin.csv", "roughness.topography is 'skin.csv'; it must be a table of keys"),
+    ],
+)
+def test_bad_height_map_of_a_scene(table, message):
+    with pytest.raises(SceneError) as refusal:
+        from_data({"roughness": {"topography": table}})
+    assert str(refusal.value).startswith(message)
+
+
+def test_height_map_and_its_numbers_are_refused():
+    with pytest.raises(SceneError, match="roughness.h_rms is 3e-06 and roughness.topography is given too"):
+        from_data({"roughness": {"h_rms": 3e-6, "topography": {"file": "skin.csv", "unit": "um"}}})

@@ -1,0 +1,42 @@
+"""Whether a person watches the output, or a file takes it."""
+
+import pytest
+
+from fingerpad.io import terminal
+
+
+class Screen:
+    def __init__(self, terminal: bool) -> None:
+        self.terminal = terminal
+
+    def isatty(self) -> bool:
+        return self.terminal
+
+
+@pytest.fixture
+def bare(monkeypatch):
+    for name in (*terminal._RANKS, "NO_COLOR"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    return monkeypatch
+
+
+def test_a_person_watches_a_terminal(bare):
+    assert terminal.watched(Screen(True))
+    assert not terminal.watched(Screen(False))
+
+
+@pytest.mark.parametrize(("name", "value"), [("NO_COLOR", "1"), ("TERM", "dumb"), ("PMIX_RANK", "1")])
+def test_nobody_watches(bare, name, value):
+    """Nor the ranks beside rank 0, whose output goes to the same terminal."""
+    bare.setattr("os.readlink", lambda path: "/dev/pts/3")
+    bare.setenv(name, value)
+    assert not terminal.watched(Screen(True))
+
+
+@pytest.mark.parametrize(("output", "watches"), [("/dev/pts/3", True), ("/tmp/log", False), ("pipe:[17]", False)])
+def test_the_launchers_output_counts(bare, output, watches):
+    """mpirun prints through a terminal of its own whatever its output goes to."""
+    bare.setenv("OMPI_COMM_WORLD_RANK", "0")
+    bare.setattr("os.readlink", lambda path: output)
+    assert terminal.watched(Screen(True)) == watches
