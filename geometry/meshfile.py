@@ -8,7 +8,7 @@ of facets are
 - *bone rim*: glued to the rigid bone. It must be there.
 - *ridge 0*, *ridge 1*, *ridge -1*, ...: skin that can touch, by ridges, numbered from the centre to x > 0. At least one
   must be there; a body without ridges has *ridge 0*. Air gaps and pressures are those of ridges.
-- *outer skin*: skin that is not expected to touch. A run of a whole finger watches it.
+- *outer skin*: skin that is not expected to touch. A run of a whole finger checks that it stays clear of the screen.
 - *nail surface*, *sides*: free surfaces, of which nothing depends.
 
 The rest of the outline is free. ``docs/mesh.md`` has an example.

@@ -66,7 +66,14 @@ class Writer:
             replace_json(self._place.folder / "summary.json", found)
 
     def restart(self) -> None:
-        """Close tables and fields, to be started anew; collective."""
+        """Delete tables and close fields, to be started anew; collective."""
+        written = list(self._tables)
+        self._close_tables()
+        if self._place is not None:
+            for name in written:
+                (self._place.folder / f"{name}.csv").unlink()
+
+    def _close_tables(self) -> None:
         if self._fields is not None:
             self._fields.close()
             self._fields = None
@@ -81,7 +88,7 @@ class Writer:
             whole: all ranks do so; else fields stay as they are, since closing them waits for all ranks.
         """
         if whole:
-            self.restart()
+            self._close_tables()
         elif self._fields is not None:
             self._fields.abandon()
         for handler in self.log.handlers:

@@ -1,1 +1,1 @@
-"""The full model of a scene: its options, the path of its loads, and what is watched on the way."""
+"""The full model of a scene: its options, the path of its loads, and the checks on the way."""

@@ -43,7 +43,7 @@ class ModelOptions:
     omitted: tuple[Omission, ...]
 
     def with_both_halves(self) -> "ModelOptions":
-        """Return the plan for the whole finger."""
+        """Return the options for the whole finger."""
         return replace(self, both_halves=True, omitted=tuple(o for o in self.omitted if o != _HALF))
 
 

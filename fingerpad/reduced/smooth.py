@@ -52,6 +52,7 @@ of first order, the first term of a series in the size of the facets, leaves out
 _PRESSED = 0.01
 """Force that a table's last ridge in contact may bear, over the largest in it. A ridge lets go when it is pulled or,
 without attraction, when nothing presses it."""
+_HALF_ARC = 5e-3  # m, of the skin that can touch
 _JUDGED = "mu_app", "contact_length", "f_electrostatic"
 
 
@@ -68,11 +69,13 @@ def smoothed(finger: Fingertip) -> Fingertip:
 
 
 def sizes(scene: Scene) -> MeshSize:
-    """Return element sizes of a quarter of a ridge where the skin can touch."""
-    quarter = scene.geometry.ridge_wavelength / 4
+    """Return element sizes of a quarter of a ridge where the skin can touch, :data:`_HALF_ARC` at least by itself."""
+    quarter, half_arc = scene.geometry.ridge_wavelength / 4, scene.mesh.touching_half_arc
+    if half_arc is None:  # wider than the rule of thumb: no restart adds ridges here
+        half_arc = max(_HALF_ARC, by_rule(scene).mesh.touching_half_arc or 0.0)
     return MeshSize(
         contact=quarter, receptor=quarter, interface=quarter, coarsest=_COARSEST, growth=_GROWTH,
-        touching_half_arc=by_rule(scene).mesh.touching_half_arc, touching_fraction=1.0,
+        touching_half_arc=half_arc, touching_fraction=1.0,
     )  # fmt: skip
 
 

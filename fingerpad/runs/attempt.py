@@ -76,17 +76,28 @@ class Attempt:
             restart = self.simulation.run()
             reached = True
             if restart is not None or self._recorder is None:
-                return restart
+                return self._affordable(restart)
             pause = partial(self._interrupt.stop_if_asked, self.simulation.finger.continuation.steps)
             path, show = self._recorder.solve(), self._console.show
             self._refinement = Refinement(self._scene, self._options, path, self._comm, show, pause)
-            return self._refinement.run()
+            return self._affordable(self._refinement.run())
         except StepFailed as error:
             tip = hint(error) if self._scene.laws.mesh is None else ""
             self._ended["failure"] = "; ".join(filter(None, (str(error), tip)))
             if isinstance(error, Interrupted):
                 self._ended["interrupted"] = error.signal.name
             return None if reached else _finer(self._scene, self._options, error)
+
+    def _affordable(self, restart: RestartRequired | None) -> RestartRequired | None:
+        """Return a restart within the memory allowed; None, with a failure, for another one."""
+        if restart is None:
+            return None
+        try:
+            refuse_beyond(restart.scene, restart.options)
+        except GeometryError as error:
+            self._ended["failure"] = f"{restart.reason}; all loads again would need more memory: {error}"
+            return None
+        return restart
 
     def result(self, scene: Scene, restarts: Restarts) -> Result:
         """Return the result, and write it and the pictures; collective.

@@ -37,9 +37,8 @@ class Restarts:
         states, finger, mesh = attempt.report.record.states, attempt.simulation.finger, restart.scene.mesh
         step, load = (states[-1].step, states[-1].load) if states else (0, "start")
         whole, seconds = restart.options.both_halves, clock.processor_seconds()
-        added = (
-            f"mesh.touching_half_arc {mesh.touching_half_arc:g} m{' and both halves of the finger' if whole else ''}"
-        )
+        halves = " and both halves of the finger" if whole and not finger.options.both_halves else ""
+        added = f"mesh.touching_half_arc {mesh.touching_half_arc:g} m{halves}"
         if mesh.contact < finger.scene.mesh.contact:
             added = f"mesh.contact {mesh.contact:g} m"
             size = finger.scene.mesh.contact * 1e6

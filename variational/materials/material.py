@@ -21,6 +21,7 @@ Its numbers become fields of the compiled form with one value a layer: layers of
 numbers do not compile it again.
 """
 
+from dataclasses import fields, is_dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -156,12 +157,12 @@ def _unloaded(solid: Material) -> list[float]:
 
 
 def _hashable(solid: Material) -> bool:
-    """Return whether a law can be recognised: one of a user may carry an array beside its numbers."""
+    """Return whether a law can be recognised: one of a user may carry an array, or fields that equality leaves out."""
     try:
         hash(solid)
     except TypeError:
         return False
-    return True
+    return is_dataclass(solid) and all(field.compare for field in fields(solid))
 
 
 def _in_space(F, stretch):

@@ -98,7 +98,7 @@ class Solver:
     def _set_pressure(self) -> None:
         """Solve the second equation, which is linear in the pressure, at the present displacement.
 
-        Where elements are inside out there is no such pressure, and the last one stays.
+        Where elements are inside out or the factorisation fails, the last pressure stays.
         """
         A, f, step = self.layout.create_matrix(), self.layout.create_vector(), self.layout.create_vector()
         self.equations.residual(self.x, f)
@@ -113,7 +113,10 @@ class Solver:
         ksp.getPC().setType(PETSc.PC.Type.LU)
         ksp.getPC().setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
         ksp.solve(f, step)
-        self.x.axpy(-1.0, step)
+        if ksp.getConvergedReason() > 0:
+            self.x.axpy(-1.0, step)
+        ksp.destroy()
+        A.destroy()
 
     def new_load(self, control: Control, voltage: float, slipping: bool = False, on_cone: bool = True) -> None:
         """Prescribe a load; the next solve starts from the tangent of the present state, not from a kept one.
