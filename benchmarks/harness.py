@@ -18,6 +18,7 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fingerpad.cli.arguments import positive
@@ -254,3 +255,11 @@ def picture(path: Path, size: tuple[float, float], paint: Callable[[Figure], Non
         paint(figure)
         figure.savefig(path)
     return f"![{caption}]({path.name})\n\n*{caption}*"
+
+
+def ticks(ax: Axes, values: Sequence[float]) -> None:
+    """Label the given values alone on a horizontal logarithmic axis, and draw a grid."""
+    ax.set_xscale("log")
+    ax.set_xticks(values, [f"{value:g}" for value in values])
+    ax.minorticks_off()
+    ax.grid(alpha=0.3)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks import harness
-from benchmarks.traces import FORCES, SITES, VOLTAGES, trace
+from benchmarks.runs import FORCES, SITES, VOLTAGES, trace
 from fingerpad.io.states import PREFIXES, WORDS
 from fingerpad.model.touching import by_rule
 from fingerpad.reduced import cylinders
