@@ -108,17 +108,17 @@ def runs(out: Path, reference: Reference) -> Iterator[Point]:
     """Yield the points of runs that reached full slip."""
     for (family, label), scene in scenes().items():
         if run := finished(scene, out):
-            work = np.cumsum(run.steps["factorisations"]) * run.summary["unknowns"]
-            costs = ({s: float(c[run.row(s)]) for s in STATES} for c in (work, run.steps["processor_seconds"]))
-            yield Point(label, family, *costs, _errors(errors.values(run), reference))
+            spent = np.cumsum(run.steps["factorisations"]) * run.summary["unknowns"], run.steps["processor_seconds"]
+            work, seconds = ({s: float(each[run.row(s)]) for s in STATES} for each in spent)
+            yield Point(label, family, work, seconds, _errors(errors.values(run), reference))
 
 
 def without_path(docs: Path, reference: Reference) -> Iterator[Point]:
     """Yield the points of answers without a path, from the kept numbers of other studies."""
 
     def point(label: str, family: str, work: float, seconds: float, values: Mapping[str, Any]) -> Point:
-        costs = (dict.fromkeys(STATES, cost) for cost in (work, seconds))
-        return Point(label, family, *costs, _errors(values, reference))
+        costs = [dict.fromkeys(STATES, cost) for cost in (work, seconds)]
+        return Point(label, family, costs[0], costs[1], _errors(values, reference))
 
     for name, row in harness.kept("accuracy", docs).numbers["runs"].items():
         if name.startswith("default scene; ") and "values" in row:

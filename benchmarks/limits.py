@@ -75,8 +75,9 @@ def limit(values: Sequence[float]) -> Limit:
     """
     if len(values) < 3:
         raise ValueError(f"{len(values)} values were given; an order needs three")
-    before, last = np.diff(np.asarray(values, dtype=float)[-3:]).tolist()
-    ratio, finest = before / last if last else 0.0, float(values[-1])
+    first, middle, finest = (float(value) for value in values[-3:])
+    before, last = middle - first, finest - middle
+    ratio = before / last if last else 0.0
     if ratio < 2**_LOWEST:
         return Limit(finest, _UNSAFE * (abs(last) if ratio < -1 else max(abs(before), abs(last))), None)
     factor, order = min(ratio, 2**_HIGHEST), float(np.log2(ratio))
