@@ -257,9 +257,10 @@ def picture(path: Path, size: tuple[float, float], paint: Callable[[Figure], Non
     return f"![{caption}]({path.name})\n\n*{caption}*"
 
 
-def ticks(ax: Axes, values: Sequence[float]) -> None:
-    """Label the given values alone on a horizontal logarithmic axis, and draw a grid."""
+def ticks(ax: Axes, values: Sequence[float], grid: bool = True) -> None:
+    """Label the given values alone on a horizontal logarithmic axis."""
     ax.set_xscale("log")
     ax.set_xticks(values, [f"{value:g}" for value in values])
     ax.minorticks_off()
-    ax.grid(alpha=0.3)
+    if grid:
+        ax.grid(alpha=0.3)
