@@ -169,28 +169,6 @@ def compute(args: Any) -> None:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-_FINDING = """The printed error of a run is at least the known error in {safe} of {n} cases ({of_safe:.0f} %). Without \
-its factors of safety the estimate covers {bare} ({of_bare:.0f} %).
-
-A requested accuracy was met in the scenes drawn at random: {verdicts}."""
-_HOW = f"""The *error* is the distance from the limit of the scene's states, solved again on meshes down to a contact
-size of 1.25 µm (`benchmarks/limits.py`). Runs and limits have the same penalty, so that its effect is no part of the
-error. The *estimate* is the run's own, from other meshes (`fingerpad/richardson.py`). The *printed error* is the
-estimate times a factor of safety: {ONCE:g} for a size that was halved or doubled once, {MORE:g} for a size halved more
-often. A case is *covered* if the printed error is at least the error. Where a run has both sorts of sizes, the smaller
-factor is taken here, so that the run prints more. Cases whose error is smaller than its uncertainty are left out. A
-scene gives several cases, so that they are not independent. *Effectivity* is estimate over error; values in brackets
-are not significant: the error is smaller than its uncertainty. All numbers are per cent of the limit.
-
-Ten scenes were drawn at random (one seed): force, voltage and friction from their ranges, lengths, materials and
-roughness within a quarter of the default finger's. Each was run with two requests. *Likely* means that the error is
-within the request, but not by its uncertainty; such cases count as met. Cost is factorisations × unknowns of all
-solves, over those of the default scene's whole run. The kept runs are of several versions, in which the estimate alone
-had to meet a request. The program now requires the printed error to meet it, and so may refine further."""
-_ONE = "The default scene with one size changed."
-_HERTZ = """The contact length of a cylinder is known but for 0.04 %. Its two edges move facet by facet, so that the
-change from one mesh to the next says little of the error of one contact. A finger has some thirty edges, whose errors
-partly cancel."""
 
 
 def _verdicts(runs: Mapping[str, Mapping[str, Any]], cases: Sequence[Case]) -> list[str]:
@@ -217,10 +195,11 @@ def _chosen(runs: Mapping[str, Mapping[str, Any]]) -> str:
 
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
-    found, cases = harness.kept("accuracy", docs), kept(docs)
+    found, cases, text = harness.kept("accuracy", docs), kept(docs), harness.prose("accuracy")
     n, bare, safe = coverage(cases)
-    of_bare, of_safe, verdicts = 100 * bare / n, 100 * safe / n, "; ".join(_verdicts(found.numbers["runs"], cases))
-    finding = _FINDING.format(n=n, bare=bare, safe=safe, of_bare=of_bare, of_safe=of_safe, verdicts=verdicts)
+    of_bare, of_safe = 100 * bare / n, 100 * safe / n
+    verdicts, how = "; ".join(_verdicts(found.numbers["runs"], cases)), text["how"].format(once=ONCE, more=MORE)
+    finding = text["finding"].format(n=n, bare=bare, safe=safe, of_bare=of_bare, of_safe=of_safe, verdicts=verdicts)
 
     def part(heading: str, words: str, name: str, sources: Sequence[str]) -> str:
         mine = [case for source in sources for case in cases if case.source == source]
@@ -231,12 +210,12 @@ def draw(docs: Path) -> Path:
         f"## Coverage\n\n{coverages(cases)}",
         part("Whole runs", "", "whole runs", [WHOLE]),
         harness.folded("Chosen meshes and their cost", _chosen(found.numbers["runs"])),
-        part("One mesh parameter at a time", _ONE, "one mesh parameter", list(_PARAMETERS)),
-        part("Hertz's contact", _HERTZ, "Hertz's contact", [HERTZ]),
+        part("One mesh parameter at a time", text["one"], "one mesh parameter", list(_PARAMETERS)),
+        part("Hertz's contact", text["hertz"], "Hertz's contact", [HERTZ]),
     ]
     path, command, names = docs / "accuracy.md", "python3 -m benchmarks.accuracy", ["accuracy", "errors"]
     title = "Accuracy of the error estimate"
-    return harness.page(path, title, finding, _HOW, body, command, found.made, names)
+    return harness.page(path, title, finding, how, body, command, found.made, names)
 
 
 if __name__ == "__main__":

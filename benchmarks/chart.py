@@ -196,30 +196,6 @@ def cheapest(some: Sequence[Point], quantity: str, measure: str, own: float, tar
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-_FINDING = """The default settings give all quantities to {error:.2g} %. For {on} of {n} quantities no other run is \
-both cheaper and more accurate.
-
-Less accuracy costs less. The cheapest settings, with their work over the default's, are:
-
-- for all quantities within 5 %: {0},
-- for the friction within 1 %: {1},
-- for the friction within 0.2 %: {2}."""
-_LINEAR = """Linear elements (P1) are cheaper still, but wrong by {length:.0f} % in the contact length and by \
-{sed:.0f} % in the energy density."""
-_HOW = """Each run is the default scene (75 N/m, 200 V, slid to full slip) with one setting changed, around a contact
-size of 10 µm unless its name gives another one. The *error* is the relative distance from the limit of
-[errors.md](errors.md). *Work* is the number of factorisations up to the state of the quantity, times the number of
-unknowns. Processor time includes the set-up, on a machine shared with other runs. The *front* has the runs for which no
-other run is both cheaper and more accurate. It compares runs along the whole load path with the default's penalty.
-
-Another formulation or penalty is another model and is not judged: the longer contact over a softer screen hides the
-shorter one of a coarse mesh. Energy densities at the Merkel sites hardly depend on the contact size, so that runs with
-a coarser contact are cheaper than the default there."""
-_CAPTION = """The default scene (star) lies on the front of error over work or close to it. Grey: below the \
-uncertainty of the limit."""
-_WITHOUT = """These answers have one to three states and no path. A requested accuracy costs all of its solves. A state
-solved again costs its coarse path and the coarser meshes, too. Of the reduced models ([models.md](models.md)),
-`cylinders` takes the uncharged contact length from full runs."""
 _MARKS = {  # kind of setting: its families, colour, marker
     "mesh sizes": (("contact size", "growth", "size at the sites", "all sizes"), harness.BLUE, "o"),
     "element": (("element",), harness.PURPLE, "D"),
@@ -278,15 +254,15 @@ def _paint(figure: Figure, points: Sequence[Point], reference: Reference) -> Non
 
 
 def _finding(points: Sequence[Point]) -> str:
-    error, everything = 100 * (_default(points).error(ALL) or 0), [*QUANTITIES, ALL]
+    text, error, everything = harness.prose("chart"), 100 * (_default(points).error(ALL) or 0), [*QUANTITIES, ALL]
     on = sum(_default(points) in front(points, quantity) for quantity in everything)
     aims = ((ALL, 0.05), ("slip_f_t", 0.01), ("slip_f_t", 0.002))
     best = [cheapest(judged(points), q, "work", base(points, q), target) for q, target in aims]
-    parts = [_FINDING.format(*best, error=error, on=on, n=len(everything))]
+    parts = [text["finding"].format(*best, error=error, on=on, n=len(everything))]
     for p in points:
         if p.label == "P1":
             wrong = (100 * p.errors[name] for name in ("normal_contact_length", "slip_sed_0"))
-            parts.append(_LINEAR.format(**dict(zip(("length", "sed"), wrong, strict=True))))
+            parts.append(text["linear"].format(*wrong))
     return "\n\n".join(parts)
 
 
@@ -300,7 +276,7 @@ def _other_models(points: Sequence[Point]) -> str:
 
 def draw(docs: Path) -> Path:
     """Draw page and picture from the kept numbers."""
-    kept = harness.kept("chart", docs)
+    kept, text = harness.kept("chart", docs), harness.prose("chart")
     points = [Point(**each) for each in kept.numbers["points"]]
     reference = {name: Limit(**each) for name, each in kept.numbers["reference"].items()}
     reference[ALL] = Limit(1.0, max(end.relative for end in reference.values()), None)
@@ -314,10 +290,10 @@ def draw(docs: Path) -> Path:
         return f"{work}\n\n{harness.folded('The same by processor time', time)}"
 
     body = [
-        harness.picture(docs / "chart.png", (9, 7), lambda figure: _paint(figure, points, reference), _CAPTION),
+        harness.picture(docs / "chart.png", (9, 7), lambda figure: _paint(figure, points, reference), text["caption"]),
         "## Cheapest run for an error\n\nA number is the work over that of the default scene.",
         tables(judged(points)),
-        f"## Without the path\n\n{_WITHOUT}",
+        text["without"],
         tables(states),
         "## Other formulations and penalties\n\nDifferences from the limit over the default's penalty.",
         _other_models(points),
@@ -326,7 +302,7 @@ def draw(docs: Path) -> Path:
         *(f"Not reached: {words}" for words in lost_ones),
     ]
     path, names = docs / "chart.md", ["chart", "errors"]
-    return harness.page(path, "Error over work", _finding(points), _HOW, body, "make chart", kept.made, names)
+    return harness.page(path, "Error over work", _finding(points), text["how"], body, "make chart", kept.made, names)
 
 
 if __name__ == "__main__":

@@ -131,30 +131,6 @@ def stiffer(docs: Path = harness.DOCS) -> dict[str, tuple[float, float]]:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-_FINDING = """On its default mesh the default scene has a discretisation error of {0:.2g} % in the apparent friction, \
-of at most {1:.2g} % in the contact lengths and of at most {2:.2g} % in the energy densities at the Merkel sites.
-
-The limits are µ_app = {mu} at full slip and a contact length of {length} mm in charged normal contact. The penalty \
-acts beside the mesh: from 1500 to 5000 MPa/mm the contact lengths change by {least:.1f} to {most:.1f} % and the \
-friction by {friction:+.2f} %."""
-_HOW = """The default scene is pressed to 75 N/m, charged to 200 V and slid to full slip. Its states were solved again
-on four meshes. Each has half of all sizes of the one before: the contact size (table head), growth, the size at the
-Merkel sites and the size at the junctions. The limit is Richardson's extrapolation from the three finest meshes, ± the
-error bar after Roache (`benchmarks/limits.py`). An order above 2 counts as 2. Without an order the limit is the
-finest value with a larger bar. SED is the strain energy density at a Merkel site.
-
-The states start from a path on a coarse mesh. Full slip does not depend on the load path: on the default mesh, f_T
-solved again differs from f_T of the whole run by at most {apart:.0e} of itself. Normal contact depends on the path; the
-difference on the default mesh is part of the error bar. The limit is that of the model over its screen, whose penalty
-yields; the last table of this page shows the effect of the penalty."""
-_CAPTION = """Every error falls with the mesh size. Stars: the default mesh. Bars: error of the limit. \
-One size stands for all sizes, which are halved together."""
-_ONE = """Each table changes one size and keeps the others: contact size 10 µm, growth 0.25, 20 µm at the Merkel
-sites. The **one-parameter limit** is extrapolated in this size alone. It keeps the error of the other sizes and is not
-the limit of the model, which the first table gives."""
-_PENALTY = """A stiffer screen shortens the contact. The default is 1500 MPa/mm. A run prints the effect of a rigid
-screen by a law of order {order:g} (`fingerpad/accuracy/rigid_screen.py`). Through 500 and 1500 MPa/mm this law predicts
-the change at 5000 to a factor of {factor:.1f}."""
 
 
 def _cells(found: Sequence[float], unit: float) -> list[str]:
@@ -215,25 +191,25 @@ def _paint(figure: Figure, numbers: Mapping[str, Any], ends: Mapping[str, Limit]
 
 def draw(docs: Path) -> Path:
     """Draw page and picture from the kept numbers."""
-    kept, ends = harness.kept("errors", docs), known(docs)
+    kept, ends, text = harness.kept("errors", docs), known(docs), harness.prose("errors")
     numbers, whole, studies = kept.numbers, kept.numbers["default"], kept.numbers["studies"]
     errors = {name: abs(whole[name] / end.value - 1) for name, end in ends.items()}
     worst = [100 * max(errors[n] for n in errors if kind in n) for kind in ("mu_app", "contact_length", "sed_")]
     middle, stiff = (row["quantities"] for row in studies["penalty"][1:])
     friction, *rigid = (100 * (stiff[name] / middle[name] - 1) for name in ("slip_mu_app", *LENGTHS))
     mu, length = _end(ends["slip_mu_app"], 1)[0], _end(ends["normal_contact_length"], 1e-3)[0]
-    finding = _FINDING.format(*worst, mu=mu, length=length, least=min(rigid), most=max(rigid), friction=friction)
+    finding = text["finding"].format(*worst, mu=mu, length=length, least=min(rigid), most=max(rigid), friction=friction)
     factor = max(max(predicted / change, change / predicted) for predicted, change in stiffer(docs).values())
     again = numbers["again"]["own"]["values"]["slip_f_t"]
     body = [
-        harness.picture(docs / "errors.png", (9, 3.6), lambda figure: _paint(figure, numbers, ends), _CAPTION),
+        harness.picture(docs / "errors.png", (9, 3.6), lambda figure: _paint(figure, numbers, ends), text["caption"]),
         f"## Limits\n\n{_limits(numbers, ends)}",
-        f"## One-parameter limits\n\n{_ONE}",
+        text["one"],
         *(_study(name, studies[name]) for name in ("contact", "growth", "receptor")),
-        f"## Effect of the penalty\n\n{_PENALTY.format(order=ORDER, factor=factor)}",
+        text["penalty"].format(order=ORDER, factor=factor),
         _study("penalty", studies["penalty"]),
     ]
-    how = _HOW.format(apart=max(abs(again / whole["slip_f_t"] - 1), 1e-8))
+    how = text["how"].format(apart=max(abs(again / whole["slip_f_t"] - 1), 1e-8))
     title = "Discretisation error of the default scene"
     return harness.page(docs / "errors.md", title, finding, how, body, "make chart", kept.made, ["errors"])
 

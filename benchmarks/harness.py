@@ -11,10 +11,12 @@ A study has three steps:
 import argparse
 import json
 import math
+import re
 import subprocess
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import date
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -220,6 +222,14 @@ def page(
     parts = [f"# {title}", finding, "## How the numbers were found", how, *body, f"---\n\n{origin}"]
     replace(path, "\n\n".join(part.strip() for part in parts if part.strip()) + "\n")
     return path
+
+
+@cache
+def prose(name: str) -> dict[str, str]:
+    """Return the texts of a page by their headings in ``benchmarks/prose/NAME.md``, with places to fill in braces."""
+    text = (ROOT / "benchmarks" / "prose" / f"{name}.md").read_text(encoding="utf-8")
+    parts = re.split(r"^# (\w+)\n", text, flags=re.MULTILINE)
+    return {heading: words.strip() for heading, words in zip(parts[1::2], parts[2::2], strict=True)}
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:

@@ -97,24 +97,6 @@ def error(found: Mapping[str, Any], model: str, key: str) -> float | None:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-_FINDING = """For friction alone the reduced models suffice: the charged cylinders give µ_app within {cylinders} of \
-the full model at once, the smooth finger within {smooth} in seconds. Pressures, air gaps and receptors need the full \
-model, which reached full slip in {slips} of {n} scenes.
-
-{which}
-
-`fingerpad compare scene.toml --model cylinders smooth full` runs them side by side."""
-_HOW = """Forty scenes of the default finger were pressed to {forces} N/m, charged to {voltages} V and slid to full
-slip. Errors are relative to the full model at a contact size of 10 µm and 20 µm at the Merkel sites; the full model's
-own errors are in [errors.md](errors.md). Seconds are processor time; those of the kept full runs are wall time on a
-shared machine. The smooth finger's table of one ridge takes some seconds more, once for each voltage and friction
-coefficient.
-
-The charged cylinders take the uncharged contact length from the full runs at 0 V. Their errors at 0 V are zero by
-construction. They miss ridges that jump onto the screen with the voltage: two of thirteen at 25 N/m and 200 V. The
-smooth finger uses no full run. It counts ridges by their mean height, which misses some that barely touch."""
-_OLD = """{n} of the answers are by an older law of one ridge, whose forces fall over 0.5 µm of height when the \
-ridge lets go (2 µm now)."""
 _ANSWERS = "forces, friction and contact length"
 _WHICH = {  # model: finger it is for, its answers
     "cylinders": ("the default finger, or one whose uncharged contact length is known", _ANSWERS),
@@ -165,19 +147,21 @@ def _section(scenes: Mapping[str, Any], model: str) -> list[str]:
     versions = [more.get("table_version", 0) for more in answers]
     old = sum(version < max(versions) for version in versions)
     parts = [f"## Errors of the {MODELS[model]} (`{model}`), in per cent of the full model"]
-    parts += [f"No answer at {'; '.join(failed)}."] * bool(failed) + [_OLD.format(n=old)] * bool(old)
+    parts += [f"No answer at {'; '.join(failed)}."] * bool(failed) + [
+        harness.prose("models")["old"].format(n=old)
+    ] * bool(old)
     first, *others = ((words, _matrix(scenes, model, key)) for key, words in QUANTITIES.items())
     return [*parts, f"**{first[0]}**\n\n{first[1]}", *(harness.folded(words, matrix) for words, matrix in others)]
 
 
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
-    kept = harness.kept("models", docs)
+    kept, text = harness.kept("models", docs), harness.prose("models")
     scenes, ends = kept.numbers["scenes"], kept.numbers["extremes"]
     largest = {model: _largest(scenes, model, "slip_mu_app") for model in MODELS}
     full = [each["full"] for each in scenes.values() if "full" in each]
     slips = sum(bool(each.get("summary", {}).get("full_slip")) for each in full)
-    finding = _FINDING.format(**largest, slips=slips, n=len(full), which=_which(scenes))
+    finding = text["finding"].format(**largest, slips=slips, n=len(full), which=_which(scenes))
     forces, voltages = (", ".join(f"{value:g}" for value in each) for each in (FORCES, VOLTAGES))
     body = [part for model in MODELS for part in _section(scenes, model)]
     body += ["## Full runs", f"**{QUANTITIES['slip_mu_app']}**\n\n{_matrix(scenes, 'full', 'slip_mu_app')}"]
@@ -185,7 +169,7 @@ def draw(docs: Path) -> Path:
     body += ["At the ends of the range of use:", harness.table(["scene", "µ_app, full slip", "end"], rows)]
     path, how, command = (
         docs / "models.md",
-        _HOW.format(forces=forces, voltages=voltages),
+        text["how"].format(forces=forces, voltages=voltages),
         "python3 -m benchmarks.models",
     )
     return harness.page(path, "Which model when", finding, how, body, command, kept.made, ["models"])

@@ -96,12 +96,6 @@ def compute(args: Any) -> None:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-_HOW = """The default scene was run to full slip at 75 N/m and 200 V, with one thing changed at a time. The contact size
-is {contact:g} µm and the size at the Merkel sites {receptor:g} µm. The default gives µ_app {0:.4g}, a contact length of
-{1:.4g} mm in charged normal contact, a reduction of it by {2:.3g} % in full slip, and an energy density (SED) of
-{3:.4g} J/m³ in full slip. The reduction's change is in percentage points."""
-_FINE = """The rows on the depth of the sites have elements of 5 µm there and are compared with a run with the
-same elements, whose SED is {0:.0f} J/m³."""
 
 
 def _changed(change: Mapping[str, Any]) -> list[float]:
@@ -112,7 +106,7 @@ def _changed(change: Mapping[str, Any]) -> list[float]:
 
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
-    kept = harness.kept("sensitivity", docs)
+    kept, text = harness.kept("sensitivity", docs), harness.prose("sensitivity")
     numbers, rows = kept.numbers, [(c["choice"], c["way"], _changed(c)) for c in kept.numbers["changes"]]
     most = {choice: max(abs(d[0]) for c, _, d in rows if c == choice) for choice, _, _ in rows}
     rows.sort(key=lambda row: -most[row[0]])
@@ -123,8 +117,8 @@ def draw(docs: Path) -> Path:
     fine = [c["base"][3] for c in numbers["changes"] if c["base"] != numbers["default"]]
     head = ["choice", "changed to", *(f"{q} ({'points' if k == 2 else '%'})" for k, q in enumerate(QUANTITIES))]
     body = ["## Changes", harness.table(head, ([c, way, *(f"{x:+.1f}" for x in d)] for c, way, d in rows))]
-    body += [_FINE.format(fine[0])] * bool(fine) + [f"Not reached: {words}" for words in numbers["lost"]]
-    how = _HOW.format(*numbers["default"], **{name: 1e6 * size for name, size in numbers["mesh"].items()})
+    body += [text["fine"].format(fine[0])] * bool(fine) + [f"Not reached: {words}" for words in numbers["lost"]]
+    how = text["how"].format(*numbers["default"], **{name: 1e6 * size for name, size in numbers["mesh"].items()})
     path, title, command = docs / "sensitivity.md", "What the assumptions change", "python3 -m benchmarks.sensitivity"
     return harness.page(path, title, finding, how, body, command, kept.made, ["sensitivity"])
 

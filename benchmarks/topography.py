@@ -89,33 +89,6 @@ def compute(args: Any) -> None:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-_FINDING = """A map of 100 µm × 100 µm shows only part of the roughness. Of a surface of {wanted:g} µm rms, it has \
-{shown} once its curvature is removed, if the surface has the plateau that the prefactor printed in Eq. 8 assumes. \
-Without a plateau it has {bare}.
-
-The other way round, spots that show {wanted:g} µm lie on a surface of {below:.1f} µm rms (plateau, λ0 = 100 µm). The \
-model takes {wanted:g} µm, measured on spots, for h_rms in Eqs. 8 to 15."""
-_CAPTION = """Left: spectra over Eq. 8; spots lose the longest waves, of which a surface has few. Right: rms height of \
-spots; bars: scatter from spot to spot."""
-_HOW = """The maps measured for Fig. 3 of the paper are not public. Synthetic Gaussian surfaces stand for them, with the
-paper's parameters: h_rms {wanted:g} µm, H = {hurst:g}, λ0 = {wavelength:g} µm, over 800 µm × 800 µm.
-`variational/roughness/` analyses measured maps the same way. (The paper's q0 of 6.3e5 1/m is ten times too large.)
-
-With h_rms² = (1/2π) ∫ q C dq the prefactor 4πH/(1+H) printed in Eq. 8 belongs to a spectrum that is constant below
-q0 = 2π/λ0 = {q_0:.3g} 1/m, the *plateau*. From q0 up this spectrum holds {share:.0%} of the
-variance, {part:.2f} µm rms. Without wavelengths above λ0 the prefactor is 4πH."""
-_SPOTS = """Eight spots of 100 µm × 100 µm, curvature removed as in section 3.1, have h_rms {h_rms:.2f} µm,
-skewness {skewness:.2f} and kurtosis {kurtosis:.2f}. Their cumulative distribution differs from a Gaussian's by
-{distance:.3f} at most. Their mean spectrum (Hann's window) gives H = {hurst:.2f}, fitted between wavelengths of
-{longest:.0f} µm and {shortest:.1f} µm. Spots of this length cannot show a roll-off at 100 µm: the window mixes longer
-modes, and detrending weakens them. The paper's λ0 = 100 µm is the length of its spots, which `roughness_table` takes,
-too, when no roll-off is found. `roughness_table` makes of these spots the table of a scene:
-
-    [roughness]
-    h_rms = {table[h_rms]:.3g}
-    wavelength = {table[wavelength]:.3g}"""
-_BIAS = """Rms height (µm) of spots of a surface of {wanted:g} µm rms: mean ± scatter from spot to spot
-over {surfaces} surfaces. In brackets is the root of the expected mean square, summed from the spectrum."""
 
 
 def _chosen(numbers: Mapping[str, Any], plateau: bool, trend: str) -> list[dict[str, Any]]:
@@ -164,23 +137,25 @@ def _paint(figure: Figure, numbers: Mapping[str, Any], wanted: float) -> None:
 
 def draw(docs: Path) -> Path:
     """Draw page and picture from the kept numbers."""
-    kept = harness.kept("topography", docs)
+    kept, text = harness.kept("topography", docs), harness.prose("topography")
     numbers, printed = kept.numbers, READINGS[0]
     wanted, share, heights = printed.h_rms * _UM, 1 / (1 + printed.hurst), numbers["heights"]
     plateau, none = (_chosen(numbers, each, "curvature")[WINDOWS.index(SPOT)] for each in (True, False))
     shown, bare = (f"{b['mean'] * _UM:.2f} ± {b['scatter'] * _UM:.2f} µm" for b in (plateau, none))
     below = wanted * printed.h_rms / plateau["expected"]
-    finding = _FINDING.format(wanted=wanted, below=below, shown=shown, bare=bare)
+    finding = text["finding"].format(wanted=wanted, below=below, shown=shown, bare=bare)
     paper = {"hurst": printed.hurst, "wavelength": printed.wavelength * _UM, "q_0": printed.q_0}
-    how = _HOW.format(wanted=wanted, share=share, part=wanted * share**0.5, **paper)
+    how = text["how"].format(wanted=wanted, share=share, part=wanted * share**0.5, **paper)
     longest, shortest = (2 * np.pi / q * _UM for q in numbers["fit"]["q_range"])
     spot = heights | {"h_rms": heights["h_rms"] * _UM, "hurst": numbers["fit"]["hurst"], "table": numbers["table"]}
     body = [
-        harness.picture(docs / "topography.png", (9, 4), lambda figure: _paint(figure, numbers, wanted), _CAPTION),
-        f"## What a spot misses\n\n{_BIAS.format(wanted=wanted, surfaces=numbers['surfaces'])}",
+        harness.picture(
+            docs / "topography.png", (9, 4), lambda figure: _paint(figure, numbers, wanted), text["caption"]
+        ),
+        text["bias"].format(wanted=wanted, surfaces=numbers["surfaces"]),
         f"With the plateau:\n\n{_bias_table(numbers, True)}",
         f"Without the plateau:\n\n{_bias_table(numbers, False)}",
-        f"## Eight spots of one surface\n\n{_SPOTS.format(longest=longest, shortest=shortest, **spot)}",
+        text["spots"].format(longest=longest, shortest=shortest, **spot),
     ]
     path, command = docs / "topography.md", "python3 -m benchmarks.topography"
     return harness.page(path, "Topography of a ridge", finding, how, body, command, kept.made, ["topography"])
