@@ -69,16 +69,15 @@ def with_accuracy(scene: Scene, **tolerances: float) -> Scene:
     return scene.model_copy(update={"accuracy": Accuracy(**tolerances), "mesh": mesh})
 
 
-def _words(request: Mapping[str, float]) -> str:
-    return ", ".join(f"{_SHORT[name]} {100 * value:g} %" for name, value in request.items())
-
-
 def loops() -> dict[str, tuple[Scene, str]]:
     """Return by name the scenes with an accuracy, each with the name of the scene whose limit is its own."""
+    pairs = [("default scene", DEFAULT, request) for request in _DEFAULT]
+    pairs += [(name, scene, request) for request in _TEN for name, scene in drawn().items()]
     found = {"default scene as it is": (DEFAULT, "default scene")}
-    found |= {f"default scene; {_words(r)}": (with_accuracy(DEFAULT, **r), "default scene") for r in _DEFAULT}
-    plain = drawn()
-    return found | {f"{name}; {_words(r)}": (with_accuracy(plain[name], **r), name) for r in _TEN for name in plain}
+    for name, scene, request in pairs:
+        words = ", ".join(f"{_SHORT[quantity]} {100 * value:g} %" for quantity, value in request.items())
+        found[f"{name}; {words}"] = with_accuracy(scene, **request), name
+    return found
 
 
 # -- numbers -------------------------------------------------------------------------------------------------
@@ -109,19 +108,12 @@ def judged(scene: str, summary: Summary, ends: Mapping[str, Limit]) -> list[Case
         estimate, error, bar = (100 / of * v for v in (q["estimate"], abs(q["value"] - end.value), end.bar))
         allowed = None if q["allowed"] is None else 100 * q["allowed"] / of
         found[name] = Case(WHOLE, scene, _title(name), once, estimate, error, bar, allowed)
-    worst = []
-    for state in STATES:
-        worst += sorted((n for n in found if n.startswith(f"{state}_sed_")), key=lambda n: found[n].error)[-1:]
-    return [case for name, case in found.items() if "_sed_" not in name or name in worst]
+    worst = {name.split("_")[0]: name for name in sorted(found, key=lambda n: found[n].error) if "_sed_" in name}
+    return [case for name, case in found.items() if "_sed_" not in name or name in worst.values()]
 
 
 def row(summary: Summary, base: float) -> dict[str, Any]:
-    """Return the mesh chosen by a run with an accuracy, its values, and the cost of all solves and failed starts.
-
-    Args:
-        summary: of the run.
-        base: factorisations times unknowns of the default scene.
-    """
+    """Return mesh and values of a run with an accuracy, and the cost of all its solves and starts over ``base``."""
     a, lost = summary["accuracy"], summary.get("restarts", [])
     work = a["unknowns_times_factorisations"] + sum(s["unknowns"] * s["factorisations"] for s in lost)
     found = {name: a["mesh"][name] for name in _PARAMETERS} | {"solves": len(a["solves"])}
@@ -185,11 +177,9 @@ def _verdicts(runs: Mapping[str, Mapping[str, Any]], cases: Sequence[Case]) -> l
 def _chosen(runs: Mapping[str, Mapping[str, Any]]) -> str:
     rows = []
     for name, r in runs.items():
-        if (words := r.get("failure", r.get("unknown"))) is not None:
-            rows.append([name, words, *[""] * 5])
-        else:
-            sizes = (f"{r[key] * (1 if key == 'growth' else 1e6):g}" for key in _PARAMETERS)
-            rows.append([name, *sizes, r["unknowns"], r["solves"], f"{r['cost']:.2f}"])
+        sizes = [f"{r[key] * (1 if key == 'growth' else 1e6):g}" for key in _PARAMETERS if key in r]
+        cells = [*sizes, r["unknowns"], r["solves"], f"{r['cost']:.2f}"] if sizes else [*r.values(), *[""] * 5]
+        rows.append([name, *cells])
     return harness.table(["scene", *_PARAMETERS.values(), "unknowns", "solves", "cost"], rows)
 
 

@@ -39,19 +39,14 @@ _REACH = 1.4  # of the facets that can touch, over HALF_WIDTH
 class Case:
     """An estimate whose error is known; numbers in per cent of the limit."""
 
-    source: str
-    """:data:`WHOLE`, :data:`HERTZ` or the mesh parameter that was varied alone."""
+    source: str  # WHOLE, HERTZ or the mesh parameter that was varied alone
     scene: str
     quantity: str
-    once: bool
-    """Whether every size was halved or doubled once."""
-    estimate: float
-    """Without a factor of safety."""
+    once: bool  # every size was halved or doubled once
+    estimate: float  # without a factor of safety
     error: float
-    bar: float
-    """Of the error."""
-    allowed: float | None = None
-    """Requested accuracy, None without a request."""
+    bar: float  # of the error
+    allowed: float | None = None  # requested accuracy
 
     @property
     def kind(self) -> str:
@@ -118,10 +113,7 @@ def hertz() -> Iterator[Case]:
 def coverage(cases: Iterable[Case], kind: str | None = None, once: bool | None = None) -> tuple[int, int, int]:
     """Return the numbers of clear cases, of those covered by the estimate, and of those covered with its factor.
 
-    Args:
-        cases: all.
-        kind: of :data:`KINDS`; None for all.
-        once: of those whose sizes were changed once, or more often; None for both.
+    Only of one ``kind`` of quantity, and of sizes that were changed ``once`` or more often, where given.
     """
     mine = [case for case in cases if case.clear and kind in (None, case.kind) and once in (None, case.once)]
     return len(mine), sum(case.covered(1.0) for case in mine), sum(case.covered(case.factor) for case in mine)

@@ -165,12 +165,8 @@ def judged(points: Sequence[Point]) -> list[Point]:
 
 def front(points: Sequence[Point], quantity: str, measure: str = "work") -> list[Point]:
     """Return Pareto's front from cheap to expensive: no other judged run is both cheaper and more accurate."""
-    found, least = list[Point](), np.inf
-    for _, error, point in known(judged(points), quantity, measure):
-        if error < least:
-            found.append(point)
-            least = error
-    return found
+    some = known(judged(points), quantity, measure)
+    return [p for k, (_, error, p) in enumerate(some) if all(error < other for _, other, _ in some[:k])]
 
 
 def _default(points: Sequence[Point]) -> Point:
@@ -189,10 +185,11 @@ def base(points: Sequence[Point], quantity: str, measure: str = "work") -> float
     return cost
 
 
-def cheapest(some: Sequence[Point], quantity: str, measure: str, own: float, target: float) -> str:
-    """Return the cheapest of some points within an error, with its cost over ``own``."""
-    good = [(p.label, cost / own) for cost, error, p in known(some, quantity, measure) if error <= target]
-    return f"{good[0][0]}: {good[0][1]:.2g}" if good else "none"
+def cheapest(points: Sequence[Point], some: Sequence[Point], quantity: str, target: float, measure: str) -> str:
+    """Return the cheapest of some points within an error, with its cost over the default's."""
+    own = base(points, quantity, measure)
+    good = (f"{p.label}: {cost / own:.2g}" for cost, error, p in known(some, quantity, measure) if error <= target)
+    return next(good, "none")
 
 
 # -- page ----------------------------------------------------------------------------------------------------
@@ -213,10 +210,10 @@ def _words(quantity: str) -> str:
 
 def _costs(points: Sequence[Point], some: Sequence[Point], reference: Reference, measure: str) -> str:
     """Return the table of the cheapest of some points for each error; beside runs with a path the default's error."""
-    rows, default, path = [], _default(points), DEFAULT in (p.label for p in some)
+    rows, default = list[list[str]](), _default(points)
+    path = default in some
     for quantity in (*QUANTITIES, ALL):
-        own = base(points, quantity, measure)
-        rows.append([_words(quantity), *(cheapest(some, quantity, measure, own, target) for target in TARGETS)])
+        rows.append([_words(quantity), *(cheapest(points, some, quantity, t, measure) for t in TARGETS)])
         if path:
             error = f"{100 * (default.error(quantity) or 0):.2g} ± {100 * reference[quantity].relative:.1g} %"
             rows[-1] += [error, "yes" if default in front(points, quantity, measure) else "no"]
@@ -257,7 +254,7 @@ def _finding(points: Sequence[Point]) -> str:
     text, error, everything = harness.prose("chart"), 100 * (_default(points).error(ALL) or 0), [*QUANTITIES, ALL]
     on = sum(_default(points) in front(points, quantity) for quantity in everything)
     aims = ((ALL, 0.05), ("slip_f_t", 0.01), ("slip_f_t", 0.002))
-    best = [cheapest(judged(points), q, "work", base(points, q), target) for q, target in aims]
+    best = [cheapest(points, judged(points), quantity, target, "work") for quantity, target in aims]
     parts = [text["finding"].format(*best, error=error, on=on, n=len(everything))]
     for p in points:
         if p.label == "P1":
@@ -268,9 +265,8 @@ def _finding(points: Sequence[Point]) -> str:
 
 def _other_models(points: Sequence[Point]) -> str:
     names = ("slip_f_t", "normal_contact_length", "slip_contact_length")
-    others = [p for p in points if p.family == OTHER_MODEL]
-    work = (f"{p.work['slip'] / base(points, ALL):.2g}" for p in others)
-    rows = [[p.label, w, *(f"{100 * p.errors[q]:.2g} %" for q in names)] for p, w in zip(others, work, strict=True)]
+    own, others = base(points, ALL), [p for p in points if p.family == OTHER_MODEL]
+    rows = [[p.label, f"{p.work['slip'] / own:.2g}"] + [f"{100 * p.errors[q]:.2g} %" for q in names] for p in others]
     return harness.table(["formulation or penalty", "work", *map(_words, names)], rows)
 
 

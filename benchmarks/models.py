@@ -120,10 +120,9 @@ def _takes(scenes: Mapping[str, Any], model: str) -> str:
 
 def _which(scenes: Mapping[str, Any]) -> str:
     """Return the table that chooses a model."""
-    rows = []
+    rows, keys = [], ("slip_mu_app", "slip_contact_length")
     for model, words in _WHICH.items():
-        errors = (_largest(scenes, model, key) for key in ("slip_mu_app", "slip_contact_length"))
-        rows.append([f"`{model}`", *words, *errors, _takes(scenes, model)])
+        rows.append([f"`{model}`", *words, *(_largest(scenes, model, key) for key in keys), _takes(scenes, model)])
     errors = ("largest error of µ_app", "of the contact length at full slip")
     return harness.table(["model", "for", "answers", *errors, "takes"], rows)
 

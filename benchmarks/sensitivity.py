@@ -33,8 +33,7 @@ def _scaled(key: str) -> dict[str, dict[str, Any]]:
 # times the curvature at its tip that a sinusoid of its height has.
 CHOICES: Mapping[str, Mapping[str, dict[str, Any]]] = {
     "curvature of a ridge's tip": {
-        "half": {"geometry.ridge_profile": [1.0, -0.125]},
-        "one and a half": {"geometry.ridge_profile": [1.0, 0.125]},
+        way: {"geometry.ridge_profile": [1.0, c]} for way, c in (("half", -0.125), ("one and a half", 0.125))
     },
     "bone's width": _scaled("geometry.bone_width"),
     "bone's height": _scaled("geometry.bone_height"),
