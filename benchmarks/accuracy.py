@@ -161,8 +161,6 @@ def compute(args: Any) -> None:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-
-
 def _verdicts(runs: Mapping[str, Mapping[str, Any]], cases: Sequence[Case]) -> list[str]:
     """Return how often each request was met in the scenes drawn; a run that failed did not meet it."""
     good: dict[str, list[bool]] = {}

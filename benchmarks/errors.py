@@ -24,7 +24,7 @@ from fingerpad.io import style
 from fingerpad.io.states import PREFIXES, WORDS
 from fingerpad.model.touching import by_rule
 from fingerpad.richardson import plus_minus
-from fingerpad.scene import Scene, from_data
+from fingerpad.scene import Scene, load
 
 _LIMIT = 10800.0  # s of processor time for one run
 LEVELS = 4  # meshes of the limit
@@ -53,13 +53,11 @@ STUDIES: dict[str, tuple[str, float, str, Sequence[float]]] = {  # heading, unit
 def study(name: str) -> dict[float, Scene]:
     """Return the scenes of a study by the value of its setting, from coarse to fine."""
 
-    def scene(value: float) -> Scene:
-        mesh = {"contact": AT, "receptor": AT_SITES}
-        if name == "penalty":
-            return by_rule(from_data({"mesh": mesh, "contact": {"eps_n": value}}))
-        return by_rule(from_data({"mesh": mesh | {name: value}}))
-
-    return {value: scene(value) for value in STUDIES[name][3]}
+    mesh, key = (
+        {"mesh.contact": AT, "mesh.receptor": AT_SITES},
+        "contact.eps_n" if name == "penalty" else f"mesh.{name}",
+    )
+    return {value: by_rule(load(None, mesh | {key: value})) for value in STUDIES[name][3]}
 
 
 def values(run: Run) -> dict[str, float]:
@@ -122,17 +120,12 @@ def stiffer(docs: Path = harness.DOCS) -> dict[str, tuple[float, float]]:
     """
     rows = harness.kept("errors", docs).numbers["studies"]["penalty"]
     soft, middle, stiff = (row["value"] ** -ORDER for row in rows)
-    found = {}
-    for state in STATES:
-        length = [row["quantities"][f"{state}_contact_length"] for row in rows]
-        slope = (length[1] - length[0]) / (middle - soft)
-        found[state] = slope * (stiff - middle), length[2] - length[1]
-    return found
+    lengths = {state: [row["quantities"][f"{state}_contact_length"] for row in rows] for state in STATES}
+    part = (stiff - middle) / (middle - soft)
+    return {state: (part * (b - a), c - b) for state, (a, b, c) in lengths.items()}
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-
-
 def _cells(found: Sequence[float], unit: float) -> list[str]:
     return [f"{value / unit:.5g}" for value in found]
 

@@ -146,9 +146,8 @@ def _section(scenes: Mapping[str, Any], model: str) -> list[str]:
     versions = [more.get("table_version", 0) for more in answers]
     old = sum(version < max(versions) for version in versions)
     parts = [f"## Errors of the {MODELS[model]} (`{model}`), in per cent of the full model"]
-    parts += [f"No answer at {'; '.join(failed)}."] * bool(failed) + [
-        harness.prose("models")["old"].format(n=old)
-    ] * bool(old)
+    parts += [f"No answer at {'; '.join(failed)}."] * bool(failed)
+    parts += [harness.prose("models")["old"].format(n=old)] * bool(old)
     first, *others = ((words, _matrix(scenes, model, key)) for key, words in QUANTITIES.items())
     return [*parts, f"**{first[0]}**\n\n{first[1]}", *(harness.folded(words, matrix) for words, matrix in others)]
 
@@ -164,13 +163,10 @@ def draw(docs: Path) -> Path:
     forces, voltages = (", ".join(f"{value:g}" for value in each) for each in (FORCES, VOLTAGES))
     body = [part for model in MODELS for part in _section(scenes, model)]
     body += ["## Full runs", f"**{QUANTITIES['slip_mu_app']}**\n\n{_matrix(scenes, 'full', 'slip_mu_app')}"]
-    rows = [[row["scene"], row["mu_app"], row["end"]] for row in ends]
-    body += ["At the ends of the range of use:", harness.table(["scene", "µ_app, full slip", "end"], rows)]
-    path, how, command = (
-        docs / "models.md",
-        text["how"].format(forces=forces, voltages=voltages),
-        "python3 -m benchmarks.models",
-    )
+    table = harness.table(["scene", "µ_app, full slip", "end"], [list(row.values()) for row in ends])
+    body += ["At the ends of the range of use:", table]
+    path, command = docs / "models.md", "python3 -m benchmarks.models"
+    how = text["how"].format(forces=forces, voltages=voltages)
     return harness.page(path, "Which model when", finding, how, body, command, kept.made, ["models"])
 
 

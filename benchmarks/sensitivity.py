@@ -95,8 +95,6 @@ def compute(args: Any) -> None:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-
-
 def _changed(change: Mapping[str, Any]) -> list[float]:
     """Return the changes of the quantities: per cent, and percentage points of the reduction."""
     pairs = list(zip(change["values"], change["base"], strict=True))

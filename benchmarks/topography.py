@@ -89,8 +89,6 @@ def compute(args: Any) -> None:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-
-
 def _chosen(numbers: Mapping[str, Any], plateau: bool, trend: str) -> list[dict[str, Any]]:
     return [b for b in numbers["bias"] if b["plateau"] == plateau and b["trend"] == trend]
 
