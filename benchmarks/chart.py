@@ -22,7 +22,7 @@ from benchmarks.errors import STATES
 from benchmarks.limits import Limit
 from benchmarks.runs import finished
 from fingerpad.model.touching import by_rule
-from fingerpad.scene import Scene, from_data
+from fingerpad.scene import Scene, load
 
 _LIMIT = 10800.0  # s of processor time for one run
 MEASURES = {"work": "factorisations × unknowns", "seconds": "processor time"}
@@ -37,42 +37,44 @@ Reference = Mapping[str, Limit]
 
 
 # -- scenes --------------------------------------------------------------------------------------------------
-def _mesh(contact: float = errors.AT, **sizes: float) -> dict[str, Any]:
-    return {"mesh": {"contact": contact} | sizes}
-
-
-def _with(table: str, **values: Any) -> dict[str, Any]:
-    return _mesh() | {table: values}
-
-
 _ALL_SIZES = ((40e-6, 0.5, 40e-6), (20e-6, 0.5, 20e-6), (10e-6, 0.5, 10e-6), (5e-6, 0.125, 10e-6))
 # A family is a setting; all but the first are varied around a contact size of 10 um.
 FAMILIES: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
-    "contact size": {f"{h * 1e6:g} µm": _mesh(h) for h in (20e-6, 10e-6, 2.5e-6)},
-    "growth": {f"growth {growth:g}": _mesh(growth=growth) for growth in (0.5, 0.125)},
-    "size at the sites": {f"{h * 1e6:g} µm at the sites": _mesh(receptor=h) for h in (40e-6, 20e-6, 10e-6, 2.5e-6)},
+    "contact size": {f"{h * 1e6:g} µm": {"mesh.contact": h} for h in (20e-6, 10e-6, 2.5e-6)},
+    "growth": {f"growth {growth:g}": {"mesh.growth": growth} for growth in (0.5, 0.125)},
+    "size at the sites": {f"{h * 1e6:g} µm at the sites": {"mesh.receptor": h} for h in (40e-6, 20e-6, 10e-6, 2.5e-6)},
     "all sizes": {
-        f"{h * 1e6:g} µm, growth {g:g}, {r * 1e6:g} µm at the sites": _mesh(h, growth=g, receptor=r)
-        for h, g, r in _ALL_SIZES
+        f"{h * 1e6:g} µm, growth {growth:g}, {sites * 1e6:g} µm at the sites": {
+            "mesh.contact": h,
+            "mesh.growth": growth,
+            "mesh.receptor": sites,
+        }
+        for h, growth, sites in _ALL_SIZES
     },
-    "element": {name: _with("numerics", element=name) for name in ("P1", "P2 reduced", "P2-P1", "P3")}
-    | {"P1, 5 µm": _mesh(5e-6) | {"numerics": {"element": "P1"}}},
+    "element": {name: {"numerics.element": name} for name in ("P1", "P2 reduced", "P2-P1", "P3")}
+    | {"P1, 5 µm": {"mesh.contact": 5e-6, "numerics.element": "P1"}},
     OTHER_MODEL: {
-        f"Nitsche, γ_0 = {gamma:g}": _with("contact", formulation="nitsche", gamma_0=gamma) for gamma in (1.0, 10.0)
+        f"Nitsche, γ_0 = {gamma:g}": {"contact.formulation": "nitsche", "contact.gamma_0": gamma}
+        for gamma in (1.0, 10.0)
     }
-    | {"augmented Lagrangian": _with("contact", formulation="augmented")}
-    | {f"penalty {eps_n / 1e9:g} MPa/mm": _with("contact", eps_n=eps_n) for eps_n in (0.5e12, 5e12)},
-    "solver": {f"{points} points a facet": _with("numerics", quadrature_points=points) for points in (3, 6)}
-    | {"tolerance 1e-7": _with("numerics", tolerance=1e-7)}
-    | {"coupling tolerance 1e-3": _with("numerics", coupling_tolerance=1e-3)},
-    "steps": {f"steps × {scale:g}": _with("numerics", step_scale=scale) for scale in (0.5, 2.0)},
+    | {"augmented Lagrangian": {"contact.formulation": "augmented"}}
+    | {f"penalty {eps_n / 1e9:g} MPa/mm": {"contact.eps_n": eps_n} for eps_n in (0.5e12, 5e12)},
+    "solver": {f"{points} points a facet": {"numerics.quadrature_points": points} for points in (3, 6)}
+    | {
+        "tolerance 1e-7": {"numerics.tolerance": 1e-7},
+        "coupling tolerance 1e-3": {"numerics.coupling_tolerance": 1e-3},
+    },
+    "steps": {f"steps × {scale:g}": {"numerics.step_scale": scale} for scale in (0.5, 2.0)},
 }
 
 
 def scenes() -> dict[tuple[str, str], Scene]:
     """Return the scenes to run by family and label, the default one first."""
-    pairs = {(family, label): data for family, settings in FAMILIES.items() for label, data in settings.items()}
-    return {("contact size", DEFAULT): errors.DEFAULT} | {pair: by_rule(from_data(d)) for pair, d in pairs.items()}
+    found = {("contact size", DEFAULT): errors.DEFAULT}
+    for family, settings in FAMILIES.items():
+        for label, changes in settings.items():
+            found[family, label] = by_rule(load(None, {"mesh.contact": errors.AT} | changes))
+    return found
 
 
 # -- points --------------------------------------------------------------------------------------------------

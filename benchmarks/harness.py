@@ -5,7 +5,7 @@ A study has three steps:
 1. :func:`run` computes those of its scenes that are missing in ``results/traces``, kept by their parameters;
 2. :func:`keep` writes the numbers that its page shows to ``docs/NAME.json``, with the version that made them;
 3. its function ``draw(docs)`` reads them by :func:`kept` and writes page and pictures by :func:`page` and
-   :func:`picture`, its texts by :func:`prose`. No run is needed: ``python3 -m benchmarks.pages`` draws every page again.
+   :func:`picture`, its texts by :func:`prose`. No run is needed: ``python3 -m benchmarks.pages`` draws all again.
 """
 
 import argparse
