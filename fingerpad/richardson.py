@@ -13,19 +13,19 @@ it.
 
 The estimated error is E with a factor of safety on the share of each parameter: :data:`ONCE` for a parameter that was
 halved once, of which a single change is known, :data:`MORE` for others. Roache takes 3 and 1.25, for two meshes and for
-three. A requested accuracy has to be met by this error, at the price of a finer mesh.
+three. Where an accuracy is asked for, this error has to be within it, at the price of a finer mesh.
 
-The orders are prescribed. For forces and lengths p = 1, the order of a contact edge that lies anywhere in a facet; the
-remaining error is then as large as the last change. For energy densities p = 2, the order of the strains of quadratic
-elements, since the sites lie deep in the skin and hardly depend on the edge. An order observed from three meshes is
-mostly noise, since an edge moves facet by facet (``docs/accuracy.md``).
+The orders are those known beforehand: p = 1, that of a contact's edge on a mesh whose nodes are not at the edge, for
+forces and lengths, so that the error left is as large as the last change; p = 2, that of the strains of quadratic
+elements, for energy densities at sites deep in the skin, which hardly depend on the edge. An order observed from three
+meshes is mostly noise, since an edge moves facet by facet (``docs/accuracy.md``).
 
-For the same reason a change may be small by accident. So the change of a sum over ridges counts as at least the root of
-the sum of squared changes, the expected value for changes of random sign. Any change counts as at least a quarter of
-the previous one, which is second order.
+For the same reason a change may come out small by accident. That of a sum over ridges counts as at least the root of
+the sum of their squared changes, what changes of random sign come to; and any as at least a quarter of the one before
+it, which is second order.
 
-(A dual-weighted residual would need the adjoint of an active set and of two scales, and does not cover a state in which
-a ridge has jumped. A solution on another mesh covers all of these, and costs some ten factorisations.)
+(A dual-weighted residual would need the adjoint of an active set and of two scales, and does not cover a state in
+which a ridge has jumped. Another mesh covers all of these, and one re-solved state costs some ten factorisations.)
 
 Plain numbers only: no mesh, no solver.
 """
@@ -92,12 +92,12 @@ def errors(parameters: Mapping[str, MeshParameter], names: Sequence[str]) -> dic
 def to_refine(parameters: Mapping[str, MeshParameter], allowed: Mapping[str, float]) -> list[str]:
     """Return the parameters to halve once more on the way to errors within what is allowed, by name.
 
-    For each quantity above its limit: as few parameters as suffice by their orders, those with the largest shares
-    first, and none whose share is below an equal part. Each is halved once, since the orders hold for small changes,
-    and an unnecessarily fine mesh costs more than a further round.
+    Of each quantity that is not within it, as few as will do by their orders, those with the largest shares first, and
+    none that spends no more than its equal part. One halving at a time, since the order is that of small changes, and a
+    mesh finer than need be costs more than one more round.
 
     Args:
-        parameters: mesh parameters that can be halved, with the changes by halving them.
+        parameters: that can be halved, with what halving them changed.
         allowed: largest error of each quantity, in its unit.
 
     Returns:

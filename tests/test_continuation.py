@@ -1,4 +1,4 @@
-"""Steps that are cut, stepped_over_fold over, and given up, on a block that slides."""
+"""Steps that are cut, that go over a fold, and that are given up, on a block that slides."""
 
 import itertools
 
@@ -39,16 +39,16 @@ def sliding():
     return slide
 
 
-def test_range_without_equilibrium_is_leapt_over(sliding):
+def test_range_without_equilibrium_is_stepped_over(sliding):
     """Steps of 60 um lead into it; one of 90 um leads over it, is said to have, and costs one failed attempt."""
     reached = sliding(0.235e-3, 0.260e-3, cycling=True)
     assert reached[-1][0] == pytest.approx(0.6e-3)
-    leaps = [(x, attempt) for x, attempt in reached if attempt.stepped_over_fold]
-    assert [x for x, _ in leaps] == [pytest.approx(0.27e-3)]
+    crossed = [(x, attempt) for x, attempt in reached if attempt.stepped_over_fold]
+    assert [x for x, _ in crossed] == [pytest.approx(0.27e-3)]
     assert [len(attempt.cutbacks) for _, attempt in reached if attempt.cutbacks] == [1]
 
 
-def test_load_that_creeps_is_given_up(sliding, monkeypatch):
+def test_load_of_ever_smaller_steps_is_given_up(sliding, monkeypatch):
     """Steps that stay small do not go on for ever: the message says how many there were, and where they led."""
     monkeypatch.setattr(continuation, "_MANY_STEPS", 0)
     monkeypatch.setattr(continuation, "_FEW_STEPS", 7)
@@ -56,8 +56,8 @@ def test_load_that_creeps_is_given_up(sliding, monkeypatch):
         sliding(0.235e-3, 0.260e-3)
 
 
-def test_range_too_wide_for_one_leap(sliding):
-    """Halved steps go up to it, until a leap from nearby leads over."""
+def test_range_too_wide_for_one_step(sliding):
+    """Halved steps go up to it, until a longer step from nearby leads over."""
     reached = sliding(0.215e-3, 0.275e-3, cycling=True)
     assert reached[-1][0] == pytest.approx(0.6e-3)
     assert sum(attempt.stepped_over_fold for _, attempt in reached) == 1
@@ -73,7 +73,7 @@ def test_steps_grow_again_after_a_cut(sliding, each):
     assert sizes[2 : 3 + same] == pytest.approx([30] * same + [60])
 
 
-def test_jump_is_not_crept_up_to_for_ever(sliding):
+def test_jump_is_not_approached_for_ever(sliding):
     """Of a jump at 240 um each step of 60, 30, 15 and 7.5 um is cut once; the next is let jump."""
     reached = sliding(0.2399e-3, 0.2405e-3, each=100, but_pseudo_transient=True)
     assert reached[-1][0] == pytest.approx(0.6e-3)
@@ -82,7 +82,7 @@ def test_jump_is_not_crept_up_to_for_ever(sliding):
     assert 240 == pytest.approx(next(x for x, _ in reached if x > 0.237e-3) / 1e-6)
 
 
-def test_other_failures_are_not_leapt_over(sliding):
+def test_other_failures_are_not_stepped_over(sliding):
     """Newton's method failing is no sign of an equilibrium further on: the step is halved, and at last given up."""
     assert not any(attempt.stepped_over_fold for _, attempt in sliding(0.235e-3, 0.260e-3, cycling=False))
     with pytest.raises(StepFailed, match="bone x 0.00023.* m: TEST"):

@@ -15,12 +15,15 @@ QUICK = [name for name in TESTS if name.removeprefix("test_") not in LONGER.spli
 def test_each_module_is_imported_by_a_quick_test():
     """In a process of its own: what the files of the quick tests import, and what that imports.
 
-    The program imports a command where it is given; test_command gives it each.
+    The program imports a command where it is given, and what draws where a picture is asked for; test_command does.
     """
     packages = ("geometry", "variational", "fingerpad")
     files = [file.relative_to(ROOT) for package in packages for file in (ROOT / package).rglob("*.py")]
     names = {".".join(file.with_suffix("").parts) for file in files if file.stem != "__main__"}
-    imports = [*(f"tests.{name}" for name in QUICK), *(f"fingerpad.cli.{name}" for name in COMMANDS)]
+    imports = [
+        *(f"tests.{name}" for name in QUICK),
+        *(f"fingerpad.cli.{name}" for name in [*COMMANDS, "plot", "section"]),
+    ]
     code = "\n".join(["import sys", *(f"import {name}" for name in imports), "print(*sys.modules)"])
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert sorted({name.removesuffix(".__init__") for name in names} - set(done.stdout.split())) == []

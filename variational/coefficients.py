@@ -13,7 +13,7 @@ import numpy as np
 
 
 def said(error: Exception) -> str:
-    """Return what an error of a user's law says, in one line."""
+    """Return the message of an error in a user's law, in one line."""
     return " ".join(str(error).split()) or type(error).__name__
 
 

@@ -1,4 +1,4 @@
-"""The one place that knows how dolfinx 0.9, 0.10 and 0.11 differ."""
+"""Differences between dolfinx 0.9, 0.10 and 0.11, in one place."""
 
 import dolfinx
 import numpy as np

@@ -80,7 +80,7 @@ class _State:
 
 
 class EnergyBook:
-    """Keeps the energies of accepted states; reads the problem and changes nothing in it."""
+    """Keeps the energies of accepted states; only reads the problem."""
 
     def __init__(
         self, problem: Problem, surface: SurfaceState, bone: Array, reaction: Array, d_eq: Array, copies: int = 1
@@ -88,10 +88,10 @@ class EnergyBook:
         """Start from an equilibrium; arguments as in :meth:`step`, and of how many copies of it the body is made.
 
         Raises:
-            ValueError: there is an attraction, and not the electrostatic one, whose potential the book knows.
+            ValueError: there is an attraction, and not the electrostatic one, the only one with a potential here.
         """
         if problem.interface.attraction not in (None, ELECTROSTATIC):
-            raise ValueError("the energy balance knows the potential of the electrostatic attraction only")
+            raise ValueError("the energy balance has the potential of the electrostatic attraction only")
         self._problem, self._copies = problem, copies
         self._last = self._state(surface, bone, reaction, d_eq)
 
@@ -156,7 +156,7 @@ class EnergyBook:
         law = self._problem.interface.friction
         if law is None:
             return 0.0, 0.0
-        # A point that bears nothing is carried along: no slip.
+        # A point without pressure does not slip.
         slip = np.where(b.p_n > 0, np.abs(self._problem.interface.formulation.slip(a, b)), 0.0)
         integrate = self._problem.surface.per_ridge
         spent, unsure = (self._copies * float(integrate(d).sum()) for d in law.dissipated(a.p_n, b.p_n, slip))

@@ -88,7 +88,7 @@ class Fields:
 
     @contextlib.contextmanager
     def _room(self) -> Iterator[None]:
-        """Turn what ADIOS2 says of a full disk into the error that it is."""
+        """Turn ADIOS2's message of a full disk into the right error."""
         try:
             yield
         except RuntimeError as error:

@@ -2,7 +2,7 @@ r"""The pressure of the mixed element: linear in each triangle, continuous insid
 
 The energy and why: :mod:`variational.element`. The pressure is held as a discontinuous function; that the triangles of
 a layer share its values at a vertex is a matter of the numbering, as the rim's nodes are one node
-(:mod:`variational.solvers.layout`): the linear system sees one unknown for each layer at each of its vertices.
+(:mod:`variational.solvers.layout`): the linear system has one unknown for each layer at each of its vertices.
 Triangles of layers without a pressure have no unknown at all, so none makes the matrix singular.
 
 The unknown is :math:`\pi = p / s`, a length like the displacement's, and its rows of the residual,

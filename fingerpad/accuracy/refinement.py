@@ -1,7 +1,7 @@
 r"""Results with their discretisation error, refined until the error is within the accuracy of a scene.
 
 The whole path of the loads is run once, on the mesh that the scene gives (a coarse one where it has an accuracy and
-no sizes). Two of its states are then carried to other meshes and solved for again
+no sizes). Two of its states are then restored on other meshes and solved for again
 (:mod:`variational.solvers.transfer`): normal contact, the last state before the bone moves, and full slip. Changing one
 mesh parameter at a time gives each its share of the error (:mod:`fingerpad.richardson`):
 

@@ -2,8 +2,9 @@
 
 Ridges in contact grow with the force to the power 0.27 in full runs of the default finger, and friction rolls the
 finger onto its leading side. At 75 N/m and a friction coefficient of 0.25 ten ridges on either side can touch; full
-runs need nine. The width of the zone is a length, and so a finger of narrower ridges has more of them in it. A bone
-that is lowered by a depth d brings down the skin within sqrt(2 R d) of the lowest ridge, R the radius of the outline.
+runs need nine. The width of the contact zone is a length, and so a finger of narrower ridges has more of them in it.
+A bone that is lowered by a depth d brings down the skin within sqrt(2 R d) of the lowest ridge, R the radius of the
+outline.
 
 The rule has at least one ridge to spare in every full run of ``tests/reach.json``. What the rule misses on other
 fingers costs a restart: :mod:`fingerpad.model.contact_zone` checks each accepted step.

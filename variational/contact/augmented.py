@@ -6,7 +6,7 @@ r"""Contact by an augmented Lagrangian with Uzawa's iteration.
 in :mod:`~variational.contact.formulation`, the multipliers kept at the Gauss points and corrected after each solve
 until the skin neither penetrates nor, where it sticks, has moved by more than a tolerance (Simo and Laursen 1992, doi
 10.1016/0045-7949(92)90540-G). Each solve is one of the penalty's, and the stiffness decides how fast the iteration
-contracts, not what it ends in. It is slow for tractions that the displacement hardly feels: a facet has more Gauss
+contracts, not what it ends in. It is slow for tractions that the displacement hardly depends on: a facet has more Gauss
 points than displacements of its own.
 
 The slip of a step counts from the accepted place :math:`x_n`, so that

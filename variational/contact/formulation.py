@@ -38,7 +38,7 @@ def pressure(gap, gamma_n):
 
 @dataclass(frozen=True)
 class Skin:
-    """What a formulation can know of the touching skin; UFL, tractions in Pa of reference area."""
+    """Quantities of the touching skin that a formulation may use; UFL, tractions in Pa of reference area."""
 
     u: Any
     """Displacement (m)."""

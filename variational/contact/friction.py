@@ -168,7 +168,7 @@ class Derjaguin(Friction):
 
 
 def law_of(given: "Friction | float | None") -> Friction | None:
-    """Return the law that is given; of a friction coefficient Coulomb's, of zero or nothing none.
+    """Return a law as it is, Coulomb's for a friction coefficient, and None for zero or None.
 
     Raises:
         ValueError: what is given is no law; in one sentence.

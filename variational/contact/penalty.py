@@ -25,7 +25,7 @@ class Penalty(Formulation):
     eps_t: float
 
     def springs(self, skin: Skin) -> Springs:
-        """Return springs that nothing preloads."""
+        """Return springs without preload."""
         return Springs(0.0, 0.0, skin.constant(self.eps_n), skin.constant(self.eps_t))
 
     def stored(self, state: SurfaceState) -> Array:

@@ -3,7 +3,7 @@ r"""What a solid is in plane strain: a strain energy density, from which stresse
 .. math:: W(F) = W_{iso}(F) + \frac{K}{2} (J - 1)^2, \qquad P = \frac{\partial W}{\partial F}, \qquad
           \sigma_{zz} = \frac{\lambda_3}{J} \frac{\partial W}{\partial \lambda_3} \Big|_{\lambda_3 = 1}
 
-The volumetric part is apart because an element may know a better pressure :math:`p = K (J - 1)` than that of the F at
+The volumetric part is apart because an element may have a better pressure :math:`p = K (J - 1)` than that of the F at
 hand (:mod:`variational.element`); its energy is :math:`p^2 / 2K`. A solid without K has no such part: all of its
 energy is in :math:`W_{iso}`.
 

@@ -2,9 +2,9 @@ r"""Stresses of a solid in plane strain, the component normal to the plane inclu
 
 .. math:: \sigma = \frac1J P F^T, \qquad P = \frac{\partial W}{\partial F}
 
-The in-plane part is differentiated from the energy density, which knows only the plane's F; sigma_zz, the reaction of
-the constraint lambda_3 = 1, is the solid's own (:mod:`variational.materials.material`). The stress of the volumetric
-part is p I, p positive in tension: an element may know a better p than the one of the F at hand
+The in-plane part is differentiated from the energy density, which depends only on the plane's F; sigma_zz, the reaction
+of the constraint lambda_3 = 1, is the solid's own (:mod:`variational.materials.material`). The stress of the volumetric
+part is p I, p positive in tension: an element may have a better p than the one of the F at hand
 (:mod:`variational.element`).
 """
 

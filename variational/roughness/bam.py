@@ -96,7 +96,7 @@ class BearingArea(Closure):
         return AirGap(d_eq, np.where(held == p_c, gradient, 0.0))
 
     def state(self, p_c: float, voltage: float) -> str:
-        """Say where a ridge is on the closure: at one of its ends, past its pull-off fold, or nothing to say."""
+        """Return where a ridge is on the closure, at one of its ends or past its pull-off fold; empty elsewhere."""
         if p_c <= 0:
             return ""
         if p_c < self.p_floor:

@@ -1,4 +1,4 @@
-"""What the macroscale asks of a microscale model: the equivalent air gap of a ridge under its mean contact pressure.
+"""The interface of a microscale model: the equivalent air gap of a ridge under its mean contact pressure.
 
 Your own closure is one class, here a gap that no pressure changes::
 
@@ -41,7 +41,7 @@ class Closure(Protocol):
         ...
 
     def state(self, p_c: float, voltage: float) -> str:
-        """Return ``""`` or what a reader should know of a ridge at this pressure (Pa) and voltage (V)."""
+        """Return ``""`` or a note on a ridge at this pressure (Pa) and voltage (V)."""
         return ""
 
 

@@ -1,6 +1,6 @@
 """Height maps from files: matrices by NumPy, text in any layout, instruments' formats by SurfaceTopography.
 
-SurfaceTopography (Röttger et al. 2022, doi:10.1088/2051-672X/ac860a; MIT licence) knows the formats of Keyence,
+SurfaceTopography (Röttger et al. 2022, doi:10.1088/2051-672X/ac860a; MIT licence) reads the formats of Keyence,
 Zygo, Bruker and others: ``pip install fingerpad[topography]``.
 """
 
@@ -133,7 +133,7 @@ def _instrument(path: Path) -> Found:
     try:
         found = read_topography(str(path))
     except ReadFileError:
-        raise ValueError(f"{path} is no height map of a format that SurfaceTopography knows") from None
+        raise ValueError(f"{path} is no height map of a format that SurfaceTopography reads") from None
     if found.dim != 2 or found.unit is None:
         raise ValueError(f"{path} has {found.dim} dimensions and unit {found.unit}; a map has 2 and a unit of length")
     found = found.to_unit("m")

@@ -24,7 +24,7 @@ class Text(NamedTuple):
     heights: Array
     """Shape (nx, ny), NaN where a pixel is missing; in the unit of the text."""
     size: tuple[float, float] | None
-    """Lengths along x and y, in the unit of the text; None of a matrix, which does not say."""
+    """Lengths along x and y, in the unit of the text; None of a matrix, which has none."""
     layout: str
     """How the numbers are laid out, in words."""
 

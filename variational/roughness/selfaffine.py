@@ -5,7 +5,7 @@ The two-dimensional spectrum of Forsbach et al. 2023, Eq. 8 (doi:10.3389/fmech.2
 .. math:: C(q) = c \left( \frac{h_{rms}}{q_0} \right)^2 \left( \frac{q}{q_0} \right)^{-2-2H},
           \quad q \ge q_0 = 2\pi / \lambda_0
 
-With :math:`h_{rms}^2 = \frac{1}{2\pi} \int q C(q) dq` the prefactor says what is below q_0: the printed
+With :math:`h_{rms}^2 = \frac{1}{2\pi} \int q C(q) dq` the prefactor decides what is below q_0: the printed
 :math:`c = 4\pi H/(1+H)` needs the plateau :math:`C(q_0)` there, without one it is :math:`c = 4\pi H`. From q_0 up
 the printed one holds 1/(1+H) of the variance, 57 % at H = 0.75: read without a plateau, h_rms is not the rms.
 """
@@ -59,7 +59,7 @@ class SelfAffine:
         return 2 * np.pi / self.wavelength
 
     def psd(self, q: ArrayLike) -> Array:
-        """Return C (m^4) at wavevectors ``q`` (1/m), Eq. 8 with what the plateau says below q_0; zero at q = 0."""
+        """Return C (m^4) at wavevectors ``q`` (1/m), Eq. 8 with the plateau's value below q_0; zero at q = 0."""
         ratio = np.asarray(q, dtype=float) / self.q_0
         # A mode at q_0 itself belongs to the power law, whatever the rounding of its wavevector.
         above = ratio > 1 - 1e-9

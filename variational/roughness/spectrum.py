@@ -27,7 +27,7 @@ from variational.roughness.topography import HeightMap
 
 Array = NDArray[np.float64]
 Window = Literal["none", "hann"]
-_HURST = (0.01, 2.0)  # searched; above 1 a surface is not self-affine, and the fit says so by its value
+_HURST = (0.01, 2.0)  # searched; above 1 a surface is not self-affine, which the fitted value shows
 _SIGNIFICANT = 2.0  # gain in log-likelihood, two standard deviations, that tells a roll-off from none
 
 
@@ -182,7 +182,7 @@ def roughness_table(*spots: HeightMap) -> dict[str, float]:
 
     As in the paper: each spot loses its curvature, and h_rms is the root mean square over all of them; the roughness
     that goes with the curvature is not put back. The wavelength is lambda_0 of the mean spectrum if it is seen to
-    roll off. If not, the spots are too small to know it, and it is their shorter side (*assumption*; the paper's
+    roll off. If not, the spots are too small to resolve it, and it is their shorter side (*assumption*; the paper's
     100 um are the length of its spots).
 
     Args:

@@ -45,7 +45,7 @@ class Target:
 _FORCE, _VOLTAGE, _SINK, _SLIDE = 0.067, 0.25, 40e-6, 60e-6
 _SMALLEST = 1e-3  # step below which a load is given up, over the largest
 _MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on when the bone moves
-_LEAP = 1.5  # step tried where the loop over the scales cycles, over the one that led there
+_STEP_OVER = 1.5  # step tried where the loop over the scales cycles, over the one that led there
 _WAYS = (
     "at once",
     "under held skin",
@@ -220,7 +220,7 @@ class Continuation:
                 except NotConverged as failure:
                     self._restore()
                     attempt.cutbacks.append(f"{failure} at part {part + step:.4g}")
-                    over = min(_LEAP * within, 1 - part)
+                    over = min(_STEP_OVER * within, 1 - part)
                     attempt.stepped_over_fold = failure.cycling and not attempt.stepped_over_fold and over > within
                     within = within if attempt.stepped_over_fold else within / 2
                     step = over if attempt.stepped_over_fold else within
@@ -228,7 +228,7 @@ class Continuation:
                         raise StepFailed(self._describe(target, part, failure)) from failure
             self._accept()
             part += step
-            if self.on_accept(target, part, attempt):
+            if self.on_accept(target, part, attempt) is True:
                 return False
             if target.until_full_slip and self.slip[1]:
                 return True

@@ -2,14 +2,15 @@
 
 At given air gaps d the macroscale gives each ridge's mean contact pressure, the closure turns it into a new air gap;
 :mod:`~variational.solvers.secant` iterates until the two agree. A loop starts with the gains it last ended with. Ridges
-that go past their fold on the way are listed in :attr:`CouplingHistory.jumped`. (Nothing is stored in the closure: what
-a jump of the micro layer releases there is not known, and :mod:`~variational.energy` books what the skin releases.)
+that go past their fold on the way are listed in :attr:`CouplingHistory.jumped`. (Nothing is stored in the closure: the
+energy that a jump of the micro layer releases is not in the model; :mod:`~variational.energy` has what the skin
+releases.)
 
 On leaving contact a ridge has p_c = 0, and its air gap is the closure's at that end: the bearing area model holds
 d_eq at its value at p_floor, some 12 um. It does not keep the gap it was pressed to, and d_eq does not follow
 p_c to infinity. A ridge without contact is attracted across its height where that is larger.
 
-There may be no such state. A ridge about to leave touches with a facet or two, and lets go of them one at a time:
+There may be no such state. A ridge about to leave touches with a facet or two, which leave one at a time:
 with one facet less its pressure is higher, its air gap smaller and its attraction stronger, so that the facet comes
 back. Between the loads at which either state is one of equilibrium the loop cycles, however small the step;
 :mod:`~variational.solvers.continuation` steps over them.

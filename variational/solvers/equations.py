@@ -198,7 +198,7 @@ class Equations:
 
     # -- a state that is no equilibrium ----------------------------------------------------------------
     def hold(self, x: PETSc.Vec, skin: bool = False) -> None:
-        """Let a dead load act that balances a state; :attr:`load_part` says how much of it.
+        """Let a dead load act that balances a state, all of it; lower :attr:`load_part` to take it away.
 
         Args:
             x: the state.

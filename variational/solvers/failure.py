@@ -22,7 +22,7 @@ class NotConverged(RuntimeError):
             MUMPS_FAILED, NOT_A_NUMBER and COUPLING_CAP.
         inverted: elements were turned inside out by some iterate.
         irrecoverable: a smaller step would fail as well.
-        cycling: the loop over the scales went round and round at this load, which says nothing of a larger one.
+        cycling: the loop over the scales cycled at this load; at a larger one it may converge.
     """
 
     def __init__(self, reason: str, inverted: bool, irrecoverable: bool = False, cycling: bool = False) -> None:

@@ -4,7 +4,7 @@ All nodes on the rim of the rigid body share one node of two unknowns, its trans
 map of the linear system the rim's nodes simply point to that node. Assembly then adds the rows and columns
 of the rim up by itself, in parallel too. The translation's rows of the residual are the rigid body's force
 balance; the matrix stays square, as sparse as before and, where the laws are, symmetric, and the line search
-sees the rigid body as it sees every other unknown. (Bordering would need a second back-substitution an iteration and
+treats the rigid body like every other unknown. (Bordering would need a second back-substitution an iteration and
 a norm of its own for the line search; a multipoint constraint eliminates the same unknowns with more code.)
 
 Displacements are unknowns either by themselves, as the forms are differentiated, or relative to the rigid body, as a

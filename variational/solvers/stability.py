@@ -13,9 +13,9 @@ doi 10.1137/1.9781611970739, ch. 6 to 8). The power iteration would take more of
 :math:`-2 \eta`. Where K is symmetric its negative pivots can be counted instead (Sylvester's law of inertia), which
 needs no iteration and gives no rate.
 
-Three things it does not say. K is that of frozen air gaps; how these react is the gain of the loop over the scales
-(:mod:`~variational.solvers.coupling`), below one where it is stable. Points on the friction cone are taken for slipping
-on in their direction, the softer choice. And a disturbance is infinitely small.
+The verdict has three limits. K is the tangent at frozen air gaps; how these react is the gain of the loop over the
+scales (:mod:`~variational.solvers.coupling`), below one where the loop is stable. Points on the friction cone are taken
+to slip on in their direction, the softer choice. And a disturbance is infinitely small.
 
 Of half a body that is its own mirror image, the disturbances that keep the symmetry and those that turn it round are
 examined one after the other: the tangent of the whole does not couple the two.
@@ -38,7 +38,7 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 _ETA = 2e8  # Pa/m, of the order of the softest disturbances of a fingerpad
 _MOST = 50  # vectors
-_ROUGH = 0.1  # residual of a Ritz pair over its own growth above which it says nothing
+_ROUGH = 0.1  # residual of a Ritz pair over its own growth above which it is not significant
 _SETTLED = 1e-6  # residual of the Ritz pair over the largest growth
 _EMPTY = 1e-12  # of a vector's norm, below which the space is exhausted
 
@@ -95,7 +95,7 @@ class StabilityCheck:
         """
         K = self._tangent(0.0, self.solver.equations.prescribed_rows())
         if not K.isSymmetric(1e-9 * K.norm(PETSc.NormType.INFINITY)):
-            raise ValueError("the tangent is not symmetric: its inertia says nothing of stability")
+            raise ValueError("the tangent is not symmetric: its inertia does not decide stability")
         K.setOption(PETSc.Mat.Option.SYMMETRIC, True)
         ksp = self._factorise(K, PETSc.PC.Type.CHOLESKY)
         negative, _, _ = ksp.getPC().getFactorMatrix().getInertia()
@@ -189,7 +189,7 @@ class StabilityCheck:
 
     @staticmethod
     def _judge(H: Array, eta: float) -> Stability:
-        """Return the least eigenvalue that the Hessenberg matrix, shape (k + 1, k), knows of."""
+        """Return the least eigenvalue of the Hessenberg matrix, shape (k + 1, k)."""
         growth, vectors = np.linalg.eig(H[:-1])
         residuals = H[-1, -1] * np.abs(vectors[-1])
         accuracy = _SETTLED * np.abs(growth).max()
