@@ -73,7 +73,7 @@ def scenes() -> dict[tuple[str, str], Scene]:
     found = {("contact size", DEFAULT): errors.DEFAULT}
     for family, settings in FAMILIES.items():
         for label, changes in settings.items():
-            found[family, label] = by_rule(load(None, {"mesh.contact": errors.AT} | changes))
+            found[family, label] = by_rule(load(None, {"mesh.contact": errors.AT, **changes}))
     return found
 
 
