@@ -12,20 +12,21 @@ import itertools
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from benchmarks import harness
+from benchmarks import calibration, harness, limits
 from benchmarks.calibration import HERTZ, WHOLE, Case, coverage, coverages, kept, table, tally
-from benchmarks.convergence import Limit, limit
 from benchmarks.errors import DEFAULT, LEVELS, STATES
+from benchmarks.limits import Limit
 from fingerpad.model.check import check
 from fingerpad.model.touching import by_rule
 from fingerpad.richardson import MORE, ONCE, MeshParameter
 from fingerpad.runs.batch import Summary
-from fingerpad.scene import Scene, SceneError, from_data, start
+from fingerpad.scene import Scene, SceneError, load, start
 from fingerpad.scene.parameters import Accuracy
 
 _LIMIT = 7200.0  # s of processor time for one scene
@@ -43,13 +44,6 @@ _QUARTER = (
 
 
 # -- scenes --------------------------------------------------------------------------------------------------
-def _value(key: str) -> float:
-    value: Any = Scene()
-    for part in key.split("."):
-        value = getattr(value, part)
-    return float(value)
-
-
 def drawn() -> dict[str, Scene]:
     """Return :data:`COUNT` scenes by number, force, voltage and friction; always the same.
 
@@ -59,15 +53,8 @@ def drawn() -> dict[str, Scene]:
     random, found = np.random.default_rng(SEED), dict[str, Scene]()
     while len(found) < COUNT:
         values = {key: random.uniform(*span) for key, span in _RANGES.items()}
-        values |= {key: _value(key) * random.uniform(0.75, 1.25) for key in _QUARTER}
-        data: dict[str, Any] = {}
-        for key, value in values.items():
-            *tables, last = key.split(".")
-            place = data
-            for name in tables:
-                place = place.setdefault(name, {})
-            place[last] = float(f"{value:.3g}")
-        scene = by_rule(from_data(data))
+        values |= {key: attrgetter(key)(Scene()) * random.uniform(0.75, 1.25) for key in _QUARTER}
+        scene = by_rule(load(None, {key: float(f"{value:.3g}") for key, value in values.items()}))
         try:
             check(scene)
         except SceneError:
@@ -82,16 +69,15 @@ def with_accuracy(scene: Scene, **tolerances: float) -> Scene:
     return scene.model_copy(update={"accuracy": Accuracy(**tolerances), "mesh": mesh})
 
 
-def _words(request: Mapping[str, float]) -> str:
-    return ", ".join(f"{_SHORT[name]} {100 * value:g} %" for name, value in request.items())
-
-
 def loops() -> dict[str, tuple[Scene, str]]:
     """Return by name the scenes with an accuracy, each with the name of the scene whose limit is its own."""
+    pairs = [("default scene", DEFAULT, request) for request in _DEFAULT]
+    pairs += [(name, scene, request) for request in _TEN for name, scene in drawn().items()]
     found = {"default scene as it is": (DEFAULT, "default scene")}
-    found |= {f"default scene; {_words(r)}": (with_accuracy(DEFAULT, **r), "default scene") for r in _DEFAULT}
-    plain = drawn()
-    return found | {f"{name}; {_words(r)}": (with_accuracy(plain[name], **r), name) for r in _TEN for name in plain}
+    for name, scene, request in pairs:
+        words = ", ".join(f"{_SHORT[quantity]} {100 * value:g} %" for quantity, value in request.items())
+        found[f"{name}; {words}"] = with_accuracy(scene, **request), name
+    return found
 
 
 # -- numbers -------------------------------------------------------------------------------------------------
@@ -117,35 +103,22 @@ def judged(scene: str, summary: Summary, ends: Mapping[str, Limit]) -> list[Case
             continue
         end, of = ends[name], abs(ends[name].value)
         if sites:  # over the largest of the state
-            of = max(
-                abs(each.value) for other, each in ends.items() if other.startswith(name.split("sed_")[0] + "sed_")
-            )
+            state = name.split("sed_")[0]
+            of = max(abs(each.value) for other, each in ends.items() if other.startswith(f"{state}sed_"))
         estimate, error, bar = (100 / of * v for v in (q["estimate"], abs(q["value"] - end.value), end.bar))
         allowed = None if q["allowed"] is None else 100 * q["allowed"] / of
         found[name] = Case(WHOLE, scene, _title(name), once, estimate, error, bar, allowed)
-    worst = []
-    for state in STATES:
-        worst += sorted((n for n in found if n.startswith(f"{state}_sed_")), key=lambda n: found[n].error)[-1:]
-    return [case for name, case in found.items() if "_sed_" not in name or name in worst]
-
-
-def spent(summary: Summary) -> tuple[float, float]:
-    """Return factorisations times unknowns, and processor time (s), of all solves and of starts that failed."""
-    a, lost = summary["accuracy"], summary.get("restarts", [])
-    work = a["unknowns_times_factorisations"] + sum(s["unknowns"] * s["factorisations"] for s in lost)
-    return work, a["processor_seconds"] + sum(s["processor_seconds"] for s in lost)
+    worst = {name.split("_")[0]: name for name in sorted(found, key=lambda n: found[n].error) if "_sed_" in name}
+    return [case for name, case in found.items() if "_sed_" not in name or name in worst.values()]
 
 
 def row(summary: Summary, base: float) -> dict[str, Any]:
-    """Return the mesh chosen by a run with an accuracy, and its cost; ``base`` is the work of the default scene."""
-    a, (work, seconds) = summary["accuracy"], spent(summary)
+    """Return mesh and values of a run with an accuracy, and the cost of all its solves and starts over ``base``."""
+    a, lost = summary["accuracy"], summary.get("restarts", [])
+    work = a["unknowns_times_factorisations"] + sum(s["unknowns"] * s["factorisations"] for s in lost)
     found = {name: a["mesh"][name] for name in _PARAMETERS} | {"solves": len(a["solves"])}
-    found |= {
-        "unknowns": max(s["unknowns"] for s in a["solves"]),
-        "cost": work / base,
-        "work": work,
-        "seconds": seconds,
-    }
+    found |= {"unknowns": max(s["unknowns"] for s in a["solves"]), "cost": work / base, "work": work}
+    found["seconds"] = a["processor_seconds"] + sum(s["processor_seconds"] for s in lost)
     return found | {"values": {name: q["value"] for name, q in a["quantities"].items()}}
 
 
@@ -156,7 +129,7 @@ def of_parameter(name: str, rows: Sequence[Mapping[str, Any]]) -> Iterator[Case]
             continue  # counts, and the quotient of f_T and a given force
         found = [r["quantities"][quantity] for r in rows]
         parts = [r["lengths"].get(quantity, r["quantities"][quantity]) for r in rows]
-        end = limit(found) if name == "contact" else Limit(found[-1], 0.0, None)
+        end = limits.limit(found) if name == "contact" else Limit(found[-1], 0.0, None)
         parameter, of = MeshParameter(), 100 / abs(end.value)
         for k, (coarse, fine) in enumerate(itertools.pairwise(parts[:-1]), start=1):
             parameter.record({quantity: coarse}, {quantity: fine})
@@ -168,18 +141,13 @@ def of_parameter(name: str, rows: Sequence[Mapping[str, Any]]) -> Iterator[Case]
 
 def compute(args: Any) -> None:
     """Run what is missing and keep the numbers."""
-    from benchmarks import hertz, limits
-
     wanted, errors = loops(), harness.kept("errors", args.docs).numbers
     summaries = harness.run({name: scene for name, (scene, _) in wanted.items()}, args, _LIMIT)
-    folder = args.out.parent / "limits"
-    ends = limits.ask_all({"default scene": DEFAULT}, LEVELS, folder, 1)
-    ends |= limits.ask_all(drawn(), LEVELS, folder, args.jobs, uncharged=False)
+    ends = limits.solve_all({"default scene": DEFAULT} | drawn(), LEVELS, args.out.parent / "limits", args.jobs)
     cases, runs = list[Case](), dict[str, Any]()
     base = errors["default"]["unknowns"] * errors["default"]["factorisations"]
     for name, (_, plain) in wanted.items():
-        summary = summaries[name]
-        if "failure" in summary:
+        if "failure" in (summary := summaries[name]):
             runs[name] = {"failure": summary["failure"]}
         elif "failure" in ends[plain]:
             runs[name] = {"unknown": "the limit of this scene is not known"}
@@ -188,31 +156,11 @@ def compute(args: Any) -> None:
             runs[name] = row(summary, base)
     for name in _PARAMETERS:
         cases += of_parameter(name, errors["studies"][name])
-    cases += hertz.cases()
-    numbers = {"cases": [asdict(case) for case in cases], "runs": runs}
+    numbers = {"cases": [asdict(case) for case in [*cases, *calibration.hertz()]], "runs": runs}
     harness.keep("accuracy", numbers, harness.made(summaries.values()), args.docs)
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-_HOW = f"""The *error* is the distance from the limit of the scene's states, solved again on meshes down to a contact
-size of 1.25 µm (`benchmarks/limits.py`). Runs and limits have the same penalty, so that its effect is no part of the
-error. The *estimate* is the run's own, from other meshes (`fingerpad/richardson.py`). The *printed error* is the
-estimate times a factor of safety: {ONCE:g} for a size that was halved or doubled once, {MORE:g} for a size halved more
-often. A case is *covered* if the printed error is at least the error. Where a run has both sorts of sizes, the smaller
-factor is taken here, so that the run prints more. Cases whose error is smaller than its uncertainty are left out. A
-scene gives several cases, so that they are not independent. *Effectivity* is estimate over error; values in brackets
-are not significant: the error is smaller than its uncertainty. All numbers are per cent of the limit.
-
-Ten scenes were drawn at random (one seed): force, voltage and friction from their ranges, lengths, materials and
-roughness within a quarter of the default finger's. Each was run with two requests. *Likely* means that the error is
-within the request, but not by its uncertainty; such cases count as met. Cost is factorisations × unknowns of all
-solves, over those of the default scene's whole run. The kept runs are of several versions, in which the estimate alone
-had to meet a request. The program now requires the printed error to meet it, and so may refine further."""
-_HERTZ = """The contact length of a cylinder is known but for 0.04 %. Its two edges move facet by facet, so that the
-change from one mesh to the next says little of the error of one contact. A finger has some thirty edges, whose errors
-partly cancel."""
-
-
 def _verdicts(runs: Mapping[str, Mapping[str, Any]], cases: Sequence[Case]) -> list[str]:
     """Return how often each request was met in the scenes drawn; a run that failed did not meet it."""
     good: dict[str, list[bool]] = {}
@@ -227,44 +175,35 @@ def _verdicts(runs: Mapping[str, Mapping[str, Any]], cases: Sequence[Case]) -> l
 def _chosen(runs: Mapping[str, Mapping[str, Any]]) -> str:
     rows = []
     for name, r in runs.items():
-        if (words := r.get("failure", r.get("unknown"))) is not None:
-            rows.append([name, words, *[""] * 5])
-        else:
-            sizes = (f"{r[key] * (1 if key == 'growth' else 1e6):g}" for key in _PARAMETERS)
-            rows.append([name, *sizes, r["unknowns"], r["solves"], f"{r['cost']:.2f}"])
+        sizes = [f"{r[key] * (1 if key == 'growth' else 1e6):g}" for key in _PARAMETERS if key in r]
+        cells = [*sizes, r["unknowns"], r["solves"], f"{r['cost']:.2f}"] if sizes else [*r.values(), *[""] * 5]
+        rows.append([name, *cells])
     return harness.table(["scene", *_PARAMETERS.values(), "unknowns", "solves", "cost"], rows)
 
 
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
-    numbers, cases = harness.kept("accuracy", docs), kept(docs)
+    found, cases, text = harness.kept("accuracy", docs), kept(docs), harness.prose("accuracy")
     n, bare, safe = coverage(cases)
-    of = {source: [case for case in cases if case.source == source] for source in (WHOLE, *_PARAMETERS, HERTZ)}
-    verdicts = "; ".join(_verdicts(numbers.numbers["runs"], cases))
-    finding = (
-        f"The printed error of a run is at least the known error in {safe} of {n} cases ({100 * safe / n:.0f} %). "
-        f"Without its factors of safety the estimate covers {bare} ({100 * bare / n:.0f} %).\n\n"
-        f"A requested accuracy was met in the scenes drawn at random: {verdicts}."
-    )
-    parameters = [case for name in _PARAMETERS for case in of[name]]
+    of_bare, of_safe = 100 * bare / n, 100 * safe / n
+    verdicts, how = "; ".join(_verdicts(found.numbers["runs"], cases)), text["how"].format(once=ONCE, more=MORE)
+    finding = text["finding"].format(n=n, bare=bare, safe=safe, of_bare=of_bare, of_safe=of_safe, verdicts=verdicts)
+
+    def part(heading: str, words: str, name: str, sources: Sequence[str]) -> str:
+        mine = [case for source in sources for case in cases if case.source == source]
+        whole = harness.folded(f"All cases of {name}", table(mine))
+        return f"## {heading}\n\n{f'{words} {tally(mine)}'.strip()}\n\n{whole}"
+
     body = [
-        "## Coverage",
-        coverages(cases),
-        "## Whole runs",
-        tally(of[WHOLE]),
-        harness.folded("All cases of whole runs", table(of[WHOLE])),
-        harness.folded("Chosen meshes and their cost", _chosen(numbers.numbers["runs"])),
-        "## One mesh parameter at a time",
-        f"The default scene with one size changed. {tally(parameters)}",
-        harness.folded("All cases of one mesh parameter", table(parameters)),
-        "## Hertz's contact",
-        f"{_HERTZ} {tally(of[HERTZ])}",
-        harness.folded("All cases of Hertz's contact", table(of[HERTZ])),
+        f"## Coverage\n\n{coverages(cases)}",
+        part("Whole runs", "", "whole runs", [WHOLE]),
+        harness.folded("Chosen meshes and their cost", _chosen(found.numbers["runs"])),
+        part("One mesh parameter at a time", text["one"], "one mesh parameter", list(_PARAMETERS)),
+        part("Hertz's contact", text["hertz"], "Hertz's contact", [HERTZ]),
     ]
-    path, by, command = docs / "accuracy.md", numbers.made, "python3 -m benchmarks.accuracy"
-    return harness.page(
-        path, "Accuracy of the error estimate", finding, _HOW, body, command, by, ["accuracy", "errors"]
-    )
+    path, command, names = docs / "accuracy.md", "python3 -m benchmarks.accuracy", ["accuracy", "errors"]
+    title = "Accuracy of the error estimate"
+    return harness.page(path, title, finding, how, body, command, found.made, names)
 
 
 if __name__ == "__main__":

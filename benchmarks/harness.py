@@ -5,19 +5,22 @@ A study has three steps:
 1. :func:`run` computes those of its scenes that are missing in ``results/traces``, kept by their parameters;
 2. :func:`keep` writes the numbers that its page shows to ``docs/NAME.json``, with the version that made them;
 3. its function ``draw(docs)`` reads them by :func:`kept` and writes page and pictures by :func:`page` and
-   :func:`picture`. Step 3 needs no run: ``python3 -m benchmarks.pages`` repeats it for every page.
+   :func:`picture`, its texts by :func:`prose`. No run is needed: ``python3 -m benchmarks.pages`` draws all again.
 """
 
 import argparse
 import json
 import math
+import re
 import subprocess
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import date
+from functools import cache
 from pathlib import Path
 from typing import Any
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fingerpad.cli.arguments import positive
@@ -221,6 +224,14 @@ def page(
     return path
 
 
+@cache
+def prose(name: str) -> dict[str, str]:
+    """Return the texts of a page by their headings in ``benchmarks/prose/NAME.md``, with places to fill in braces."""
+    text = (ROOT / "benchmarks" / "prose" / f"{name}.md").read_text(encoding="utf-8")
+    parts = re.split(r"^# (\w+)\n", text, flags=re.MULTILINE)
+    return {heading: words.strip() for heading, words in zip(parts[1::2], parts[2::2], strict=True)}
+
+
 def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
     """Return a Markdown table; numbers have four digits, None is a dash."""
     lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
@@ -254,3 +265,12 @@ def picture(path: Path, size: tuple[float, float], paint: Callable[[Figure], Non
         paint(figure)
         figure.savefig(path)
     return f"![{caption}]({path.name})\n\n*{caption}*"
+
+
+def ticks(ax: Axes, values: Sequence[float], grid: bool = True) -> None:
+    """Label the given values alone on a horizontal logarithmic axis."""
+    ax.set_xscale("log")
+    ax.set_xticks(values, [f"{value:g}" for value in values])
+    ax.minorticks_off()
+    if grid:
+        ax.grid(alpha=0.3)

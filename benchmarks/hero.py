@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import ConnectionPatch, Polygon
 from numpy.typing import NDArray
 
-from benchmarks.harness import DOCS, keep, kept, made
+from benchmarks.harness import DOCS, keep, kept, made, picture
 from fingerpad.io import style
 from fingerpad.io.finger_picture import LAYER_COLOURS, interfaces
 from geometry import tags
@@ -36,11 +37,8 @@ def main(folder: str) -> None:
             outlines += [{"layer": int(tag), "points": _rows(_thinned(xy[loop]))} for loop in _loops(edges)]
     with np.load(Path(folder) / "surface_slide.npz") as a:
         ridge = {name: a[f"end_{name}"][a["end_ridge"] == RIDGE] for name in ("x", "y", "p", "p_el", "d_eq")}
-    compared = kept("models").numbers["scenes"]  # full runs, contact size 10 µm
-    friction = {
-        str(f): [[u, compared[f"{f} N/m, {u} V"]["full"]["summary"]["slip_mu_app"]] for u in range(0, 201, 50)]
-        for f in FORCES
-    }
+    full = {name: scene["full"].get("summary") for name, scene in kept("models").numbers["scenes"].items()}
+    friction = {str(f): [[u, full[f"{f} N/m, {u} V"]["slip_mu_app"]] for u in range(0, 201, 50)] for f in FORCES}
     along = {name: _rows([float(f"{v:.6g}") for v in values]) for name, values in ridge.items()}
     keep("hero", {"finger": outlines, "ridge": along, "friction": friction}, made([summary]))
     draw(DOCS)
@@ -82,19 +80,19 @@ def draw(docs: Path) -> Path:
     """Draw docs/hero.png from docs/hero.json; return its path."""
     numbers = kept("hero", docs).numbers
     ridge = {name: np.concatenate(values) for name, values in numbers["ridge"].items()}
-    with style.look():
-        figure = style.figure(3.5)
+    centre = float(ridge["x"][ridge["p"] > 0].mean())
+
+    def paint(figure: Figure) -> None:
         whole, near, friction = figure.subplots(1, 3, width_ratios=[1.55, 1, 1.05])
         _draw_finger(whole, numbers["finger"])
-        centre = float(ridge["x"][ridge["p"] > 0].mean())
         _draw_ridge(near, ridge, centre)
+        _draw_friction(friction, numbers["friction"])
         whole.plot(_MM * centre, 0.1, "o", ms=13, mfc="none", mec="black", mew=1.5, zorder=5)
         look: dict[str, Any] = {"axesA": whole, "axesB": near, "color": "0.4", "ls": "--"}
         for corner in (0, 1):
-            ends = (_MM * centre, 0.1), (0, corner)
-            figure.add_artist(ConnectionPatch(*ends, "data", "axes fraction", **look))
-        _draw_friction(friction, numbers["friction"])
-        style.save(figure, docs / "hero.png")
+            figure.add_artist(ConnectionPatch((_MM * centre, 0.1), (0, corner), "data", "axes fraction", **look))
+
+    picture(docs / "hero.png", (style.WIDTH, 3.5), paint, "")
     return docs / "hero.png"
 
 
@@ -135,12 +133,12 @@ def _draw_friction(ax: Axes, friction: dict[str, list[list[float]]]) -> None:
         u, mu = np.array(points).T
         shown = force == "75"
         ax.plot(u, mu, color="black" if shown else "0.65", lw=2 if shown else 1.2, zorder=2)
-        words = f"{mu[-1]:.2f} at\n{force} N/m" if shown else f"{force} N/m"
-        weight = "bold" if shown else "normal"
-        ax.text(215, mu[-1], words, va="center", color="black" if shown else "0.4", weight=weight, fontsize=9)
         if shown:
+            ax.text(215, mu[-1], f"{mu[-1]:.2f} at\n{force} N/m", va="center", weight="bold", fontsize=9)
             ax.scatter(u, mu, c=[style.voltage(each) for each in u], s=42, zorder=3)
             ax.text(0, mu[0] - 0.07, f"{mu[0]:.2f}", weight="bold", fontsize=9)
+        else:
+            ax.text(215, mu[-1], f"{force} N/m", va="center", color="0.4", fontsize=9)
     ax.set(xlim=(-10, 320), ylim=(0, 0.8), xlabel="voltage (V)", ylabel="friction coefficient $f_T / f_{ext}$ (–)")
     ax.set_xticks([0, 100, 200])
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks import harness
-from benchmarks.traces import FORCES, SITES, VOLTAGES, trace
+from benchmarks.runs import FORCES, SITES, VOLTAGES, trace
 from fingerpad.io.states import PREFIXES, WORDS
 from fingerpad.model.touching import by_rule
 from fingerpad.reduced import cylinders
@@ -33,6 +33,7 @@ QUANTITIES = {
     "normal_f_electrostatic": f"attraction, {WORDS['charged']}",
 }
 _LAYERS = ("subcutis", "dermis", "viable_epidermis", "stratum_corneum")
+_COST = ("seconds", "factorisations", "unknowns")
 
 
 # -- numbers -------------------------------------------------------------------------------------------------
@@ -65,9 +66,8 @@ def answer(summary: Summary) -> dict[str, Any]:
         return {"failure": summary["failure"]}
     keys = (f"{PREFIXES[state]}_{key}" for state in ("charged", "full_slip") for key in RESULTS)
     found = {"full_slip": summary["full_slip"]} | {key: summary[key] for key in keys if summary[key] is not None}
-    cost = {"seconds": summary["processor_seconds"]} | {key: summary[key] for key in ("factorisations", "unknowns")}
-    more = {key: summary[key] for key in ("table_version",) if key in summary}
-    return {"summary": found, "cost": cost, "more": more}
+    cost = {key: summary["processor_seconds" if key == "seconds" else key] for key in _COST}
+    return {"summary": found, "cost": cost, "more": {key: summary[key] for key in ("table_version",) if key in summary}}
 
 
 def compute(args: argparse.Namespace) -> None:
@@ -76,127 +76,98 @@ def compute(args: argparse.Namespace) -> None:
     full = harness.run(wanted | ends, args, _LIMIT)
     own = argparse.Namespace(**vars(args) | {"out": args.out.parent / "smooth"})
     smooth = harness.run(wanted, own, _LIMIT, "smooth")
-    found = {
-        key: {
-            "cylinders": answer(cylinders.solve(scene).to_dict()),
-            "smooth": answer(smooth[key]),
-            "full": answer(full[key]),
-        }
-        for key, scene in wanted.items()
-    }
-    rows = [
-        {"scene": key, "mu_app": full[key].get("slip_mu_app"), "end": full[key].get("failure", "reaches its end")}
-        for key in ends
-    ]
+    found = {}
+    for key, scene in wanted.items():
+        summaries = {"cylinders": cylinders.solve(scene).to_dict(), "smooth": smooth[key], "full": full[key]}
+        found[key] = {model: answer(summary) for model, summary in summaries.items()}
+    last = [(key, full[key].get("slip_mu_app"), full[key].get("failure", "reaches its end")) for key in ends]
+    rows = [dict(zip(("scene", "mu_app", "end"), row, strict=True)) for row in last]
     harness.keep("models", {"scenes": found, "extremes": rows}, harness.made(full.values()), args.docs)
+
+
+def value(found: Mapping[str, Any], model: str, key: str) -> float | None:
+    """Return a model's value in one scene, None where it is not known."""
+    return found.get(model, {}).get("summary", {}).get(key)
 
 
 def error(found: Mapping[str, Any], model: str, key: str) -> float | None:
     """Return a model's relative error against the full run, None where either is not known."""
-    own, full = (found.get(each, {}).get("summary", {}).get(key) for each in (model, "full"))
+    own, full = value(found, model, key), value(found, "full", key)
     return None if own is None or not full else own / full - 1
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-_HOW = """Forty scenes of the default finger were pressed to {forces} N/m, charged to {voltages} V and slid to full
-slip. Errors are relative to the full model at a contact size of 10 µm and 20 µm at the Merkel sites; the full model's
-own errors are in [errors.md](errors.md). Seconds are processor time; those of the kept full runs are wall time on a
-shared machine. The smooth finger's table of one ridge takes some seconds more, once for each voltage and friction
-coefficient.
-
-The charged cylinders take the uncharged contact length from the full runs at 0 V. Their errors at 0 V are zero by
-construction. They miss ridges that jump onto the screen with the voltage: two of thirteen at 25 N/m and 200 V. The
-smooth finger uses no full run. It counts ridges by their mean height, which misses some that barely touch."""
+_ANSWERS = "forces, friction and contact length"
+_WHICH = {  # model: finger it is for, its answers
+    "cylinders": ("the default finger, or one whose uncharged contact length is known", _ANSWERS),
+    "smooth": ("any finger", f"{_ANSWERS}, height of the bone"),
+    "full": ("any finger", "everything, receptors too"),
+}
 
 
-def _percents(scenes: Mapping[str, Any], model: str, key: str) -> str:
+def _largest(scenes: Mapping[str, Any], model: str, key: str) -> str:
     """Return the largest error of a model."""
     found = [abs(e) for each in scenes.values() if (e := error(each, model, key)) is not None]
-    return f"{100 * max(found):.1f} %" if found else "–"
+    return f"{100 * max(found):.1f} %" if found and model != "full" else "–"
 
 
 def _takes(scenes: Mapping[str, Any], model: str) -> str:
     costs = [each[model]["cost"] for each in scenes.values() if "cost" in each.get(model, {})]
-    keys = ("seconds", "factorisations", "unknowns")
-    seconds, factorisations, unknowns = (float(np.median([c[key] for c in costs])) for key in keys)
+    seconds, factorisations, unknowns = (float(np.median([c[key] for c in costs])) for key in _COST)
     words = f"{seconds:.2g} s" if seconds < 10 else f"{seconds:.0f} s"
     return f"{words}, {factorisations:.0f} factorisations, {unknowns:.0f} unknowns" if unknowns else words
 
 
 def _which(scenes: Mapping[str, Any]) -> str:
     """Return the table that chooses a model."""
-    head = ["model", "for", "answers", "largest error of µ_app", "of the contact length at full slip", "takes"]
-    forces = "forces, friction and contact length"
-    rows = [
-        ["`cylinders`", "the default finger, or one whose uncharged contact length is known", forces],
-        ["`smooth`", "any finger", f"{forces}, height of the bone"],
-        ["`full`", "any finger", "everything, receptors too", "–", "–", _takes(scenes, "full")],
-    ]
-    for row, model in zip(rows, MODELS, strict=False):
-        row += [_percents(scenes, model, key) for key in ("slip_mu_app", "slip_contact_length")] + [
-            _takes(scenes, model)
-        ]
-    return harness.table(head, rows)
+    rows, keys = [], ("slip_mu_app", "slip_contact_length")
+    for model, words in _WHICH.items():
+        rows.append([f"`{model}`", *words, *(_largest(scenes, model, key) for key in keys), _takes(scenes, model)])
+    errors = ("largest error of µ_app", "of the contact length at full slip")
+    return harness.table(["model", "for", "answers", *errors, "takes"], rows)
 
 
 def _matrix(scenes: Mapping[str, Any], model: str, key: str) -> str:
     """Return a table over force and voltage: errors (%) of a reduced model, or the value of the full one."""
-    rows = []
-    for f in FORCES:
-        cells = []
-        for u in VOLTAGES:
-            found = scenes.get(name(f, u), {})
-            if model == "full":
-                cells.append(found["full"]["summary"].get(key) if "summary" in found.get("full", {}) else None)
-            else:
-                e = error(found, model, key)
-                cells.append(None if e is None else f"{1e2 * e:+.1f}")
-        rows.append([f"{f:g}", *cells])
+
+    def cell(found: Mapping[str, Any]) -> Any:
+        if model == "full":
+            return value(found, model, key)
+        return None if (e := error(found, model, key)) is None else f"{1e2 * e:+.1f}"
+
+    rows = [[f"{f:g}", *(cell(scenes.get(name(f, u), {})) for u in VOLTAGES)] for f in FORCES]
     return harness.table(["f_ext (N/m)", *(f"{u:g} V" for u in VOLTAGES)], rows)
 
 
 def _section(scenes: Mapping[str, Any], model: str) -> list[str]:
     """Return the parts of the page on a reduced model."""
     failed = [key for key, each in scenes.items() if "failure" in each.get(model, {})]
+    answers = [each[model]["more"] for each in scenes.values() if "more" in each.get(model, {})]
+    versions = [more.get("table_version", 0) for more in answers]
+    old = sum(version < max(versions) for version in versions)
     parts = [f"## Errors of the {MODELS[model]} (`{model}`), in per cent of the full model"]
     parts += [f"No answer at {'; '.join(failed)}."] * bool(failed)
-    versions = [
-        each[model]["more"].get("table_version", 0) for each in scenes.values() if "more" in each.get(model, {})
-    ]
-    old = sum(version < max(versions) for version in versions)
-    if model == "smooth" and old:
-        parts.append(
-            f"{old} of the answers are by an older law of one ridge, whose forces fall over 0.5 µm of height when the "
-            "ridge lets go (2 µm now)."
-        )
-    for key, words in QUANTITIES.items():
-        text = f"**{words}**\n\n{_matrix(scenes, model, key)}"
-        parts.append(text if key == "slip_mu_app" else harness.folded(words, _matrix(scenes, model, key)))
-    return parts
+    parts += [harness.prose("models")["old"].format(n=old)] * bool(old)
+    first, *others = ((words, _matrix(scenes, model, key)) for key, words in QUANTITIES.items())
+    return [*parts, f"**{first[0]}**\n\n{first[1]}", *(harness.folded(words, matrix) for words, matrix in others)]
 
 
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
-    kept = harness.kept("models", docs)
+    kept, text = harness.kept("models", docs), harness.prose("models")
     scenes, ends = kept.numbers["scenes"], kept.numbers["extremes"]
-    largest = {model: _percents(scenes, model, "slip_mu_app") for model in MODELS}
+    largest = {model: _largest(scenes, model, "slip_mu_app") for model in MODELS}
     full = [each["full"] for each in scenes.values() if "full" in each]
     slips = sum(bool(each.get("summary", {}).get("full_slip")) for each in full)
-    finding = (
-        "For friction alone the reduced models suffice: the charged cylinders give µ_app within "
-        f"{largest['cylinders']} of the full model at once, the smooth finger within {largest['smooth']} in seconds. "
-        f"Pressures, air gaps and receptors need the full model, which reached full slip in {slips} of {len(full)} "
-        f"scenes.\n\n{_which(scenes)}\n\n"
-        "`fingerpad compare scene.toml --model cylinders smooth full` runs them side by side."
-    )
-    lists = (", ".join(f"{value:g}" for value in each) for each in (FORCES, VOLTAGES))
+    finding = text["finding"].format(**largest, slips=slips, n=len(full), which=_which(scenes))
+    forces, voltages = (", ".join(f"{value:g}" for value in each) for each in (FORCES, VOLTAGES))
     body = [part for model in MODELS for part in _section(scenes, model)]
     body += ["## Full runs", f"**{QUANTITIES['slip_mu_app']}**\n\n{_matrix(scenes, 'full', 'slip_mu_app')}"]
-    rows = [[row["scene"], row["mu_app"], row["end"]] for row in ends]
-    body += ["At the ends of the range of use:", harness.table(["scene", "µ_app, full slip", "end"], rows)]
-    how = _HOW.format(**dict(zip(("forces", "voltages"), lists, strict=True)))
-    command = "python3 -m benchmarks.models"
-    return harness.page(docs / "models.md", "Which model when", finding, how, body, command, kept.made, ["models"])
+    table = harness.table(["scene", "µ_app, full slip", "end"], [list(row.values()) for row in ends])
+    body += ["At the ends of the range of use:", table]
+    path, command = docs / "models.md", "python3 -m benchmarks.models"
+    how = text["how"].format(forces=forces, voltages=voltages)
+    return harness.page(path, "Which model when", finding, how, body, command, kept.made, ["models"])
 
 
 if __name__ == "__main__":

@@ -11,10 +11,9 @@ import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, NamedTuple, get_args
+from typing import Any, get_args
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from benchmarks import harness
@@ -31,14 +30,6 @@ TRENDS: tuple[Trend, ...] = get_args(Trend)
 READINGS = (SelfAffine(plateau=True), SelfAffine(plateau=False))
 
 
-class Bias(NamedTuple):
-    """The rms heights (m) of spots after detrending: mean and scatter over spots, and the expected root mean square."""
-
-    mean: float
-    scatter: float
-    expected: float
-
-
 def spots(surface: HeightMap, length: float) -> Iterator[HeightMap]:
     """Yield square spots of ``length`` (m), at most 16 of a surface, a quarter of its side apart or more."""
     n = len(surface.heights)
@@ -51,34 +42,25 @@ def expected_rms(kind: SelfAffine, n: int, pixels: int, trend: Trend) -> float:
     """Return the root of the expected mean square (m) of a detrended spot, from the spectrum and without a surface.
 
     The spot's expected square along a polynomial phi is the sum over modes of C / A times the square of phi's
-    Fourier transform.
-
-    Args:
-        kind: the roughness.
-        n: pixels along the side of the surface.
-        pixels: those along the side of the spot.
-        trend: what is removed.
+    Fourier transform. The sides of the surface and of the spot have ``n`` and ``pixels`` pixels.
     """
     variance = kind.modes((n, n), (SIDE, SIDE)) / SIDE**2
-    lost = 0.0
-    for phi in polynomials((pixels, pixels), TRENDS.index(trend)).T:
-        lost += float(np.sum(variance * np.abs(np.fft.fft2(phi.reshape(pixels, pixels), s=(n, n))) ** 2))
-    return float(np.sqrt(kind.h_rms**2 - lost / pixels**2))
+    spot = (pixels, pixels)
+    modes = (np.abs(np.fft.fft2(phi.reshape(spot), s=(n, n))) for phi in polynomials(spot, TRENDS.index(trend)).T)
+    return float(np.sqrt(kind.h_rms**2 - sum(float(np.sum(variance * mode**2)) for mode in modes) / pixels**2))
 
 
-def biases(kind: SelfAffine, surfaces: int, n: int = COARSE) -> dict[tuple[float, Trend], Bias]:
-    """Return the bias by window (m) and trend from many spots of ``surfaces`` surfaces."""
+def biases(kind: SelfAffine) -> Iterator[dict[str, Any]]:
+    """Yield, by window and trend, mean and scatter of the rms heights (m) of many spots, and the expected value."""
     rms: dict[tuple[float, Trend], list[float]] = {(w, trend): [] for w in WINDOWS for trend in TRENDS}
-    for seed in range(surfaces):
-        surface = kind.surface((n, n), (SIDE, SIDE), seed)
+    for seed in range(SURFACES):
+        surface = kind.surface((COARSE, COARSE), (SIDE, SIDE), seed)
         for window, trend in rms:
             rms[window, trend] += [spot.detrended(trend).h_rms for spot in spots(surface, window)]
-    return {
-        (w, trend): Bias(
-            float(np.mean(values)), float(np.std(values)), expected_rms(kind, n, round(n * w / SIDE), trend)
-        )
-        for (w, trend), values in rms.items()
-    }
+    for (window, trend), values in rms.items():
+        found = {"mean": float(np.mean(values)), "scatter": float(np.std(values))}
+        found["expected"] = expected_rms(kind, COARSE, round(COARSE * window / SIDE), trend)
+        yield asdict(kind) | {"window": window, "trend": trend} | found
 
 
 def _rings(spectrum: PowerSpectrum) -> dict[str, list[float]]:
@@ -101,135 +83,77 @@ def compute(args: Any) -> None:
         "fit": {"hurst": fit.hurst, "q_range": list(fit.q_range)},
         "table": roughness_table(*cut),
         "spectra": {"surface": _rings(power_spectrum(surface)), "spots": _rings(spectrum)},
-        "bias": [
-            asdict(kind) | {"window": window, "trend": trend, **found._asdict()}
-            for kind in READINGS
-            for (window, trend), found in biases(kind, SURFACES).items()
-        ],
+        "bias": [bias for kind in READINGS for bias in biases(kind)],
     }
     harness.keep("topography", numbers, harness.made(), args.docs)
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-_HOW = """The maps measured for Fig. 3 of the paper are not public. Synthetic Gaussian surfaces stand for them, with the
-paper's parameters: h_rms {wanted:g} µm, H = {hurst:g}, λ0 = {wavelength:g} µm, over 800 µm × 800 µm.
-`variational/roughness/` analyses measured maps the same way. (The paper's q0 of 6.3e5 1/m is ten times too large.)
-
-With h_rms² = (1/2π) ∫ q C dq the prefactor 4πH/(1+H) printed in Eq. 8 belongs to a spectrum that is constant below
-q0 = 2π/λ0 = {q_0:.3g} 1/m, the *plateau*. From q0 up this spectrum holds {share:.0%} of the
-variance, {part:.2f} µm rms. Without wavelengths above λ0 the prefactor is 4πH."""
-_SPOTS = """Eight spots of 100 µm × 100 µm, curvature removed as in section 3.1, have h_rms {h_rms:.2f} µm,
-skewness {skewness:.2f} and kurtosis {kurtosis:.2f}. Their cumulative distribution differs from a Gaussian's by
-{distance:.3f} at most. Their mean spectrum (Hann's window) gives H = {hurst:.2f}, fitted between wavelengths of
-{longest:.0f} µm and {shortest:.1f} µm. Spots of this length cannot show a roll-off at 100 µm: the window mixes longer
-modes, and detrending weakens them. The paper's λ0 = 100 µm is the length of its spots, which `roughness_table` takes,
-too, when no roll-off is found. `roughness_table` makes of these spots the table of a scene:
-
-    [roughness]
-    h_rms = {scene_h_rms:.3g}
-    wavelength = {scene_wavelength:.3g}"""
-_BIAS = """Rms height (µm) of spots of a surface of {wanted:g} µm rms: mean ± scatter from spot to spot
-over {surfaces} surfaces. In brackets is the root of the expected mean square, summed from the spectrum."""
-
-
 def _chosen(numbers: Mapping[str, Any], plateau: bool, trend: str) -> list[dict[str, Any]]:
     return [b for b in numbers["bias"] if b["plateau"] == plateau and b["trend"] == trend]
 
 
 def _bias_table(numbers: Mapping[str, Any], plateau: bool) -> str:
-    rows = []
-    for k, window in enumerate(WINDOWS):
-        found = [_chosen(numbers, plateau, trend)[k] for trend in TRENDS]
-        cells = (f"{b['mean'] * _UM:.2f} ± {b['scatter'] * _UM:.2f} ({b['expected'] * _UM:.2f})" for b in found)
-        rows.append([f"{window * _UM:g}", *cells])
+    def cell(bias: Mapping[str, Any]) -> str:
+        mean, scatter, expected = (bias[key] * _UM for key in ("mean", "scatter", "expected"))
+        return f"{mean:.2f} ± {scatter:.2f} ({expected:.2f})"
+
+    columns = [list(map(cell, _chosen(numbers, plateau, trend))) for trend in TRENDS]
+    rows = [[f"{window * _UM:g}", *cells] for window, *cells in zip(WINDOWS, *columns, strict=True)]
     return harness.table(["window (µm)", *(f"{trend} removed" for trend in TRENDS)], rows)
 
 
-def _spectrum(ax: Axes, numbers: Mapping[str, Any]) -> None:
-    """Draw the spectra over Eq. 8 as printed, in which they would coincide with it."""
+def _paint(figure: Figure, numbers: Mapping[str, Any], wanted: float) -> None:
+    """Draw spectra over Eq. 8 as printed, and rms heights over the size of the spot with their scatter as bars."""
+    left, right = figure.subplots(1, 2)
     printed, other = READINGS
     marks = (("surface", "o", harness.GREY, "whole surface, 800 µm"), ("spots", "s", harness.GREEN, "8 spots, 100 µm"))
     for key, marker, colour, label in marks:
         q, psd = (np.array(numbers["spectra"][key][name]) for name in ("q", "psd"))
-        ax.plot(q, psd / printed.psd(q), marker, color=colour, ms=5, label=label)
-    ends = np.array([2 * np.pi / SIDE, numbers["spectra"]["spots"]["q"][-1]])
-    ax.plot(ends, [1, 1], color=harness.BLUE, label="Eq. 8 as printed, with plateau")
-    ratio = float(other.psd(2 * other.q_0) / printed.psd(2 * other.q_0))
-    ax.plot(
-        [other.q_0, other.q_0, ends[1]],
-        [0, ratio, ratio],
-        "--",
-        color=harness.VERMILION,
-        label="4πH, nothing below $q_0$",
-    )
-    ax.set(
-        xscale="log", ylim=(0, 3.2), xlabel="wavevector q (1/m)", ylabel="$C$ / $C$ of Eq. 8", title="Power spectrum"
-    )
-    ax.legend(loc="upper right")
-
-
-def _bias(ax: Axes, numbers: Mapping[str, Any], wanted: float) -> None:
-    """Draw the rms height of spots over their size, bars: scatter from spot to spot."""
+        left.plot(q, psd / printed.psd(q), marker, color=colour, ms=5, label=label)
+    last, edge = numbers["spectra"]["spots"]["q"][-1], other.q_0
+    left.plot([2 * np.pi / SIDE, last], [1, 1], color=harness.BLUE, label="Eq. 8 as printed, with plateau")
+    ratio = float(other.psd(2 * edge) / printed.psd(2 * edge))
+    without = [edge, edge, last], [0, ratio, ratio]
+    left.plot(*without, "--", color=harness.VERMILION, label="4πH, nothing below $q_0$")
+    left.set(xscale="log", xlabel="wavevector q (1/m)", ylabel="$C$ / $C$ of Eq. 8", title="Power spectrum")
+    left.set_ylim(0, 3.2)
+    left.legend(loc="upper right")
     curves: list[tuple[Trend, bool]] = [*((trend, True) for trend in TRENDS), ("curvature", False)]
     colours = (harness.GREY, harness.SKY, harness.BLUE, harness.BLUE)
     for k, ((trend, plateau), colour) in enumerate(zip(curves, colours, strict=True)):
         found = _chosen(numbers, plateau, trend)
-        window = np.array([b["window"] for b in found]) * _UM * (1 + 0.05 * (k - 1))
-        rms, bar = (np.array([b[key] for b in found]) * _UM for key in ("mean", "scatter"))
+        window, rms, bar = (np.array([b[key] for b in found]) * _UM for key in ("window", "mean", "scatter"))
         look: dict[str, Any] = {} if plateau else {"ls": "--", "mfc": "white"}
-        label = f"{trend} removed" + ("" if plateau else ", no plateau")
-        ax.errorbar(window, rms, bar, color=colour, capsize=2, marker="o", label=label, **look)
-    ax.axhline(wanted, color="black", lw=1, ls=":", label="whole surface")
-    ax.set(
-        xscale="log", ylim=(0, 4), xlabel="size of the spot (µm)", ylabel="rms height (µm)", title="What a spot misses"
-    )
-    ax.set_xticks([w * _UM for w in WINDOWS], [f"{w * _UM:g}" for w in WINDOWS])
-    ax.minorticks_off()
-    ax.legend(loc="lower right")
+        label, beside = f"{trend} removed" + ("" if plateau else ", no plateau"), 1 + 0.05 * (k - 1)
+        right.errorbar(window * beside, rms, bar, color=colour, capsize=2, marker="o", label=label, **look)
+    right.axhline(wanted, color="black", lw=1, ls=":", label="whole surface")
+    right.set(ylim=(0, 4), xlabel="size of the spot (µm)", ylabel="rms height (µm)", title="What a spot misses")
+    harness.ticks(right, [w * _UM for w in WINDOWS], grid=False)
+    right.legend(loc="lower right")
 
 
 def draw(docs: Path) -> Path:
     """Draw page and picture from the kept numbers."""
-    kept = harness.kept("topography", docs)
+    kept, text = harness.kept("topography", docs), harness.prose("topography")
     numbers, printed = kept.numbers, READINGS[0]
-    wanted, share = printed.h_rms * _UM, 1 / (1 + printed.hurst)
+    wanted, share, heights = printed.h_rms * _UM, 1 / (1 + printed.hurst), numbers["heights"]
     plateau, none = (_chosen(numbers, each, "curvature")[WINDOWS.index(SPOT)] for each in (True, False))
+    shown, bare = (f"{b['mean'] * _UM:.2f} ± {b['scatter'] * _UM:.2f} µm" for b in (plateau, none))
     below = wanted * printed.h_rms / plateau["expected"]
-    shown, shown_without = (f"{b['mean'] * _UM:.2f} ± {b['scatter'] * _UM:.2f} µm" for b in (plateau, none))
-    finding = (
-        f"A map of 100 µm × 100 µm shows only part of the roughness. Of a surface of {wanted:g} µm rms, it has {shown} "
-        "once its curvature is removed, if the surface has the plateau that the prefactor printed in Eq. 8 assumes. "
-        f"Without a plateau it has {shown_without}.\n\n"
-        f"The other way round, spots that show {wanted:g} µm lie on a surface of {below:.1f} µm rms (plateau, λ0 = 100 "
-        f"µm). The model takes {wanted:g} µm, measured on spots, for h_rms in Eqs. 8 to 15."
-    )
-
-    def paint(figure: Figure) -> None:
-        left, right = figure.subplots(1, 2)
-        _spectrum(left, numbers)
-        _bias(right, numbers, wanted)
-
-    how = _HOW.format(
-        wanted=wanted, hurst=printed.hurst, wavelength=printed.wavelength * _UM, q_0=printed.q_0, share=share,
-        part=wanted * share**0.5,
-    )  # fmt: skip
+    finding = text["finding"].format(wanted=wanted, below=below, shown=shown, bare=bare)
+    paper = {"hurst": printed.hurst, "wavelength": printed.wavelength * _UM, "q_0": printed.q_0}
+    how = text["how"].format(wanted=wanted, share=share, part=wanted * share**0.5, **paper)
     longest, shortest = (2 * np.pi / q * _UM for q in numbers["fit"]["q_range"])
-    table = {f"scene_{key}": value for key, value in numbers["table"].items()}
-    of_spots = numbers["heights"] | {"h_rms": numbers["heights"]["h_rms"] * _UM}
-    spot = {"longest": longest, "shortest": shortest, "hurst": numbers["fit"]["hurst"]} | of_spots | table
-    caption = (
-        "Left: spectra over Eq. 8; spots lose the longest waves, of which a surface has few. Right: rms height of "
-        "spots; bars: scatter from spot to spot."
-    )
-    surfaces = numbers["surfaces"]
+    spot = heights | {"h_rms": heights["h_rms"] * _UM, "hurst": numbers["fit"]["hurst"], "table": numbers["table"]}
     body = [
-        harness.picture(docs / "topography.png", (9, 4), paint, caption),
-        "## What a spot misses",
-        _BIAS.format(wanted=wanted, surfaces=surfaces),
+        harness.picture(
+            docs / "topography.png", (9, 4), lambda figure: _paint(figure, numbers, wanted), text["caption"]
+        ),
+        text["bias"].format(wanted=wanted, surfaces=numbers["surfaces"]),
         f"With the plateau:\n\n{_bias_table(numbers, True)}",
         f"Without the plateau:\n\n{_bias_table(numbers, False)}",
-        "## Eight spots of one surface",
-        _SPOTS.format(**spot),
+        text["spots"].format(longest=longest, shortest=shortest, **spot),
     ]
     path, command = docs / "topography.md", "python3 -m benchmarks.topography"
     return harness.page(path, "Topography of a ridge", finding, how, body, command, kept.made, ["topography"])

@@ -2,10 +2,10 @@
 
 import pytest
 
-from benchmarks import chart, errors, harness, points
-from benchmarks.convergence import Limit
+from benchmarks import chart, errors, harness
+from benchmarks.chart import AGAIN, ALL, QUANTITIES, REDUCED, Point
 from benchmarks.errors import STATES
-from benchmarks.points import AGAIN, ALL, QUANTITIES, REDUCED, Point
+from benchmarks.limits import Limit
 
 REFERENCE = dict.fromkeys(QUANTITIES, Limit(1.0, 0.001, None))
 BY = harness.Made("0", "abc", "2026-01-01")
@@ -48,7 +48,7 @@ def test_run_without_its_time_is_in_the_chart_of_work_alone():
     assert [p.label for p in chart.front(more, "slip_f_t", "seconds")] == ["worse", "default", "expensive"]
 
 
-@pytest.mark.parametrize("family", [AGAIN, REDUCED, points.OTHER_MODEL])
+@pytest.mark.parametrize("family", [AGAIN, REDUCED, chart.OTHER_MODEL])
 def test_front_is_of_whole_paths_of_the_model(family):
     """States without a path and another penalty may come out near the limit, and are no part of it."""
     other = point("other", 0.5, 0.5, 1e-6, family)
@@ -76,7 +76,7 @@ def test_states_without_a_path_have_a_table_of_their_own(tmp_path):
 
 
 def test_every_scene_is_another():
-    scenes = points.scenes()
+    scenes = chart.scenes()
     assert len({str(scene.parameters()) for scene in scenes.values()}) == len(scenes)
 
 
@@ -102,7 +102,7 @@ def kept(tmp_path):
     harness.keep("errors", {"again": again}, BY, tmp_path)
     harness.keep("accuracy", {"runs": {"default scene; µ_app 1 %": run, "1: other; µ_app 1 %": run}}, BY, tmp_path)
     harness.keep("models", {"scenes": {scene: {"smooth": smooth, "full": smooth}}}, BY, tmp_path)
-    return {p.label: p for p in points.without_path(tmp_path, REFERENCE)}
+    return {p.label: p for p in chart.without_path(tmp_path, REFERENCE)}
 
 
 def test_states_cost_their_path_and_coarser_meshes(kept):

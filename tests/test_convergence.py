@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.convergence import limit
+from benchmarks.limits import limit
 
 SIZES = 0.5 ** np.arange(4)
 

@@ -4,7 +4,6 @@ import json
 from types import SimpleNamespace
 
 import pytest
-from mpi4py import MPI
 
 from benchmarks import limits
 from fingerpad.runs.processes import End
@@ -49,20 +48,19 @@ def path(monkeypatch):
 
 
 def test_path_that_is_lost_is_followed_on_a_finer_mesh(path):
-    assert limits._path(Scene(), False, MPI.COMM_SELF) == 10e-6
+    assert limits._path(Scene()) == 10e-6
     assert Path.tried == [20e-6, 10e-6]
 
 
-@pytest.mark.parametrize(("uncharged", "kept"), [(True, {"uncharged": 10e-6}), (False, {})])
-def test_uncharged_contact_is_kept_where_it_is_asked_for(path, uncharged, kept):
-    limits._path(Scene(), uncharged, MPI.COMM_SELF)
-    assert StateRecorder.kept == kept
+def test_uncharged_contact_is_kept(path):
+    limits._path(Scene())
+    assert StateRecorder.kept == {"uncharged": 10e-6}
 
 
 def test_path_that_is_lost_on_all_meshes_is_a_failure(path, monkeypatch):
     monkeypatch.setattr(limits, "_STARTS", (40e-6, 20e-6))
     with pytest.raises(StepFailed, match="lost at 2e-05"):
-        limits._path(Scene(), False, MPI.COMM_SELF)
+        limits._path(Scene())
 
 
 def test_meshes_are_halved_in_all_sizes():
@@ -73,10 +71,10 @@ def test_meshes_are_halved_in_all_sizes():
 
 def test_kept_scene_is_not_solved_again(tmp_path, monkeypatch):
     """A scene that failed has its reason and is tried again the next time; one that was solved is not."""
-    asked = []
+    solved = []
 
     def run(module, arguments, limit):
-        asked.append(arguments[3:])
+        solved.append(arguments[1])
         scene = json.loads((tmp_path / arguments[0]).read_text(encoding="utf-8"))
         if scene["voltage"] == 50.0:
             return End(1, "CRASH_1", "no equilibrium", "")
@@ -84,10 +82,10 @@ def test_kept_scene_is_not_solved_again(tmp_path, monkeypatch):
 
     monkeypatch.setattr(limits, "run", run)
     scenes = {"good": Scene(), "bad": Scene(voltage=50.0)}
-    found = limits.ask_all(scenes, 3, tmp_path, 1, uncharged=False)
+    found = limits.solve_all(scenes, 3, tmp_path, 1)
     assert found == {"good": {"levels": []}, "bad": {"failure": "CRASH_1: no equilibrium"}}
-    assert limits.ask_all(scenes, 3, tmp_path, 1) == found
-    assert asked == [[], [], ["uncharged"]]
+    assert limits.solve_all(scenes, 3, tmp_path, 1) == found
+    assert solved == ["3", "3", "3"]
 
 
 @pytest.mark.parametrize(("lost", "levels"), [(4, 4), (3, 3), (2, None)])
@@ -102,9 +100,9 @@ def test_limit_is_of_the_meshes_before_one_on_which_a_state_is_lost(monkeypatch,
         return SimpleNamespace(states={}, mesh=scene.mesh, values=dict, **cost)
 
     monkeypatch.setattr(limits, "solve_again", solved)
-    monkeypatch.setattr(limits, "_path", lambda scene, uncharged, comm: solved(Scene(), None, {}, comm))
+    monkeypatch.setattr(limits, "_path", lambda scene: solved(Scene(), None, {}, None))
     if levels is None:
         with pytest.raises(StepFailed, match="lost"):
-            limits._solve(Scene(), 4, uncharged=False)
+            limits._solve(Scene(), 4)
     else:
-        assert len(limits._solve(Scene(), 4, uncharged=False)["levels"]) == levels
+        assert len(limits._solve(Scene(), 4)["levels"]) == levels

@@ -22,6 +22,14 @@ def test_pages_in_git_are_those_of_the_kept_numbers(tmp_path, capsys):
         assert path.read_text(encoding="utf-8") == (DOCS / path.name).read_text(encoding="utf-8"), path.name
 
 
+def test_prose_is_of_pages():
+    files = list((harness.ROOT / "benchmarks" / "prose").glob("*.md"))
+    assert files and {file.stem for file in files} <= set(pages.PAGES)
+    for file in files:
+        texts = harness.prose(file.stem)
+        assert texts and all(texts.values())
+
+
 def test_unknown_page_is_refused(capsys):
     with pytest.raises(SystemExit):
         pages.main(["nothing"])

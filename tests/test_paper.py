@@ -13,8 +13,7 @@ from benchmarks.harness import DOCS, Made, keep, kept
 from benchmarks.paper import __main__ as command
 from benchmarks.paper import friction, micro, page, scenes, section, sed
 from benchmarks.paper.statement import HOLDS, IN_PART, NOT, Statement, statement
-from benchmarks.runs import Run
-from benchmarks.traces import FORCES, VOLTAGES
+from benchmarks.runs import FORCES, VOLTAGES, Run
 from fingerpad.io import style
 from fingerpad.runs.batch import key
 from fingerpad.scene import Scene

@@ -4,7 +4,7 @@ import pytest
 
 from benchmarks import accuracy, harness
 from benchmarks.calibration import WHOLE, Case
-from benchmarks.convergence import Limit
+from benchmarks.limits import Limit
 from fingerpad.runs.batch import key
 from fingerpad.scene import Scene, start
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.traces import FORCES, SITES, VOLTAGES, trace
+from benchmarks.runs import FORCES, SITES, VOLTAGES, trace
 from fingerpad.model.touching import by_rule
 from fingerpad.scene import Scene, from_data
 
