@@ -14,7 +14,10 @@ from benchmarks.stability import runs as keeping
 from benchmarks.stability.case import Case, Outcome
 from benchmarks.stability.loop import loop
 from benchmarks.stability.runs import Runs, run_all
+from variational.solvers.coupling import Coupling
 from variational.solvers.equations import Control
+from variational.solvers.failure import NotConverged
+from variational.solvers.newton import Solver
 
 # A press of half an newton a metre on facets of 60 um: two seconds a run.
 TINY = Case(contact_size=60e-6, force=0.5, voltage=50.0, element="P1", slide=0.0)
@@ -156,6 +159,33 @@ def test_failure_is_recorded_with_its_reason(tiny):
     assert found.reason in found.message
     assert found.load == "press"
     assert found.cutbacks >= 0 < found.newton
+
+
+@pytest.mark.parametrize("allowed", [True, False])
+def test_newton_alone_is_never_pseudo_transient(monkeypatch, allowed):
+    """Of every solve of a path with voltage, whose later iterations of the loop over the scales ask for it."""
+    asked, newton = set(), Solver.solve
+
+    def solve_and_note(self, pseudo_transient=False):
+        asked.add(pseudo_transient)
+        newton(self, pseudo_transient)
+
+    monkeypatch.setattr(Solver, "solve", solve_and_note)
+    solve.run(replace(TINY, pseudo_transient=allowed))
+    assert asked == {allowed, False}
+
+
+def test_inverted_elements_are_counted_by_layer(monkeypatch):
+    """Every failed solve of a path counts for one of the strip's layers."""
+
+    def fail(self, pseudo_transient=False):
+        raise NotConverged("DIVERGED", inverted=True)
+
+    monkeypatch.setattr(Coupling, "solve", fail)
+    found = solve.run(TINY)
+    assert (found.status, found.reason) == ("failed", "DIVERGED")
+    assert sum(found.inverted.values()) > 1
+    assert set(found.inverted) <= {"stratum corneum", "viable epidermis", "dermis"}
 
 
 def test_kept_runs_are_not_repeated(tiny, panel, monkeypatch):
