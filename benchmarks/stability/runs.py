@@ -19,11 +19,7 @@ _SHOWN += ["contact_length", "f_ext"]
 
 
 class Runs:
-    """Outcomes of cases in a file, one line each.
-
-    Attributes:
-        outcomes: by case.
-    """
+    """Outcomes by case, in a file, one line each."""
 
     def __init__(self, path: Path) -> None:
         """Read what is there; a last line that was cut short is left out."""
@@ -58,25 +54,17 @@ class Runs:
     def numbers(self, cases: Iterable[Case]) -> dict[str, Any]:
         """Return what the page shows of cases that have been run, ready for JSON."""
         rows = []
-        for case in cases:
-            if (outcome := self.outcomes.get(case)) is not None:
-                errors = {
-                    f"error_{name}": self.error(case, name)
-                    for name, told in (("f_t", case.slide), ("contact_length", True), ("f_ext", case.indentation))
-                    if told
-                }
-                rows.append({"case": case.changed} | {name: getattr(outcome, name) for name in _SHOWN} | errors)
+        for case in (case for case in cases if case in self.outcomes):
+            compared = {"f_t": case.slide, "contact_length": True, "f_ext": case.indentation}
+            errors = {f"error_{name}": self.error(case, name) for name, told in compared.items() if told}
+            outcome = asdict(self.outcomes[case])
+            rows.append({"case": case.changed} | {name: outcome[name] for name in _SHOWN} | errors)
         seconds = sum(outcome.seconds for outcome in self.outcomes.values())
         return {"solves": len(self.outcomes), "seconds": seconds, "runs": rows}
 
 
 def solve(case: Case, limit: float) -> Outcome:
-    """Run a case in a process of its own; whatever ends the process is an outcome.
-
-    Args:
-        case: what to run.
-        limit: seconds of processor time, the same on a busy machine, after which the process ends.
-    """
+    """Run a case in a process of its own, for at most so many seconds of processor time; however it ends, return."""
     end = processes.run("benchmarks.stability.solve", [json.dumps(case.changed), str(limit)], limit)
     if end.reason:
         return Outcome("failed", end.reason, end.message, seconds=0.0 if end.reason.startswith("CRASH") else limit)
@@ -94,11 +82,9 @@ def run_all(
     hours: float,
     report: Callable[[Case, Outcome, int], None] = lambda case, outcome, left: None,
 ) -> int:
-    """Run what is missing; return the number of cases that were not run for want of time.
+    """Run what is missing, in order, and keep it; return the number of cases that were not run for want of time.
 
     Args:
-        cases: in the order in which they are started.
-        runs: is written after each run.
         jobs: processes at a time.
         limit: seconds of processor time for one run.
         hours: after which no further run is started.
