@@ -49,7 +49,7 @@ def for_peers(body: TaggedMesh) -> Ridge:
     points = np.vstack([corners, corners[edges].mean(axis=1)])
     skin = edges_of(tags.ridge(0))
     held = (np.unique(edges_of(tag)) for tag in (tags.BONE_RIM, tags.SIDES))
-    return Ridge(points, len(corners), triangles, left_to_right(skin, points[skin, 0]), *held)
+    return Ridge(points, triangles, left_to_right(skin, points[skin, 0]), *held)
 
 
 def solve(case: Case, body: TaggedMesh, skin: np.ndarray) -> Answer:

@@ -4,7 +4,7 @@ A map that is stopped has lost the runs in hand; started again it goes on.
 """
 
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -74,25 +74,17 @@ def solve(case: Case, limit: float) -> Outcome:
         return Outcome("failed", "CRASH", "no outcome printed")
 
 
-def run_all(
-    cases: Iterable[Case],
-    runs: Runs,
-    jobs: int,
-    limit: float,
-    hours: float,
-    report: Callable[[Case, Outcome, int], None] = lambda case, outcome, left: None,
-) -> int:
-    """Run what is missing, in order, and keep it; return the number of cases that were not run for want of time.
+def run_all(cases: Iterable[Case], runs: Runs, jobs: int, limit: float, hours: float) -> int:
+    """Run what is missing, in order, print and keep it; return the number of cases not run for want of time.
 
     Args:
         jobs: processes at a time.
         limit: seconds of processor time for one run.
         hours: after which no further run is started.
-        report: called with each case, its outcome and the number of those left.
     """
 
     def done(case: Case, outcome: Outcome, left: int) -> None:
         runs.add(case, outcome)
-        report(case, outcome, left)
+        print(f"{left:4d} left  {outcome.seconds:6.1f} s  {outcome.status} {outcome.reason}  {case}", flush=True)
 
     return Pool[Case, Outcome](lambda case: solve(case, limit), jobs, hours).run(runs.missing(cases), done)
