@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.peers.exchange import Answer, Case, Ridge, main
+from benchmarks.peers.exchange import Answer, Case, Ridge, main, plain
 
 _BLOCK = np.array([[-1.0, -0.5], [1.0, -0.5], [1.0, 0.0], [-1.0, 0.0]])  # mm, the screen
 _JOB = "ridge"
@@ -66,7 +66,7 @@ def deck(case: Case, ridge: Ridge) -> str:
         lines += [f"*NSET, NSET={name}", *(f"{k + 1}," for k in nodes)]
     lines.append("*SURFACE, NAME=SLAVE")
     touching = ridge.skin_pairs
-    for k, (a, b, c) in enumerate(ridge.triangles[:, :3].tolist(), start=1):
+    for k, (a, b, c) in enumerate(plain(ridge.triangles[:, :3]), start=1):
         edges = enumerate(({a, b}, {b, c}, {c, a}), start=1)
         lines += [f"{k}, S{side}" for side, edge in edges if edge in touching]
     lines.append(_LAWS.format(block=block, d=2 / case.bulk_modulus, **vars(case)))
@@ -95,13 +95,13 @@ def on_skin(ridge: Ridge, u: np.ndarray, gaps: Iterable[list[float]], stresses: 
 
     CalculiX prints a point's element, face and gap, but not where on the face it is: that is found by the gap.
     """
-    of_face = {frozenset(edge[:2]): edge for edge in ridge.skin.tolist()}
+    of_face = {frozenset(edge[:2]): edge for edge in plain(ridge.skin)}
     xi = np.linspace(0.0, 1.0, 401)
     shapes = np.array([(1 - xi) * (1 - 2 * xi), xi * (2 * xi - 1), 4 * xi * (1 - xi)])
     slopes = np.array([4 * xi - 3, 4 * xi - 1, 4 - 8 * xi])
     points = set()
     for (cell, face, gap, *_), (*_, pressure, friction, _) in zip(gaps, stresses, strict=True):
-        corners = ridge.triangles[int(cell) - 1, :3].tolist()
+        corners = plain(ridge.triangles[int(cell) - 1, :3])
         side = int(face) - 3  # of the prism's faces, the first two are the triangles
         edge = of_face[frozenset((corners[side], corners[(side + 1) % 3]))]
         place: np.ndarray = ridge.points[edge] + u[edge]

@@ -32,6 +32,11 @@ _PRESS, _STEPS = -0.06, 20  # mm
 _SLIDES = ((0.005, 10), (0.05, 15))  # mm, steps
 
 
+def plain(values: Array) -> Any:
+    """Return an array as lists of Python's own numbers, which JSON takes."""
+    return values.tolist()
+
+
 @dataclass(frozen=True)
 class Load:
     """Where the top is taken by a step, and the sides, in x, with it; a load with a name is reported."""
@@ -128,7 +133,7 @@ class Ridge:
     @property
     def skin_pairs(self) -> set[frozenset[int]]:
         """Vertices of the edges that can touch."""
-        return {frozenset(pair) for pair in self.skin[:, :2].tolist()}
+        return {frozenset(pair) for pair in plain(self.skin[:, :2])}
 
     def save(self, path: Path) -> None:
         """Write the mesh as .npz."""
@@ -190,8 +195,8 @@ class Answer:
         """Add a state if the load has a name; ``points`` are x, p_n and t_t of :class:`State`, in any order of x."""
         if load.name:
             order = np.argsort(points[0])
-            columns = [values[order].tolist() for values in points]
-            self.states.append(State(load.name, float(f_n), float(f_t), displacement.tolist(), *columns))
+            columns = [plain(values[order]) for values in points]
+            self.states.append(State(load.name, float(f_n), float(f_t), plain(displacement), *columns))
 
     @classmethod
     def read(cls, path: Path) -> "Answer":

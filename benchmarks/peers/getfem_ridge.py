@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import spsolve
 
-from benchmarks.peers.exchange import Answer, Case, Load, Ridge, main
+from benchmarks.peers.exchange import Answer, Case, Load, Ridge, main, plain
 
 _DELTA = 1e-6
 _TOLERANCE = 1e-12  # N/mm, norm of the nodal imbalance
@@ -37,7 +37,7 @@ def mesh_of(ridge: Ridge) -> gf.Mesh:
     skin = ridge.skin_pairs
     faces = [
         (cell, opposite)
-        for cell, vertices in zip(cells, corners.tolist(), strict=True)
+        for cell, vertices in zip(cells, plain(corners), strict=True)
         for opposite in range(3)
         if frozenset(vertices[:opposite] + vertices[opposite + 1 :]) in skin
     ]

@@ -9,7 +9,7 @@ import netgen.meshing as netgen
 import ngsolve as ng
 import numpy as np
 
-from benchmarks.peers.exchange import Answer, Case, Ridge, left_to_right, main
+from benchmarks.peers.exchange import Answer, Case, Ridge, left_to_right, main, plain
 
 _DELTA = 1e-6
 _TOLERANCE = 1e-12  # N/mm, norm of the nodal imbalance
@@ -28,7 +28,7 @@ def mesh_of(ridge: Ridge) -> ng.Mesh:
         mesh.Add(netgen.Element2D(body, [points[k] for k in corners]))
     on = {"skin": ridge.skin_pairs.__contains__, "top": {*ridge.top}.issuperset, "sides": {*ridge.sides}.issuperset}
     regions = {name: mesh.AddRegion(name, dim=1) for name in on}
-    for a, b, c in ridge.triangles[:, :3].tolist():
+    for a, b, c in plain(ridge.triangles[:, :3]):
         for pair in ((a, b), (b, c), (c, a)):
             for name in (name for name, holds in on.items() if holds(frozenset(pair))):
                 mesh.Add(netgen.Element1D([points[k] for k in pair], index=regions[name]))
@@ -93,8 +93,8 @@ def solve(case: Case, ridge: Ridge) -> Answer:
         loaded.Apply(now.vec, residual)
         f_n, f_t = (-ng.InnerProduct(residual, lifts[name].vec) for name in ("y", "x"))
         columns = [np.reshape(f(nodes), (-1, 1)) for f in (ng.x, now[0], now[1])]
-        edges = np.hstack(columns).reshape(-1, 3, 3)
-        edges = left_to_right(edges, edges[:, :, 0])
+        places_of = np.hstack(columns).reshape(-1, 3, 3)
+        edges = left_to_right(places_of, places_of[:, :, 0])
         answer.report(
             load, f_n, f_t, edges[:, :, 1:].reshape(-1, 2), *(np.ravel(f(points)) for f in (ng.x + now[0], p, t))
         )

@@ -6,7 +6,7 @@ import dolfinx
 import numpy as np
 from mpi4py import MPI
 
-from benchmarks.peers.exchange import Answer, Case, Ridge, left_to_right
+from benchmarks.peers.exchange import Answer, Case, Ridge, left_to_right, plain
 from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import TaggedMesh, load
@@ -39,12 +39,12 @@ def for_peers(body: TaggedMesh) -> Ridge:
     pairs = np.sort(cells[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     edges, number = np.unique(pairs, axis=0, return_inverse=True)
     triangles = np.hstack([cells, len(corners) + number.reshape(-1, 3)])
-    middle_of = {frozenset(edge): len(corners) + k for k, edge in enumerate(edges.tolist())}
+    middle_of = {frozenset(edge): len(corners) + k for k, edge in enumerate(plain(edges))}
 
     def edges_of(tag: int) -> np.ndarray:
         facets = body.facet_tags.find(tag)
         ends = dolfinx.mesh.entities_to_geometry(mesh, 1, facets).reshape(-1, 2)
-        return np.array([[*pair, middle_of[frozenset(pair)]] for pair in ends.tolist()])
+        return np.array([[*pair, middle_of[frozenset(pair)]] for pair in plain(ends)])
 
     points = np.vstack([corners, corners[edges].mean(axis=1)])
     skin = edges_of(tags.ridge(0))
