@@ -173,7 +173,7 @@ def test_pictures_have_units(grid):
 
 
 def test_verdicts():
-    found = [statement("wavy", "", {}, *given) for given in ((True,), (False, True), (False,))]
+    found = [statement("wavy", {}, *given, steps="") for given in ((True,), (False, True), (False,))]
     assert [s.verdict for s in found] == [HOLDS, IN_PART, NOT]
 
 

@@ -6,20 +6,8 @@ import numpy as np
 import pytest
 
 from benchmarks.harness import Made, keep
-from benchmarks.peers import calculix_ridge, ours, page, profile
-from benchmarks.peers.cases import cases
-from benchmarks.peers.exchange import (
-    Answer,
-    Case,
-    Load,
-    Ridge,
-    State,
-    read_answer,
-    read_case,
-    steps,
-    write_answer,
-    write_case,
-)
+from benchmarks.peers import calculix_ridge, ours, page
+from benchmarks.peers.exchange import Answer, Case, Load, Ridge, State, answer_path, cases, left_to_right, write
 
 WIDTH = 0.483  # mm
 
@@ -44,7 +32,7 @@ def answer(body, ridge) -> Answer:
 def test_mesh_file(ridge, tmp_path):
     ridge.save(tmp_path / "mesh.npz")
     again = Ridge.read(tmp_path / "mesh.npz")
-    assert again.vertices == ridge.vertices
+    assert again.vertices == ridge.triangles[:, 3:].min()
     for name in ("points", "triangles", "skin", "top", "sides"):
         np.testing.assert_array_equal(getattr(again, name), getattr(ridge, name))
 
@@ -70,6 +58,11 @@ def test_skin(ridge):
     np.testing.assert_allclose(ends, [[-WIDTH / 2, 0.1], [WIDTH / 2, 0.1]], atol=1e-12)
 
 
+def test_edges_are_sorted_and_turned():
+    edges = np.array([[5, 3, 4], [0, 2, 1]])
+    assert left_to_right(edges, edges.astype(float)).tolist() == [[0, 2, 1], [3, 5, 4]]
+
+
 def test_supports(ridge):
     assert (ridge.points[ridge.top, 1] > 0.6 - 1e-12).all()
     assert (np.abs(ridge.points[ridge.sides, 0]) > WIDTH / 2 - 1e-12).all()
@@ -77,20 +70,20 @@ def test_supports(ridge):
 
 def test_case_file(tmp_path):
     for name, case in cases().items():
-        write_case(case, tmp_path / f"{name}.json")
-        assert read_case(tmp_path / f"{name}.json") == case
+        write(case, tmp_path / f"{name}.json")
+        assert Case.read(tmp_path / f"{name}.json") == case
 
 
 def test_steps():
-    assert list(steps(Case(0.0, (Load(0.0, -1.0), Load(2.0, -1.0))))) == [
+    assert list(Case(0.0, (Load(0.0, -1.0), Load(2.0, -1.0))).steps()) == [
         (Load(0.0, 0.0), Load(0.0, -1.0)),
         (Load(0.0, -1.0), Load(2.0, -1.0)),
     ]
 
 
 def test_answer_file(answer, tmp_path):
-    write_answer(answer, tmp_path / "answer.json")
-    assert read_answer(tmp_path / "answer.json") == answer
+    write(answer, tmp_path / "answer.json")
+    assert Answer.read(tmp_path / "answer.json") == answer
 
 
 def test_screen_that_moves_instead(answer):
@@ -106,18 +99,18 @@ def test_half_width_holds_the_points_that_touch(ridge, answer):
     """The contact ends beyond the outermost points under pressure, by less than a facet at each end."""
     for state in answer.states:
         touching = np.array(state.x)[np.array(state.p_n) > 0]
-        half = profile.half_width(ridge, state)
+        half = page.half_width(ridge, state)
         assert np.ptp(touching) / 2 < half < np.ptp(touching) / 2 + 0.04
 
 
 def test_half_width_of_a_parabola():
     """An edge from (0, -1) to (2, 3) with its middle at (1, 0.25): y = -1 + x/2 + 3/4 x^2, below until its root."""
     points = np.array([[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]])
-    mesh = Ridge(points, 2, np.zeros((0, 6), int), np.array([[0, 1, 2]]), np.zeros(0, int), np.zeros(0, int))
+    mesh = Ridge(points, np.zeros((0, 6), int), np.array([[0, 1, 2]]), np.zeros(0, int), np.zeros(0, int))
     state = State("", 0, 0, [[0.0, -1.0], [0.0, 3.0], [0.0, 0.25]], [], [], [])
     x = np.linspace(0, (-0.5 + np.sqrt(0.25 + 3)) / 1.5, 200001)
     exact = np.hypot(np.diff(x), np.diff(-1 + x / 2 + 0.75 * x**2)).sum() / 2
-    assert profile.half_width(mesh, state) == pytest.approx(exact, rel=1e-5)  # the error of six Gauss points
+    assert page.half_width(mesh, state) == pytest.approx(exact, rel=1e-5)  # the error of six Gauss points
 
 
 def test_deck(ridge):
@@ -160,7 +153,7 @@ def test_page(answer, ridge, tmp_path):
     other = replace(answer, program="GetFEM", version="5.4")
     for program, found in (("ours", answer), ("getfem", other)):
         for name in cases():
-            write_answer(found, page.answer_path(tmp_path, 40, name, "", program))
+            write(found, answer_path(tmp_path, 40, name, "", program))
     keep("peers", page.numbers(tmp_path), Made("0.1.0", "abc1234", "2026-11-21"), tmp_path)
     text = page.draw(tmp_path).read_text()
     assert "| GetFEM | 5.4 | this project |" in text
@@ -177,8 +170,3 @@ def test_largest_differences():
         {"program": "A", "values": [1.0] * 4, "differences": [-0.03, 0.5, 0.0, 0.0]},
     ]
     assert page.largest(rows) == [["A", "3 %", "50 %", "2 %", "0"]]
-
-
-def test_unknown_variant():
-    with pytest.raises(ValueError, match="as FElupe"):
-        Case(0.0, (), variant="upside down")

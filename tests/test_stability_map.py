@@ -14,7 +14,10 @@ from benchmarks.stability import runs as keeping
 from benchmarks.stability.case import Case, Outcome
 from benchmarks.stability.loop import loop
 from benchmarks.stability.runs import Runs, run_all
+from variational.solvers.coupling import Coupling
 from variational.solvers.equations import Control
+from variational.solvers.failure import NotConverged
+from variational.solvers.newton import Solver
 
 # A press of half an newton a metre on facets of 60 um: two seconds a run.
 TINY = Case(contact_size=60e-6, force=0.5, voltage=50.0, element="P1", slide=0.0)
@@ -48,7 +51,7 @@ def test_map_is_not_too_large():
 
 def test_neighbours_of_the_default_are_in_the_map():
     """What the choice of the default rests on is run."""
-    assert {case for _, case in plan.neighbours().cases} <= set(plan.cases())
+    assert set(plan.neighbours().cases.values()) <= set(plan.cases())
 
 
 def test_too_large_a_map_is_refused(monkeypatch):
@@ -70,7 +73,7 @@ def test_too_large_a_map_is_refused(monkeypatch):
 )
 def test_ranges(field, low, high):
     """Each parameter is varied over its whole range in some chart of the default, through it."""
-    axes = [axis for chart in plan.charts() for axis in (chart.panels[0].x, chart.panels[0].y)]
+    axes = [axis for panel, *_ in plan.charts().values() for axis in (panel.x, panel.y)]
     values = [axis.values for axis in axes if axis.field == field]
     assert (low, high) in {(v[0], v[-1]) for v in values}
     assert all(getattr(Case(), field) in v for v in values)
@@ -156,6 +159,33 @@ def test_failure_is_recorded_with_its_reason(tiny):
     assert found.reason in found.message
     assert found.load == "press"
     assert found.cutbacks >= 0 < found.newton
+
+
+@pytest.mark.parametrize("allowed", [True, False])
+def test_newton_alone_is_never_pseudo_transient(monkeypatch, allowed):
+    """Of every solve of a path with voltage, whose later iterations of the loop over the scales ask for it."""
+    asked, newton = set(), Solver.solve
+
+    def solve_and_note(self, pseudo_transient=False):
+        asked.add(pseudo_transient)
+        newton(self, pseudo_transient)
+
+    monkeypatch.setattr(Solver, "solve", solve_and_note)
+    solve.run(replace(TINY, pseudo_transient=allowed))
+    assert asked == {allowed, False}
+
+
+def test_inverted_elements_are_counted_by_layer(monkeypatch):
+    """Every failed solve of a path counts for one of the strip's layers."""
+
+    def fail(self, pseudo_transient=False):
+        raise NotConverged("DIVERGED", inverted=True)
+
+    monkeypatch.setattr(Coupling, "solve", fail)
+    found = solve.run(TINY)
+    assert (found.status, found.reason) == ("failed", "DIVERGED")
+    assert sum(found.inverted.values()) > 1
+    assert set(found.inverted) <= {"stratum corneum", "viable epidermis", "dermis"}
 
 
 def test_kept_runs_are_not_repeated(tiny, panel, monkeypatch):
@@ -244,12 +274,12 @@ def rows_of(tiny, panel):
 
 def test_tables_hold_each_run(tiny, panel):
     """A run that failed is listed with its reason, and counted; a run that is missing is listed as not run."""
-    named = plan.Named("irrecoverable", "A penalty too high.", (("1.5e20 Pa/m", IRRECOVERABLE), ("default", Case())))
+    named = plan.Named("irrecoverable", "A penalty too high.", {"1.5e20 Pa/m": IRRECOVERABLE, "default": Case()})
     rows = rows_of(tiny, panel)
     text = page.named_table(named, rows)
     assert f"✕ failed: {tiny.outcomes[IRRECOVERABLE].reason}" in text
     assert "| default | not run |" in text
-    assert "| Tiny | penalty | 4 | 4 | 0 | 0 | 0 |" in page.counts_table([plan.Chart("tiny", "Tiny", (panel,))], rows)
+    assert "| Tiny | penalty | 4 | 4 | 0 | 0 | 0 |" in page.counts_table({"Tiny": [panel]}, rows)
 
 
 def test_page_is_drawn_from_the_kept_numbers(tmp_path):
@@ -261,5 +291,5 @@ def test_page_is_drawn_from_the_kept_numbers(tmp_path):
     assert len(blocks) == 3 + len(plan.named())  # the default's, the counts' and the fixed point's
     for block in blocks:
         assert len({line.count("|") for line in block}) == 1
-    shown = {case for chart in plan.charts() for panel in chart.panels for case in panel.cases()}
+    shown = {case for panels in plan.charts().values() for panel in panels for case in panel.cases()}
     assert shown <= {Case(**row["case"]) for row in kept("stability", tmp_path).numbers["runs"]}

@@ -18,32 +18,36 @@ import numpy as np
 from benchmarks.harness import keep, kept, made, moved, parser, run
 from benchmarks.paper import friction, micro, page, scenes, section, sed
 from benchmarks.paper.statement import Statement
-from benchmarks.runs import Array, Run
+from benchmarks.runs import Run
 from fingerpad.cli.arguments import positive
 from fingerpad.model.check import check
 
 _LIMIT = 3600.0  # s of processor time for one run; the sine takes longest
 
 
-def _path(run: Run) -> Array:
-    """Return the contact length from normal contact to full slip."""
-    return run.steps["contact_length"][run.normal : run.slip + 1]
+def _rises(run: Run) -> float:
+    """Return in how many steps from normal contact to full slip the contact length rises."""
+    return float((np.diff(run.steps["contact_length"][run.normal : run.slip + 1]) > 0).sum())
+
+
+def mu_app(high: Run) -> float:
+    """Return the apparent friction coefficient of a run."""
+    return float(high.steps["mu_app"][high.slip])
 
 
 def collect(out: Path, size: float) -> dict[str, Any]:
     """Return the numbers of the page from the runs there are; what is missing is named."""
-    statements = dict[str, list[Statement]]()
-    numbers: dict[str, Any] = {"contact_size": size, "missing": []}
+    numbers: dict[str, Any] = {"contact_size": size, "missing": [], "statements": []}
     grid = scenes.grid(size)
 
     def at(force: float, voltage: float) -> Run:
         return Run(grid[force, voltage], out)
 
     def of_grid() -> list[Statement]:
-        gathered = friction.gather({pair: at(*pair) for pair in grid})
+        runs = {pair: at(*pair) for pair in grid}
+        gathered = friction.gather(runs)
         numbers["grid"] = {name: values.tolist() for name, values in gathered.items()}
-        voltages = gathered["voltage"]
-        rises = {f"{u:g}": float((np.diff(_path(at(scenes.TRANSITION, u))) > 0).sum()) for u in voltages}
+        rises = {f"{u:g}": _rises(runs[scenes.TRANSITION, u]) for u in gathered["voltage"]}
         return friction.statements(gathered, rises)
 
     def of_section() -> list[Statement]:
@@ -52,7 +56,7 @@ def collect(out: Path, size: float) -> dict[str, Any]:
 
     def of_claim() -> list[Statement]:
         high = at(scenes.MAP, 200.0)
-        numbers["sites"] = sed.gather(high, Run(scenes.rougher(size, mu_app(out, size)), out))
+        numbers["sites"] = sed.gather(high, Run(scenes.rougher(size, mu_app(high)), out))
         return [sed.claim_statement(numbers["sites"])]
 
     parts: dict[str, Callable[[], list[Statement]]] = {
@@ -65,22 +69,11 @@ def collect(out: Path, size: float) -> dict[str, Any]:
     }
     for name, part in parts.items():
         try:
-            statements[name] = part()
+            numbers["statements"] += map(asdict, part())
         except FileNotFoundError as missing:
             print(f"missing: {name}, {missing}")
             numbers["missing"].append(name)
-    numbers["statements"] = [asdict(s) for some in statements.values() for s in some]
     return numbers
-
-
-def mu_app(out: Path, size: float) -> float:
-    """Return the apparent friction coefficient at 75 N/m and 200 V.
-
-    Raises:
-        FileNotFoundError: the run is missing.
-    """
-    high = Run(scenes.grid(size)[scenes.MAP, 200.0], out)
-    return float(high.steps["mu_app"][high.slip])
 
 
 def changes(before: dict[str, Any], after: dict[str, Any]) -> list[str]:
@@ -107,7 +100,8 @@ def main(given: Sequence[str] | None = None) -> int:
         named = {f"{f:g} N/m, {u:g} V": scene for (f, u), scene in scenes.grid(size).items()}
         summaries = run({"sine": scenes.sine(size)} | named, args, _LIMIT)
         try:
-            summaries |= run({"friction": scenes.rougher(size, mu_app(args.out, size))}, args, _LIMIT)
+            high = Run(scenes.grid(size)[scenes.MAP, 200.0], args.out)
+            summaries |= run({"friction": scenes.rougher(size, mu_app(high))}, args, _LIMIT)
         except FileNotFoundError as missing:
             print(f"the run without voltage but with more friction cannot be made: {missing}")
         numbers = collect(args.out, size)

@@ -36,13 +36,14 @@ class Measured:
         Raises:
             ValueError: a column is missing or holds no number.
         """
+        names = ("force_N", "voltage_V", "friction_N")
         try:
             table = np.genfromtxt(path, delimiter=",", names=True, dtype=float, encoding="utf-8")
-            columns = [np.atleast_1d(table[name]) for name in ("force_N", "voltage_V", "friction_N")]
+            columns = [np.atleast_1d(table[name]) for name in names]
         except (ValueError, TypeError, IndexError) as error:
-            raise ValueError(f"{path} must have the columns force_N, voltage_V and friction_N: {error}") from None
-        if not all(np.isfinite(c).all() for c in columns):
-            raise ValueError(f"{path} has a row without a number in force_N, voltage_V or friction_N")
+            raise ValueError(f"{path} must have the columns {', '.join(names)}: {error}") from None
+        if not np.isfinite(columns).all():
+            raise ValueError(f"{path} has a row without a number in {', '.join(names)}")
         return cls(path.stem, *columns)
 
 
@@ -59,13 +60,9 @@ def gather(runs: Mapping[tuple[float, float], Run]) -> dict[str, Array]:
 
 @dataclass(frozen=True)
 class Reduction:
-    """Reduction of contact length by sliding over the mean shear stress at full slip, and its fit through the origin.
+    """Share of contact length lost by sliding over the mean shear stress f_T / L_R (Pa), with a fit through the origin.
 
-    Attributes:
-        stress: f_T / L_R (Pa), shape (forces, voltages).
-        lost: share of the contact length, likewise.
-        slope: of the fit (1/Pa).
-        r_squared: its coefficient of determination.
+    ``stress`` and ``lost`` have shape (forces, voltages); ``slope`` (1/Pa) has the determination ``r_squared``.
     """
 
     stress: Array
@@ -110,10 +107,6 @@ def paint(figure: Figure, grid: Grid, measured: Measured | None = None) -> None:
 
 
 # -- statements ----------------------------------------------------------------------------------------
-def _range(values: Array, unit: str = "", digits: int = 3) -> str:
-    return f"{values.min():.{digits}g} to {values.max():.{digits}g}{unit}"
-
-
 def statements(grid: Grid, rises: Mapping[str, float]) -> list[Statement]:
     """Return the statements on friction and contact.
 
@@ -137,105 +130,54 @@ def _gain(grid: Grid, name: str, voltage: float) -> Array:
     return grid[name][:, _column(grid, voltage)] / grid[name][:, _column(grid, 0.0)]
 
 
+def _range(values: Array, low: str = "low", high: str = "high") -> dict[str, float]:
+    return {low: values.min(), high: values.max()}
+
+
 def _friction(grid: Grid) -> list[Statement]:
     f = grid["f_ext"]
+    ends = {"least": f[0], "most": f[-1]}
     gain, little = _gain(grid, "slip_f_t", _HIGH), _gain(grid, "slip_f_t", _LOW)
     mu_app = float(grid["slip_f_t"][_row(grid, MAP), _column(grid, _HIGH)] / MAP)
+    off = abs(mu_app / 0.55 - 1)
+    doubled, few, falls = gain > 2, little < 1.05, np.diff(gain) < 0
+    rise = {"up_to": f[doubled].max(initial=0)} | _range(gain - 1)
     return [
-        statement(
-            "mu_app",
-            f"{mu_app:.4f} at 200 V",
-            {"mu_app": mu_app},
-            abs(mu_app / 0.55 - 1) < 0.05,
-            abs(mu_app / 0.55 - 1) < 0.2,
-        ),
-        statement(
-            "raise",
-            f"at 200 V by {_range(100 * (gain - 1), ' %')}; more than 100 % up to {f[gain > 2].max(initial=0):g} N/m",
-            {"least": gain.min(), "largest": gain.max()},
-            (gain > 2).all(),
-            (gain > 2).any(),
-        ),
-        statement(
-            "little",
-            f"at 50 V F_T rises by {_range(100 * (little - 1), ' %', 2)}",
-            {"largest": little.max()},
-            (little < 1.05).all(),
-            (little < 1.05).any(),
-        ),
-        statement(
-            "small forces",
-            f"F_T(200 V) / F_T(0 V) is {gain[0]:.3g} at {f[0]:g} N/m and {gain[-1]:.3g} at {f[-1]:g} N/m",
-            {"first": gain[0], "last": gain[-1]},
-            (np.diff(gain) < 0).all(),
-            gain[0] > gain[-1],
-        ),
+        statement("mu_app", {"mu_app": mu_app}, off < 0.05, off < 0.2),
+        statement("raise", _range(gain, "least", "largest"), doubled.all(), doubled.any(), **rise),
+        statement("little", {"largest": little.max()}, few.all(), few.any(), **_range(little - 1)),
+        statement("small forces", {"first": gain[0], "last": gain[-1]}, falls.all(), gain[0] > gain[-1], **ends),
     ]
 
 
 def _lengths(grid: Grid) -> list[Statement]:
     normal, sliding = (_gain(grid, f"{state}_contact_length", _HIGH) for state in ("normal", "slip"))
-    both = np.concatenate([normal, sliding])
+    both, longest = np.concatenate([normal, sliding]), {"normal": normal.max(), "sliding": sliding.max()}
+    ranges = _range(normal - 1, "normal_low", "normal_high") | _range(sliding - 1)
     columns = [_column(grid, u) for u in (0.0, _HIGH)]
     counts = {state: grid[f"{state}_ridges_in_contact"][:, columns] for state in ("normal", "slip")}
     means = {state: grid[f"{state}_contact_length"][:, columns] / counts[state] for state in counts}
     lost, change = counts["normal"] - counts["slip"], means["slip"] / means["normal"] - 1
+    same, one_or_two = abs(change) < 0.05, (lost == 1) | (lost == 2)
     return [
-        statement(
-            "longer",
-            f"in normal contact by {_range(100 * (normal - 1), ' %')}, sliding by {_range(100 * (sliding - 1), ' %')}",
-            {"normal": normal.max(), "sliding": sliding.max()},
-            both.max() > 1.2 and (both > 1).all(),
-            both.max() > 1.2,
-        ),
-        statement(
-            "average",
-            f"in sliding it changes by {_range(100 * change, ' %', 2)}",
-            {"least": change.min(), "largest": change.max()},
-            (abs(change) < 0.05).all(),
-            (abs(change) < 0.05).mean() > 0.5,
-        ),
-        statement(
-            "fewer",
-            f"{lost.min():g} to {lost.max():g} fewer",
-            {"least": lost.min(), "largest": lost.max()},
-            ((lost == 1) | (lost == 2)).all(),
-            ((lost == 1) | (lost == 2)).mean() > 0.5,
-        ),
+        statement("longer", longest, both.max() > 1.2 and (both > 1).all(), both.max() > 1.2, **ranges),
+        statement("average", _range(change, "least", "largest"), same.all(), same.mean() > 0.5),
+        statement("fewer", _range(lost, "least", "largest"), one_or_two.all(), one_or_two.mean() > 0.5),
     ]
 
 
 def _reductions(grid: Grid, rises: Mapping[str, float]) -> list[Statement]:
     found, f = reduction(grid), grid["f_ext"]
-    most = float(found.lost[_row(grid, TRANSITION)].max())
+    ends = {"least": f[0], "most": f[-1]}
+    most, r_squared = float(found.lost[_row(grid, TRANSITION)].max()), found.r_squared
+    fit = {"slope": found.slope, "r_squared": r_squared}
     loss = found.lost[:, [_column(grid, u) for u in (0.0, _HIGH)]].mean(axis=1)
+    waves = {f"rises_{u}": n for u, n in rises.items()}
+    steps = ", ".join(f"{n:g} steps at {u} V" for u, n in rises.items())
+    per_kpa, runs, falls = 1e3 * found.slope, found.stress.size, np.diff(loss) < 0
     return [
-        statement(
-            "falls",
-            f"by up to {100 * most:.3g} % at {TRANSITION:g} N/m, {100 * found.lost.max():.3g} % over the grid",
-            {"at_120": most, "grid": found.lost.max()},
-            abs(most - 0.12) < 0.02,
-            0.06 < most < 0.18,
-        ),
-        statement(
-            "linear",
-            f"slope {1e5 * found.slope:.3g} % per kPa, R² = {found.r_squared:.2f} over {found.stress.size} runs",
-            {"slope": found.slope, "r_squared": found.r_squared},
-            found.r_squared > 0.9,
-            found.r_squared > 0.5,
-        ),
-        statement(
-            "wavy",
-            f"contact length rises in between in {', '.join(f'{n:g} steps at {u} V' for u, n in rises.items())}",
-            {f"rises_{u}": n for u, n in rises.items()},
-            all(rises.values()),
-            any(rises.values()),
-        ),
-        statement(
-            "area",
-            f"{100 * loss[0]:.3g} % at {f[0]:g} N/m, {100 * loss[-1]:.3g} % at {f[-1]:g} N/m (mean of 0 and 200 V)",
-            {"first": loss[0], "last": loss[-1]},
-            (np.diff(loss) < 0).all(),
-            loss[0] > loss[-1],
-        ),
+        statement("falls", {"at_120": most, "grid": found.lost.max()}, abs(most - 0.12) < 0.02, 0.06 < most < 0.18),
+        statement("linear", fit, r_squared > 0.9, r_squared > 0.5, per_kpa=per_kpa, runs=runs),
+        statement("wavy", waves, all(rises.values()), any(rises.values()), steps=steps),
+        statement("area", {"first": loss[0], "last": loss[-1]}, falls.all(), loss[0] > loss[-1], **ends),
     ]

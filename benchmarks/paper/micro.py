@@ -9,13 +9,8 @@ def statements() -> list[Statement]:
     scene = Scene()
     bam = scene.roughness.bearing_area(scene.h_0)
     least, estimate, exact = float(bam.air_gap(0.0)), bam.threshold(approximate=True), bam.threshold()
+    near = (abs(voltage / 155 - 1) < 0.01 for voltage in (exact, estimate))
     return [
-        statement("limit", f"{least * 1e6:.3f} µm at ū = 0", {"d_eq": least}, abs(least / 1.49e-6 - 1) < 0.005),
-        statement(
-            "threshold",
-            f"{estimate:.1f} V by Eq. 15, {exact:.1f} V by minimising Eq. 9",
-            {"eq_15": estimate, "eq_9": exact},
-            abs(exact / 155 - 1) < 0.01,
-            abs(estimate / 155 - 1) < 0.01,
-        ),
+        statement("limit", {"d_eq": least}, abs(least / 1.49e-6 - 1) < 0.005),
+        statement("threshold", {"eq_15": estimate, "eq_9": exact}, *near),
     ]

@@ -33,13 +33,6 @@ _CAPTIONS = {
 }
 
 
-def published() -> str:
-    """Return the values measured by others as Markdown."""
-    with _PUBLISHED.open(encoding="utf-8", newline="") as file:
-        rows = [list(row.values()) for row in csv.DictReader(file)]
-    return table(["quantity", "from", "to", "unit (SI)", "source"], rows)
-
-
 def verdicts(statements: list[Statement]) -> str:
     """Return the table of statements; a reason stands with every verdict that is not a plain yes."""
     rows = []
@@ -51,15 +44,15 @@ def verdicts(statements: list[Statement]) -> str:
 
 def _picture(docs: Path, name: str, numbers: dict[str, Any], measured: friction.Measured | None) -> str:
     """Draw a picture, or keep the one that is there where its numbers are older than their record."""
-    path = docs / f"paper_{name}.png"
+    path, caption = docs / f"paper_{name}.png", _CAPTIONS[name]
     if name == "friction" and "grid" in numbers:
         grid = {key: np.array(values) for key, values in numbers["grid"].items()}
-        return picture(path, (10, 4), lambda figure: friction.paint(figure, grid, measured), _CAPTIONS[name])
+        return picture(path, (10, 4), lambda figure: friction.paint(figure, grid, measured), caption)
     if name == "section" and "section" in numbers:
-        return picture(path, (9, 7), lambda figure: section.paint(figure, numbers["section"]), _CAPTIONS[name])
+        return picture(path, (9, 7), lambda figure: section.paint(figure, numbers["section"]), caption)
     if name == "energy" and "sites" in numbers:
-        return picture(path, (8, 5), lambda figure: sed.paint(figure, numbers["sites"]), _CAPTIONS[name])
-    caption = f"{_CAPTIONS[name]} Drawn with the runs, whose data are not kept."
+        return picture(path, (8, 5), lambda figure: sed.paint(figure, numbers["sites"]), caption)
+    caption += " Drawn with the runs, whose data are not kept."
     return f"![{caption}]({path.name})\n\n*{caption}*" if path.exists() else ""
 
 
@@ -73,11 +66,10 @@ def draw(docs: Path, measured: friction.Measured | None = None) -> Path:
         f"Of {len(statements)} statements of the paper, {count[HOLDS]} hold in this model, {count[IN_PART]} hold in "
         f"part and {count[NOT]} do not hold."
     )
-    finding += "".join(
-        f" The apparent friction coefficient at 75 N/m and 200 V is {s.numbers['mu_app']:.3f}; the paper has 0.55."
-        for s in statements
-        if "mu_app" in s.numbers
-    )
+    for mu_app in (s.numbers["mu_app"] for s in statements if "mu_app" in s.numbers):
+        finding += f" The apparent friction coefficient at 75 N/m and 200 V is {mu_app:.3f}; the paper has 0.55."
+    with _PUBLISHED.open(encoding="utf-8", newline="") as file:
+        _, *published = csv.reader(file)
     missing = ", ".join(numbers.get("missing", []))
     how = _HOW.format(contact=1e6 * numbers["contact_size"], sites=1e6 * SITES, centre=CENTRE)
     body = [
@@ -85,6 +77,6 @@ def draw(docs: Path, measured: friction.Measured | None = None) -> Path:
         f"## Statements\n\n{verdicts(statements)}",
         "## Pictures",
         *(_picture(docs, name, numbers, measured) for name in _CAPTIONS),
-        f"## Published measurements\n\n{published()}",
+        f"## Published measurements\n\n{table(['quantity', 'from', 'to', 'unit (SI)', 'source'], published)}",
     ]
     return page(docs / "paper.md", "The paper, reproduced", finding, how, body, "make paper", found.made, ["paper"])

@@ -42,18 +42,9 @@ def sine(size: float) -> Scene:
             {"name": f"change {k}", "voltage": voltage, "bone_x": x - _BETWEEN / 2},
             {"name": f"sine {k}", "bone_x": x, "until_full_slip": True},
         ]
-    return _scene(size, history=history)
+    return by_rule(from_data({"mesh": {"contact": size, "receptor": SITES}, "history": history}))
 
 
 def rougher(size: float, mu_app: float) -> Scene:
-    """Return the scene of section 5's claim: no voltage, and the friction coefficient that mimics one.
-
-    Args:
-        size: contact size (m).
-        mu_app: apparent friction coefficient with voltage.
-    """
+    """Return the scene of section 5's claim: no voltage, and the friction coefficient that voltage led to."""
     return trace(MAP, 0.0, size, friction=round(mu_app, 4))
-
-
-def _scene(size: float, **data: Any) -> Scene:
-    return by_rule(from_data({"mesh": {"contact": size, "receptor": SITES}} | data))

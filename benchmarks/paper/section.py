@@ -11,7 +11,6 @@ from benchmarks.runs import Run
 from fingerpad.io.style import ATTRACTION, GREY, PRESSURE, SHEAR
 
 STATES = {"normal": "normal contact", "partial": "partial slip", "slip": "full slip"}
-_UM = 1e-6
 
 
 def _scale(run: Run, state: str) -> float:
@@ -64,42 +63,19 @@ def statements(run: Run) -> list[Statement]:
     uneven = float(np.linalg.norm(t[order] - mirrored) / np.linalg.norm(t))
     ridges, d_eq = run.on_ridges(run.normal, "d_eq")
     central, outer = d_eq[np.abs(ridges) <= 2].mean(), d_eq[np.argsort(np.abs(ridges))[-4:]].mean()
-    _, sliding = run.on_ridges(run.slip, "d_eq")
-    both = np.concatenate([d_eq, sliding])
-    within = float(((both > 1.7 * _UM) & (both < 3 * _UM)).mean())
-    mu_0 = run.scene.friction
+    both = np.concatenate([d_eq, run.on_ridges(run.slip, "d_eq")[1]])
+    within = float(((both > 1.7e-6) & (both < 3e-6)).mean())
+    gaps = {"share": within, "least": both.min(), "largest": both.max()}
     xs, ps, ts = (a[f"partial_{name}"] for name in ("x", "p", "t"))
     on = np.nan_to_num(ps) > 0
-    slips = np.abs(ts[on]) >= mu_0 * ps[on] * (1 - 1e-6)
+    slips = np.abs(ts[on]) >= run.scene.friction * ps[on] * (1 - 1e-6)
     middle = (xs[on].min() + xs[on].max()) / 2
     leading, trailing = (float(slips[side].mean()) for side in (xs[on] > middle, xs[on] < middle))
+    halves = {"leading": leading, "trailing": trailing}
     return [
-        statement(
-            "gaps",
-            f"{both.min() / _UM:.2f} to {both.max() / _UM:.2f} µm; {100 * within:.0f} % of the ridges are within",
-            {"share": within, "least": both.min(), "largest": both.max()},
-            within > 0.9,
-            within > 0.5,
-        ),
-        statement(
-            "central",
-            f"{central / _UM:.2f} µm on the five central ridges, {outer / _UM:.2f} µm on the four outermost",
-            {"central": central, "outer": outer},
-            central < outer,
-        ),
-        statement("tension", f"least value {tension:.2f} of f_ext/L_R", {"tension": tension}, tension < 0),
-        statement(
-            "symmetric",
-            f"its even part is {100 * uneven / 2:.2g} % of it",
-            {"even": uneven / 2},
-            uneven / 2 < 0.05,
-            uneven / 2 < 0.2,
-        ),
-        statement(
-            "leading",
-            f"in partial slip {100 * leading:.0f} % of the leading half, {100 * trailing:.0f} % of the trailing one",
-            {"leading": leading, "trailing": trailing},
-            leading > 1.2 * trailing,
-            leading > trailing,
-        ),
+        statement("gaps", gaps, within > 0.9, within > 0.5),
+        statement("central", {"central": central, "outer": outer}, central < outer),
+        statement("tension", {"tension": tension}, tension < 0),
+        statement("symmetric", {"even": uneven / 2}, uneven / 2 < 0.05, uneven / 2 < 0.2),
+        statement("leading", halves, leading > 1.2 * trailing, leading > trailing),
     ]

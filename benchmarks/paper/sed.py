@@ -7,26 +7,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from benchmarks.paper.statement import Statement, statement
-from benchmarks.runs import Array, Run
+from benchmarks.runs import Run
 from fingerpad.io.style import BLACK, VERMILION, count
 from geometry import tags
 
 
 # -- the sine --------------------------------------------------------------------------------------------
-def _response(run: Run) -> tuple[Array, Array, Array, Array, Array]:
-    """Return voltages, µ_app, ridges and their SED at the states of full slip of Fig. 9B, and which ridges touch."""
-    rows = [k for k in range(len(run.loads)) if _ends(run, k)]
-    steps = run.steps
-    touching = np.array([np.isin(run.receptors["ridge"], run.on_ridges(k, "p_c")[0]) for k in rows])
-    return (
-        steps["voltage"][rows],
-        steps["mu_app"][rows],
-        run.receptors["ridge"],
-        run.receptors["merkel_sed"][rows],
-        touching,
-    )
-
-
 def _ends(run: Run, k: int) -> bool:
     """Whether a step is the last of a load that slides to full slip."""
     last = k + 1 == len(run.loads) or run.loads[k + 1] != run.loads[k]
@@ -35,7 +21,10 @@ def _ends(run: Run, k: int) -> bool:
 
 def sine_statements(run: Run) -> list[Statement]:
     """Return the statements on the response to a sine."""
-    voltage, mu_app, ridges, sed, touching = _response(run)
+    rows = [k for k in range(len(run.loads)) if _ends(run, k)]
+    sed, sites = run.receptors["merkel_sed"][rows], run.receptors["ridge"]
+    voltage, mu_app = run.steps["voltage"][rows], run.steps["mu_app"][rows]
+    touching = np.array([np.isin(sites, run.on_ridges(k, "p_c")[0]) for k in rows])
     top = int(np.argmax(voltage))
     turned = int((np.diff(np.sign(np.diff(mu_app))) != 0).sum())
     change = sed[top] / sed[0] - 1
@@ -47,21 +36,11 @@ def sine_statements(run: Run) -> list[Statement]:
         "stay within 5 %": int((stays & (abs(change) <= 0.05)).sum()),
         "stay and rise by more than 5 %": int((stays & (change > 0.05)).sum()),
     }
-    kinds = (classes["enter"], classes["leave"], classes["stay and fall by more than 5 %"], classes["stay within 5 %"])
+    kinds = [n for words, n in classes.items() if "rise" not in words]
+    counts = ", ".join(f"{n} {words}" for words, n in classes.items())
     return [
-        statement(
-            "frequency",
-            f"µ_app rises and falls once over half a period ({turned} turn)",
-            {"turns": turned},
-            turned == 1,
-        ),
-        statement(
-            "sites",
-            f"between 0 and {voltage[top]:.0f} V: " + ", ".join(f"{n} {words}" for words, n in classes.items()),
-            {words: n for words, n in classes.items()},
-            all(kinds),
-            sum(n > 0 for n in kinds) > 1,
-        ),
+        statement("frequency", {"turns": turned}, turned == 1),
+        statement("sites", classes, all(kinds), sum(n > 0 for n in kinds) > 1, peak=voltage[top], counts=counts),
     ]
 
 
@@ -87,40 +66,21 @@ def _changes(run: Run) -> dict[str, float]:
 def statements(run: Run) -> list[Statement]:
     """Return the statements on the maps, of a run with voltage."""
     r, normal, slip = run.receptors, run.normal, run.slip
-    touching = np.isin(r["ridge"], run.on_ridges(normal, "p_c")[0]) & np.isin(r["ridge"], run.on_ridges(slip, "p_c")[0])
-    fall = float((r["merkel_sed"][slip][touching] < r["merkel_sed"][normal][touching]).mean())
-    papillae = {
-        row: (r["meissner_left"][row] + r["meissner_right"][row])[touching].mean() / 2 for row in (normal, slip)
-    }
-    layers = _changes(run)
-    sc, ve, dermis = layers.values()
-    sites = np.abs(r["merkel_sed"][normal][touching] / r["merkel_sed"][run.pressed][touching] - 1)
-    merkel, away = r["merkel_sed"][normal], ~np.isin(r["ridge"], run.on_ridges(normal, "p_c")[0])
+    in_contact, sliding = (np.isin(r["ridge"], run.on_ridges(row, "p_c")[0]) for row in (normal, slip))
+    both = in_contact & sliding
+    fall = float((r["merkel_sed"][slip][both] < r["merkel_sed"][normal][both]).mean())
+    meissner = (r["meissner_left"] + r["meissner_right"]) / 2
+    papillae = {"normal": meissner[normal][both].mean(), "slip": meissner[slip][both].mean()}
+    sites = np.abs(r["merkel_sed"][normal][both] / r["merkel_sed"][run.pressed][both] - 1)
+    sc, ve, dermis = _changes(run).values()
+    layers = {"sc": sc, "ve": ve, "dermis": dermis, "merkel": np.median(sites)}
+    here, away = r["merkel_sed"][normal][in_contact], r["merkel_sed"][normal][~in_contact]
+    means = {"contact": here.mean(), "others": away.mean()}
     return [
-        statement(
-            "layers",
-            f"mean change (without sign) over mean SED: {100 * sc:.2g} % in it, {100 * ve:.2g} % in the viable "
-            f"epidermis, {100 * dermis:.2g} % in the dermis; at Merkel sites {100 * np.median(sites):.2g} % (median)",
-            {"sc": sc, "ve": ve, "dermis": dermis, "merkel": np.median(sites)},
-            ve < 0.1 * sc and sites.max() < 0.05,
-            ve < 0.5 * sc,
-        ),
-        statement(
-            "Merkel",
-            f"on average {merkel[~away].mean():.3g} J/m³ there, {merkel[away].mean():.3g} J/m³ at the others",
-            {"contact": merkel[~away].mean(), "others": merkel[away].mean()},
-            merkel[~away].min() > merkel[away].max(),
-            merkel[~away].mean() > merkel[away].max(),
-        ),
-        statement(
-            "fall", f"at {100 * fall:.0f} % of the sites that stay in contact", {"share": fall}, fall > 0.5, fall > 0.3
-        ),
-        statement(
-            "papillae",
-            f"on average from {papillae[normal]:.3g} to {papillae[slip]:.3g} J/m³",
-            {"normal": papillae[normal], "slip": papillae[slip]},
-            papillae[slip] > papillae[normal],
-        ),
+        statement("layers", layers, ve < 0.1 * sc and sites.max() < 0.05, ve < 0.5 * sc),
+        statement("Merkel", means, here.min() > away.max(), here.mean() > away.max()),
+        statement("fall", {"share": fall}, fall > 0.5, fall > 0.3),
+        statement("papillae", papillae, papillae["slip"] > papillae["normal"]),
     ]
 
 
@@ -150,12 +110,6 @@ def paint(figure: Figure, sites: Mapping[str, Any]) -> None:
 def claim_statement(sites: Mapping[str, Any]) -> Statement:
     """Return the verdict on the paper's central claim, site by site."""
     off = np.array(sites["friction"]) / np.array(sites["voltage"]) - 1
-    worst = int(np.argmax(np.abs(off)))
-    return statement(
-        "claim",
-        f"median difference (without sign) {100 * np.median(np.abs(off)):.2g} %, largest {100 * off[worst]:.2g} % at "
-        f"ridge {sites['ridge'][worst]}; {int((np.abs(off) < 0.05).sum())} of {len(off)} sites within 5 %",
-        {"median": np.median(np.abs(off)), "largest": off[worst]},
-        (np.abs(off) < 0.05).all(),
-        np.median(np.abs(off)) < 0.05,
-    )
+    worst, median, near = int(np.argmax(np.abs(off))), np.median(np.abs(off)), np.abs(off) < 0.05
+    words = {"ridge": sites["ridge"][worst], "within": near.sum(), "count": len(off)}
+    return statement("claim", {"median": median, "largest": off[worst]}, near.all(), median < 0.05, **words)

@@ -1,10 +1,11 @@
-"""A statement of the paper beside this model's number."""
+"""A statement of the paper beside this model's number; all words are in ``statements.csv``."""
 
 import csv
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from string import Formatter
 from typing import Any
 
 HOLDS, IN_PART, NOT = "holds", "holds in part", "does not hold"
@@ -31,22 +32,32 @@ class Statement:
     why: str = ""
 
 
+class _Units(Formatter):
+    """Formats numbers; at the end of a format ``p`` stands for per cent and ``u`` for micrometres."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        if format_spec.endswith(("p", "u")):
+            return format(value * {"p": 100, "u": 1e6}[format_spec[-1]], format_spec[:-1])
+        return format(value, format_spec)
+
+
 @cache
 def _texts() -> dict[str, dict[str, str]]:
     with (Path(__file__).parent / "statements.csv").open(encoding="utf-8", newline="") as file:
         return {row.pop("key"): row for row in csv.DictReader(file)}
 
 
-def statement(key: str, ours: str, numbers: Mapping[str, Any], whole: object, part: object = False) -> Statement:
+def statement(key: str, numbers: Mapping[str, Any], whole: object, part: object = False, **words: Any) -> Statement:
     """Return a statement of ``statements.csv`` with its verdict.
 
     Args:
         key: of the statement.
-        ours: the computed counterpart, in words.
-        numbers: from which the verdict is made.
+        numbers: from which the verdict is made; together with ``words`` what the text shows.
         whole: whether the statement holds as a whole.
         part: whether it holds in part.
+        words: other values that the text shows.
     """
     verdict = HOLDS if whole else IN_PART if part else NOT
-    plain = {name: float(value) for name, value in numbers.items()}
-    return Statement(ours=ours, numbers=plain, verdict=verdict, **_texts()[key])
+    plain, text = {name: float(value) for name, value in numbers.items()}, _texts()[key]
+    ours = _Units().format(text["ours"], **plain, **words)
+    return Statement(text["figure"], text["paper"], ours, plain, verdict, text["why"])

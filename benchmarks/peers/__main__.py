@@ -9,8 +9,7 @@ from pathlib import Path
 
 from benchmarks.harness import DOCS, keep, made
 from benchmarks.peers import page
-from benchmarks.peers.cases import PEERS, VARIANTS, cases
-from benchmarks.peers.exchange import write_answer, write_case
+from benchmarks.peers.exchange import TASKS, answer_path, cases, write
 
 
 def prepare(folder: Path, sizes: list[float]) -> None:
@@ -18,10 +17,6 @@ def prepare(folder: Path, sizes: list[float]) -> None:
     from benchmarks.peers import ours  # needs dolfinx, which a reader of answers does not
 
     folder.mkdir(parents=True, exist_ok=True)
-    jobs = {(name, "", peer): case for name, case in cases().items() for peer in PEERS}
-    jobs |= {job: replace(cases()[job[0]], variant=job[1]) for job in VARIANTS}
-    for (name, variant, _), case in jobs.items():
-        write_case(case, folder / f"{page.stem(name, variant)}.json")
     tasks = []
     for size in sizes:
         mesh = folder / f"{size:g}.npz"
@@ -30,11 +25,12 @@ def prepare(folder: Path, sizes: list[float]) -> None:
         ridge.save(mesh)
         for name, case in cases().items():
             answer = ours.solve(case, body, ridge.points[ridge.skin].reshape(-1, 2))
-            write_answer(answer, page.answer_path(folder, size, name, "", "ours"))
+            write(answer, answer_path(folder, size, name, "", "ours"))
             print(f"fingerpad: {name}, facets of {size:g} µm, {answer.iterations} iterations", flush=True)
-        for name, variant, peer in jobs:
-            case_path = folder / f"{page.stem(name, variant)}.json"
-            tasks.append(f"{peer} {case_path} {mesh} {page.answer_path(folder, size, name, variant, peer)}")
+        for name, variant, peer in TASKS:
+            case_path = folder / f"{name}_{variant}.json".replace(" ", "_")
+            write(replace(cases()[name], variant=variant), case_path)
+            tasks.append(f"{peer} {case_path} {mesh} {answer_path(folder, size, name, variant, peer)}")
     tasks.sort(key=lambda task: task.startswith("calculix"))  # the slowest last
     (folder / "tasks").write_text("\n".join(tasks) + "\n", encoding="utf-8")
 

@@ -12,79 +12,82 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.peers.exchange import Answer, Case, Ridge, State, main, plain, steps
+from benchmarks.peers.exchange import Answer, Case, Ridge, main, plain
 
 _BLOCK = np.array([[-1.0, -0.5], [1.0, -0.5], [1.0, 0.0], [-1.0, 0.0]])  # mm, the screen
 _JOB = "ridge"
+_LAWS = """*SURFACE, NAME=MASTER
+{block}, S3
+*MATERIAL, NAME=SKIN
+*HYPERELASTIC, OGDEN, N=1
+{shear_modulus:.15g}, {exponent:.15g}, {d:.15g}
+*MATERIAL, NAME=RIGID
+*ELASTIC
+1000, 0.3
+*SOLID SECTION, ELSET=BODY, MATERIAL=SKIN
+1
+*SOLID SECTION, ELSET=BLOCK, MATERIAL=RIGID
+1
+*SURFACE INTERACTION, NAME=TOUCH
+*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR
+{eps_n:.15g}"""
+_CONTACT = """*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE
+SLAVE, MASTER
+*BOUNDARY
+SCREEN, 1, 2"""
+_STEP = """*STEP, NLGEOM, INC=1000
+*STATIC, DIRECT
+1, 1
+*BOUNDARY
+HELD, 1, 1, {x:.15g}
+TOP, 2, 2, {y:.15g}"""
+_REPORT = """*NODE PRINT, NSET=SKIN
+U
+*NODE PRINT, NSET=HELD
+RF
+*CONTACT PRINT
+CDIS, CSTR"""
+_NO_REPORT = """*NODE PRINT, NSET=SKIN, FREQUENCY=999
+U
+*CONTACT PRINT, FREQUENCY=999
+CDIS"""
 
 
 def deck(case: Case, ridge: Ridge) -> str:
     """Return the input deck."""
-    count = len(ridge.points)
+    count, block = len(ridge.points), len(ridge.triangles) + 1
     lines = ["*NODE, NSET=ALL"]
     lines += [f"{k}, {x:.15g}, {y:.15g}, 0" for k, (x, y) in enumerate(np.vstack([ridge.points, _BLOCK]), start=1)]
     lines.append("*ELEMENT, TYPE=CPE6, ELSET=BODY")
     lines += [f"{k}, " + ", ".join(str(node + 1) for node in cell) for k, cell in enumerate(ridge.triangles, start=1)]
-    last = len(ridge.triangles) + 1
-    lines += ["*ELEMENT, TYPE=CPE4, ELSET=BLOCK", f"{last}, " + ", ".join(str(count + k) for k in range(1, 5))]
-    for name, nodes in {
-        "TOP": ridge.top,
-        "HELD": np.union1d(ridge.top, ridge.sides),
-        "SKIN": np.unique(ridge.skin),
-        "SCREEN": count + np.arange(4),
-    }.items():
+    lines += ["*ELEMENT, TYPE=CPE4, ELSET=BLOCK", f"{block}, " + ", ".join(str(count + k) for k in range(1, 5))]
+    sets = {"TOP": ridge.top, "HELD": ridge.held, "SKIN": np.unique(ridge.skin), "SCREEN": count + np.arange(4)}
+    for name, nodes in sets.items():
         lines += [f"*NSET, NSET={name}", *(f"{k + 1}," for k in nodes)]
-    faces = {frozenset(pair) for pair in plain(ridge.skin[:, :2])}
     lines.append("*SURFACE, NAME=SLAVE")
+    touching = ridge.skin_pairs
     for k, (a, b, c) in enumerate(plain(ridge.triangles[:, :3]), start=1):
-        lines += [f"{k}, S{s}" for s, edge in enumerate(((a, b), (b, c), (c, a)), start=1) if frozenset(edge) in faces]
-    law = f"{case.shear_modulus:.15g}, {case.exponent:.15g}, {2 / case.bulk_modulus:.15g}"
-    lines += [
-        "*SURFACE, NAME=MASTER",
-        f"{last}, S3",
-        "*MATERIAL, NAME=SKIN",
-        "*HYPERELASTIC, OGDEN, N=1",
-        law,
-        "*MATERIAL, NAME=RIGID",
-        "*ELASTIC",
-        "1000, 0.3",
-        "*SOLID SECTION, ELSET=BODY, MATERIAL=SKIN",
-        "1",
-        "*SOLID SECTION, ELSET=BLOCK, MATERIAL=RIGID",
-        "1",
-        "*SURFACE INTERACTION, NAME=TOUCH",
-        "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
-        f"{case.eps_n:.15g}",
-    ]
+        edges = enumerate(({a, b}, {b, c}, {c, a}), start=1)
+        lines += [f"{k}, S{side}" for side, edge in edges if edge in touching]
+    lines.append(_LAWS.format(block=block, d=2 / case.bulk_modulus, **vars(case)))
     if case.mu_f:
         lines += ["*FRICTION", f"{case.mu_f:.15g}, {case.eps_t:.15g}"]
-    lines += ["*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE", "SLAVE, MASTER"]
-    lines += ["*BOUNDARY", "SCREEN, 1, 2"]
-    for _, load in steps(case):
-        lines += ["*STEP, NLGEOM, INC=1000", "*STATIC, DIRECT", "1, 1"]
-        lines += ["*BOUNDARY", f"HELD, 1, 1, {load.x:.15g}", f"TOP, 2, 2, {load.y:.15g}"]
-        if load.name:
-            lines += ["*NODE PRINT, NSET=SKIN", "U", "*NODE PRINT, NSET=HELD", "RF"]
-            lines += ["*CONTACT PRINT", "CDIS, CSTR"]
-        else:
-            lines += ["*NODE PRINT, NSET=SKIN, FREQUENCY=999", "U", "*CONTACT PRINT, FREQUENCY=999", "CDIS"]
-        lines.append("*END STEP")
+    lines.append(_CONTACT)
+    for load in case.loads:
+        lines += [_STEP.format(x=load.x, y=load.y), _REPORT if load.name else _NO_REPORT, "*END STEP"]
     return "\n".join(lines) + "\n"
 
 
 def blocks(text: str) -> Iterator[tuple[str, float, list[list[float]]]]:
     """Yield the tables of a .dat file: heading, total time (a step takes 1), rows."""
-    heading, time, rows = "", 0.0, list[list[float]]()
+    found = list[tuple[str, float, list[list[float]]]]()
     for line in text.splitlines():
         if " time " in line:
-            if heading:
-                yield heading, time, rows
             heading, _, end = line.strip().rpartition(" time ")
-            time, rows = float(end), []
+            found.append((heading, float(end), []))
         elif line.strip():
-            rows.append([float(word) for word in line.split()])
-    if heading:
-        yield heading, time, rows
+            found[-1][2].append([float(word) for word in line.split()])
+    yield from found
 
 
 def on_skin(ridge: Ridge, u: np.ndarray, gaps: Iterable[list[float]], stresses: Iterable[list[float]]) -> np.ndarray:
@@ -123,23 +126,14 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     version = subprocess.run(["ccx", "-v"], capture_output=True, text=True, check=False).stdout.split()[-1]
     answer = Answer("CalculiX", version, "GPL 2 or later", iterations=sum(int(row[3]) for row in summary))
     for step, load in enumerate(case.loads, start=1):
-        if not load.name:
-            continue
-        found = {heading.split()[0] + heading.split()[1]: rows for heading, time, rows in tables if round(time) == step}
-        u = np.full((len(ridge.points), 2), np.nan)
-        for node, *components in found["displacements(vx,vy,vz)"]:
-            u[int(node) - 1] = components[:2]
-        forces = np.array(found["forces(fx,fy,fz)"])[:, 1:].sum(axis=0)
-        x, p, t = on_skin(ridge, u, found["relativecontact"], found["contactstress"]).T
-        answer.states.append(
-            State(
-                load.name,
-                -float(forces[1]),
-                -float(forces[0]),
-                plain(u[ridge.skin.ravel()]),
-                *(plain(values) for values in (x, p, t)),
-            )
-        )
+        if load.name:
+            found = {"".join(heading.split()[:2]): rows for heading, time, rows in tables if round(time) == step}
+            u = np.full((len(ridge.points), 2), np.nan)
+            for node, *components in found["displacements(vx,vy,vz)"]:
+                u[int(node) - 1] = components[:2]
+            f_x, f_y, _ = np.array(found["forces(fx,fy,fz)"])[:, 1:].sum(axis=0)
+            points = on_skin(ridge, u, found["relativecontact"], found["contactstress"]).T
+            answer.report(load, -f_y, -f_x, u[ridge.skin.ravel()], *points)
     return answer
 
 

@@ -16,13 +16,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[Any]
+PEERS = ("ngsolve", "getfem", "felupe", "calculix")
+# What explains where a peer is off: case, deviation, and the program that can be made to do the same.
+# As CalculiX: stiffnesses per current area; new points drag since the unloaded state.
+# As FElupe: skin integrated by Simpson's rule, whose points are nodes; new points drag since they touched.
+# As installed: the program's own element, known to be wrong.
+VARIANTS = (
+    ("frictionless", "as CalculiX", "ngsolve"),
+    ("friction", "as CalculiX", "ngsolve"),
+    ("frictionless", "as FElupe", "ngsolve"),
+    ("friction", "as FElupe", "ngsolve"),
+    ("frictionless", "as installed", "felupe"),
+)
+_PRESS, _STEPS = -0.06, 20  # mm
+_SLIDES = ((0.005, 10), (0.05, 15))  # mm, steps
 
 
-VARIANTS = {
-    "as FElupe": "skin integrated by Simpson's rule, whose points are nodes; new points drag since they touched",
-    "as CalculiX": "stiffnesses per current area; new points drag since the unloaded state",
-    "as installed": "the program's own element, known to be wrong",
-}
+def plain(values: Array) -> Any:
+    """Return an array as lists of Python's own numbers, which JSON takes."""
+    return values.tolist()
 
 
 @dataclass(frozen=True)
@@ -41,7 +53,7 @@ class Case:
     .. math:: W = \frac{2 G_0}{a^2} (\bar\lambda_1^a + \bar\lambda_2^a + \bar\lambda_3^a - 3) + \frac K2 (J - 1)^2
 
     The contact pressure is eps_n times the penetration and friction that of springs eps_t, dragged where they would
-    bear more than mu_f times the pressure; all per reference area.
+    bear more than mu_f times the pressure; all per reference area. A variant is a deviation of VARIANTS.
     """
 
     mu_f: float
@@ -52,16 +64,42 @@ class Case:
     eps_n: float = 1000.0
     eps_t: float = 100.0
     variant: str = ""
-    """A deviation that explains another program's: one of VARIANTS, for the programs that can."""
-
-    def __post_init__(self) -> None:
-        if self.variant and self.variant not in VARIANTS:
-            raise ValueError(f"variant is {self.variant!r}; it must be one of {', '.join(VARIANTS)}")
 
     @property
     def bulk_modulus(self) -> float:
         """K = 2/D (MPa)."""
         return 2 * self.shear_modulus * (1 + self.poisson) / (3 * (1 - 2 * self.poisson))
+
+    def steps(self) -> Iterator[tuple[Load, Load]]:
+        """Yield each load with the one before it."""
+        return zip((Load(0.0, 0.0), *self.loads), self.loads, strict=False)
+
+    @classmethod
+    def read(cls, path: Path) -> "Case":
+        """Read a case that :func:`write` wrote."""
+        data = json.loads(path.read_text(encoding="utf-8"))
+        return cls(**{**data, "loads": tuple(Load(**load) for load in data["loads"])})
+
+
+def cases() -> dict[str, Case]:
+    """Return the two histories of load."""
+    press = [Load(0.0, _PRESS * k / _STEPS) for k in range(1, _STEPS)]
+    loads, x = [*press, Load(0.0, _PRESS, "pressed with friction")], 0.0
+    for end, count in _SLIDES:
+        loads += [Load(x + (end - x) * k / count, _PRESS) for k in range(1, count)]
+        loads += [Load(end, _PRESS, f"moved {1e3 * end:g} µm")]
+        x = end
+    frictionless = Case(0.0, (*press, Load(0.0, _PRESS, "pressed without friction")))
+    return {"frictionless": frictionless, "friction": Case(0.25, tuple(loads))}
+
+
+TASKS = [(name, "", peer) for name in cases() for peer in PEERS] + list(VARIANTS)
+"""Case, deviation and program of every answer but fingerpad's."""
+
+
+def answer_path(folder: Path, size: float, name: str, variant: str, program: str) -> Path:
+    """Return where a program's answer is."""
+    return folder / f"{program}_{name}_{variant}_{size:g}.json".replace(" ", "_").replace("__", "_")
 
 
 @dataclass(frozen=True)
@@ -70,7 +108,6 @@ class Ridge:
 
     Attributes:
         points: nodes (mm), shape (nodes, 2), vertices first.
-        vertices: how many of them are vertices.
         triangles: three vertices, counter-clockwise, then the middles of the edges 01, 12, 20; shape (cells, 6).
         skin: edges that can touch: two vertices, the body on the left from the first to the second, and the middle;
             from left to right, shape (edges, 3).
@@ -78,11 +115,25 @@ class Ridge:
     """
 
     points: Array
-    vertices: int
     triangles: Array
     skin: Array
     top: Array
     sides: Array
+
+    @property
+    def vertices(self) -> int:
+        """How many nodes are vertices."""
+        return int(self.triangles[:, :3].max()) + 1
+
+    @property
+    def held(self) -> Array:
+        """Nodes that are held in x."""
+        return np.union1d(self.top, self.sides)
+
+    @property
+    def skin_pairs(self) -> set[frozenset[int]]:
+        """Vertices of the edges that can touch."""
+        return {frozenset(pair) for pair in plain(self.skin[:, :2])}
 
     def save(self, path: Path) -> None:
         """Write the mesh as .npz."""
@@ -92,32 +143,46 @@ class Ridge:
     def read(cls, path: Path) -> "Ridge":
         """Read what :meth:`save` wrote."""
         with np.load(path) as data:
-            arrays = {name: data[name] for name in data.files}
-        return cls(**{**arrays, "vertices": int(arrays["vertices"])})
+            return cls(**data)
+
+
+def left_to_right(edges: Array, x: Array) -> Array:
+    """Return edges, two ends and a middle each, from left to right.
+
+    Args:
+        edges: shape (edges, 3, ...).
+        x: abscissae of the three, shape (edges, 3).
+    """
+    turned, backwards = edges.copy(), x[:, 0] > x[:, 1]
+    turned[backwards, :2] = edges[backwards, 1::-1]
+    return turned[np.argsort(x[:, 2])]
 
 
 @dataclass
 class State:
-    """A reported equilibrium."""
+    """A reported equilibrium.
+
+    Attributes:
+        name: of the load.
+        f_n: normal force on the ridge's top (N/mm).
+        f_t: friction on the skin (N/mm), positive towards x > 0.
+        displacement: of the skin's nodes (mm), in the order of ``Ridge.skin``, shape (3 edges, 2).
+        x: current abscissae (mm) of the program's own contact points, ascending.
+        p_n, t_t: pressure and friction there (MPa of reference area).
+    """
 
     name: str
     f_n: float
-    """Normal force on the ridge's top (N/mm)."""
     f_t: float
-    """Friction on the skin (N/mm), positive towards x > 0."""
     displacement: list[list[float]]
-    """Of the skin's nodes (mm), in the order of ``Ridge.skin``: shape (3 edges, 2)."""
     x: list[float]
-    """Current abscissae (mm) of the program's own contact points."""
     p_n: list[float]
-    """Pressure there (MPa of reference area)."""
     t_t: list[float]
-    """Friction there (MPa of reference area)."""
 
 
 @dataclass
 class Answer:
-    """What a program gives for a case."""
+    """What a program gives for a case; ``seconds`` of processor time include the start of the program."""
 
     program: str
     version: str
@@ -125,41 +190,26 @@ class Answer:
     states: list[State] = field(default_factory=list)
     iterations: int = 0
     seconds: float = 0.0
-    """Processor time, that of starting the program included."""
+
+    def report(self, load: Load, f_n: float, f_t: float, displacement: Array, *points: Array) -> None:
+        """Add a state if the load has a name; ``points`` are x, p_n and t_t of :class:`State`, in any order of x."""
+        if load.name:
+            order = np.argsort(points[0])
+            columns = [plain(values[order]) for values in points]
+            self.states.append(State(load.name, float(f_n), float(f_t), plain(displacement), *columns))
+
+    @classmethod
+    def read(cls, path: Path) -> "Answer":
+        """Read an answer that :func:`write` wrote."""
+        data = json.loads(path.read_text(encoding="utf-8"))
+        return cls(**{**data, "states": [State(**state) for state in data["states"]]})
 
 
-def plain(values: Array) -> Any:
-    """Return an array as lists of Python's own numbers, which JSON takes."""
-    return values.tolist()
-
-
-def write_case(case: Case, path: Path) -> None:
-    """Write a case as JSON."""
-    path.write_text(json.dumps(asdict(case), indent=1) + "\n", encoding="utf-8")
-
-
-def read_case(path: Path) -> Case:
-    """Read what :func:`write_case` wrote."""
-    data = json.loads(path.read_text(encoding="utf-8"))
-    return Case(**{**data, "loads": tuple(Load(**load) for load in data["loads"])})
-
-
-def write_answer(answer: Answer, path: Path) -> None:
-    """Write an answer as JSON, whole or not at all: an answer that is there is not asked for again."""
+def write(record: Case | Answer, path: Path) -> None:
+    """Write JSON, whole or not at all: an answer that is there is not computed again."""
     partial = path.with_name(f"{path.name}.part")
-    partial.write_text(json.dumps(asdict(answer)) + "\n", encoding="utf-8")
+    partial.write_text(json.dumps(asdict(record)) + "\n", encoding="utf-8")
     partial.replace(path)
-
-
-def read_answer(path: Path) -> Answer:
-    """Read what :func:`write_answer` wrote."""
-    data = json.loads(path.read_text(encoding="utf-8"))
-    return Answer(**{**data, "states": [State(**state) for state in data["states"]]})
-
-
-def steps(case: Case) -> Iterator[tuple[Load, Load]]:
-    """Yield each load with the one before it."""
-    return zip((Load(0.0, 0.0), *case.loads), case.loads, strict=False)
 
 
 def main(solve: Callable[[Case, Ridge], Answer]) -> None:
@@ -168,9 +218,7 @@ def main(solve: Callable[[Case, Ridge], Answer]) -> None:
     for name in ("case", "mesh", "answer"):
         parser.add_argument(name, type=Path)
     args = parser.parse_args()
-    answer = solve(read_case(args.case), Ridge.read(args.mesh))
+    answer = solve(Case.read(args.case), Ridge.read(args.mesh))
     answer.seconds = sum(os.times()[:4])
-    write_answer(answer, args.answer)
+    write(answer, args.answer)
     print(f"{answer.program} {answer.version}: {answer.iterations} iterations, {answer.seconds:.1f} s", flush=True)
-    for s in answer.states:
-        print(f"  {s.name}: F_n {s.f_n:.8f}, F_t {s.f_t:.8f} N/mm, peak pressure {max(s.p_n):.6f} MPa", flush=True)

@@ -13,7 +13,7 @@ is taken to be dragged from the moment of the touch, found by interpolation, not
 import felupe as fem
 import numpy as np
 
-from benchmarks.peers.exchange import Answer, Case, Ridge, State, main, steps
+from benchmarks.peers.exchange import Answer, Case, Ridge, main
 
 _TOLERANCE = 1e-10  # norm of the imbalance over that of the reactions
 _MOST = 60  # iterations a step
@@ -26,16 +26,8 @@ class CorrectedTriangle(fem.QuadraticTriangle):
         """Return the derivatives of the shape functions at (r, s), shape (6, 2)."""
         r, s = rs
         t = 1 - r - s
-        return np.array(
-            [
-                [1 - 4 * t, 1 - 4 * t],
-                [4 * r - 1, 0],
-                [0, 4 * s - 1],
-                [4 * (t - r), -4 * r],
-                [4 * s, 4 * r],
-                [-4 * s, 4 * (t - s)],
-            ]
-        )
+        corners = [[1 - 4 * t, 1 - 4 * t], [4 * r - 1, 0], [0, 4 * s - 1]]
+        return np.array([*corners, [4 * (t - r), -4 * r], [4 * s, 4 * r], [-4 * s, 4 * (t - s)]])
 
 
 def areas(ridge: Ridge) -> tuple[np.ndarray, np.ndarray]:
@@ -58,58 +50,33 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     law = fem.Hyperelastic(fem.ogden, mu=[case.shear_modulus], alpha=[case.exponent])
     bodies = [fem.SolidBody(law, field), fem.SolidBody(fem.Volumetric(bulk=case.bulk_modulus), field)]
     nodes, area = areas(ridge)
+    look = {"centerpoint": plane, "normal": np.array([0.0, 1.0]), "friction": case.mu_f}
     contacts = [
         fem.ContactRigidPlane(
-            field,
-            points=[node],
-            centerpoint=plane,
-            normal=np.array([0.0, 1.0]),
-            friction=case.mu_f,
-            multiplier=case.eps_n * weight,
-            multiplier_tangential=case.eps_t * weight,
+            field, points=[node], multiplier=case.eps_n * weight, multiplier_tangential=case.eps_t * weight, **look
         )
         for node, weight in zip(nodes, area, strict=True)
     ]
 
-    def held(points: np.ndarray, skip: tuple[int, int]) -> fem.Boundary:
+    def support(points: np.ndarray, skip: tuple[int, int]) -> fem.Boundary:
         return fem.Boundary(u, mask=np.isin(np.arange(len(mesh.points)), points), skip=skip)
 
-    supports = {
-        "x": held(np.union1d(ridge.top, ridge.sides), (0, 1)),
-        "y": held(ridge.top, (1, 0)),
-        "plane": held(np.array([plane]), (0, 0)),
-    }
+    planes = np.array([plane])
+    supports = {"x": support(ridge.held, (0, 1)), "y": support(ridge.top, (1, 0)), "plane": support(planes, (0, 0))}
     dof0, dof1 = fem.dof.partition(field, supports)
+    how = {"items": [*bodies, *contacts], "dof0": dof0, "dof1": dof1, "tol": _TOLERANCE, "maxiter": _MOST, "verbose": 0}
     answer = Answer("FElupe", fem.__version__, "GPL 3 or later")
-    for _, load in steps(case):
+    for load in case.loads:
         supports["x"].value, supports["y"].value = load.x, load.y
-        found = fem.newtonraphson(
-            items=[*bodies, *contacts],
-            dof0=dof0,
-            dof1=dof1,
-            ext0=fem.dof.apply(field, supports, dof0),
-            tol=_TOLERANCE,
-            maxiter=_MOST,
-            verbose=0,
-        )
+        found = fem.newtonraphson(ext0=fem.dof.apply(field, supports, dof0), **how)
         answer.iterations += found.iterations
         if load.name:
             forces = np.asarray(found.fun).reshape(-1, 2)
             of_contacts = sum(contact.assemble.vector(field).toarray() for contact in contacts)
-            on_skin = of_contacts.reshape(-1, 2)[nodes]
+            t, p = -of_contacts.reshape(-1, 2)[nodes].T / area
             x = ridge.points[nodes, 0] + u.values[nodes, 0]
-            order = np.argsort(x)
-            answer.states.append(
-                State(
-                    load.name,
-                    -float(forces[ridge.top, 1].sum()),
-                    -float(forces[np.union1d(ridge.top, ridge.sides), 0].sum()),
-                    u.values[ridge.skin.ravel()].tolist(),
-                    x[order].tolist(),
-                    (-on_skin[:, 1] / area)[order].tolist(),
-                    (-on_skin[:, 0] / area)[order].tolist(),
-                )
-            )
+            f_n, f_t = -forces[ridge.top, 1].sum(), -forces[ridge.held, 0].sum()
+            answer.report(load, f_n, f_t, u.values[ridge.skin.ravel()], x, p, t)
     return answer
 
 

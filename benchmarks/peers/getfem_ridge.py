@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import spsolve
 
-from benchmarks.peers.exchange import Answer, Case, Load, Ridge, State, main, plain, steps
+from benchmarks.peers.exchange import Answer, Case, Load, Ridge, main, plain
 
 _DELTA = 1e-6
 _TOLERANCE = 1e-12  # N/mm, norm of the nodal imbalance
@@ -34,7 +34,7 @@ def mesh_of(ridge: Ridge) -> gf.Mesh:
     mesh = gf.Mesh("empty", 2)
     corners = ridge.triangles[:, :3]
     cells = mesh.add_convex(gf.GeoTrans("GT_PK(2,1)"), ridge.points[corners].transpose(2, 1, 0))
-    skin = {frozenset(pair) for pair in plain(ridge.skin[:, :2])}
+    skin = ridge.skin_pairs
     faces = [
         (cell, opposite)
         for cell, vertices in zip(cells, plain(corners), strict=True)
@@ -69,21 +69,16 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     # GetFEM numbers components of a node one after the other.
     places = space.basic_dof_nodes()[:, ::2].T
     node = np.array([int(np.argmin(np.linalg.norm(places - point, axis=1))) for point in ridge.points])
-    held = {"x": 2 * node[np.union1d(ridge.top, ridge.sides)], "y": 2 * node[ridge.top] + 1}
+    held = {"x": 2 * node[ridge.held], "y": 2 * node[ridge.top] + 1}
     skin = node[ridge.skin.ravel()]
-    version = subprocess.run(
-        ["dpkg-query", "-W", "-f", "${Version}", "python3-getfem"], check=True, capture_output=True, text=True
-    ).stdout
+    query = ["dpkg-query", "-W", "-f", "${Version}", "python3-getfem"]
+    version = subprocess.run(query, check=True, capture_output=True, text=True).stdout
     answer = Answer("GetFEM", version, "LGPL 3 or later")
-    for _, load in steps(case):
+    for load in case.loads:
         forces = _newton(model, held, load, answer)
-        if load.name:
-            x, p, t = (model.interpolation(text, at_points, _SKIN) for text in ("X(1) + u(1)", "p", "t"))
-            order = np.argsort(x)
-            u = model.variable("u").reshape(-1, 2)
-            f_n, f_t = -forces[held["y"]].sum(), -forces[held["x"]].sum()
-            points = (plain(values[order]) for values in (x, p, t))
-            answer.states.append(State(load.name, float(f_n), float(f_t), plain(u[skin]), *points))
+        points = (model.interpolation(text, at_points, _SKIN) for text in ("X(1) + u(1)", "p", "t"))
+        u = model.variable("u").reshape(-1, 2)
+        answer.report(load, -forces[held["y"]].sum(), -forces[held["x"]].sum(), u[skin], *points)
         model.set_variable("anchor", model.interpolation("u(1) + t / eps_t", at_points, _SKIN))
     return answer
 

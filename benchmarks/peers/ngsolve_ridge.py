@@ -2,15 +2,14 @@ r"""The ridge in NGSolve: energies and weak forms written in its own symbols.
 
 The stretches are those of the eigenvalues of C, :math:`\lambda^2 = \tfrac12 \mathrm{tr} C \pm r` with
 :math:`r^2 = \tfrac14 (C_{11} - C_{22})^2 + C_{12}^2 + \delta^2`: delta keeps the root's derivatives finite where the
-two coincide and changes the energy by G_0 delta^2. Friction anchors are values at the integration
-points of the skin.
+two coincide and changes the energy by G_0 delta^2. Friction anchors are values at the integration points of the skin.
 """
 
 import netgen.meshing as netgen
 import ngsolve as ng
 import numpy as np
 
-from benchmarks.peers.exchange import Answer, Case, Ridge, State, main, plain, steps
+from benchmarks.peers.exchange import Answer, Case, Ridge, left_to_right, main, plain
 
 _DELTA = 1e-6
 _TOLERANCE = 1e-12  # N/mm, norm of the nodal imbalance
@@ -27,16 +26,12 @@ def mesh_of(ridge: Ridge) -> ng.Mesh:
     body = mesh.AddRegion("body", dim=2)
     for corners in ridge.triangles[:, :3]:
         mesh.Add(netgen.Element2D(body, [points[k] for k in corners]))
-    regions = {name: mesh.AddRegion(name, dim=1) for name in ("skin", "top", "sides")}
-    skin = {frozenset(pair) for pair in plain(ridge.skin[:, :2])}
-    top, sides = set(plain(ridge.top)), set(plain(ridge.sides))
+    on = {"skin": ridge.skin_pairs.__contains__, "top": {*ridge.top}.issuperset, "sides": {*ridge.sides}.issuperset}
+    regions = {name: mesh.AddRegion(name, dim=1) for name in on}
     for a, b, c in plain(ridge.triangles[:, :3]):
         for pair in ((a, b), (b, c), (c, a)):
-            for name, inside in (("skin", frozenset(pair) in skin), ("top", top >= set(pair))):
-                if inside:
-                    mesh.Add(netgen.Element1D([points[k] for k in pair], index=regions[name]))
-            if sides >= set(pair):
-                mesh.Add(netgen.Element1D([points[k] for k in pair], index=regions["sides"]))
+            for name in (name for name, holds in on.items() if holds(frozenset(pair))):
+                mesh.Add(netgen.Element1D([points[k] for k in pair], index=regions[name]))
     return ng.Mesh(mesh)
 
 
@@ -91,38 +86,24 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     dofs = np.concatenate([e.dofs for e in places.Elements(ng.BND) if e.mat == "skin"])  # read by number of the point
     before_gap.vec.FV().NumPy()[dofs] = np.ravel(ng.y(points))
     answer = Answer("NGSolve", ng.__version__, "LGPL 2.1")
-    for before, load in steps(case):
+    for before, load in case.steps():
         now.vec.data += (load.x - before.x) * lifts["x"].vec + (load.y - before.y) * lifts["y"].vec
         answer.iterations += _newton(loaded, now, residual)
         t, p, law = tractions(now, ng.Grad(now))
-        if load.name:
-            loaded.Apply(now.vec, residual)
-            x, p_points, t_points = (np.ravel(f(points)) for f in (ng.x + now[0], p, t))
-            order = np.argsort(x)
-            columns = [np.reshape(f(nodes), (-1, 1)) for f in (ng.x, now[0], now[1])]
-            edges = np.array([_left_to_right(one) for one in np.hstack(columns).reshape(-1, 3, 3)])
-            edges = edges[np.argsort(edges[:, 2, 0])]
-            answer.states.append(
-                State(
-                    load.name,
-                    -ng.InnerProduct(residual, lifts["y"].vec),
-                    -ng.InnerProduct(residual, lifts["x"].vec),
-                    plain(edges[:, :, 1:].reshape(-1, 2)),
-                    plain(x[order]),
-                    plain(p_points[order]),
-                    plain(t_points[order]),
-                )
-            )
+        loaded.Apply(now.vec, residual)
+        f_n, f_t = (-ng.InnerProduct(residual, lifts[name].vec) for name in ("y", "x"))
+        columns = [np.reshape(f(nodes), (-1, 1)) for f in (ng.x, now[0], now[1])]
+        places_of = np.hstack(columns).reshape(-1, 3, 3)
+        edges = left_to_right(places_of, places_of[:, :, 0])
+        answer.report(
+            load, f_n, f_t, edges[:, :, 1:].reshape(-1, 2), *(np.ravel(f(points)) for f in (ng.x + now[0], p, t))
+        )
         after = now[0] + law / case.eps_t
         if case.variant == "as CalculiX":  # what touches in a step has slipped since the beginning of all steps
             after = ng.IfPos(p, after, 0.0)
         for field, value in ((anchor, after), (before_x, now[0]), (before_gap, ng.y + now[1])):
             field.vec.FV().NumPy()[dofs] = np.ravel(value(points))
     return answer
-
-
-def _left_to_right(edge: np.ndarray) -> np.ndarray:
-    return edge if edge[0, 0] < edge[1, 0] else edge[[1, 0, 2]]
 
 
 def _newton(loaded: ng.BilinearForm, now: ng.GridFunction, residual: ng.BaseVector) -> int:

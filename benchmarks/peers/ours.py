@@ -6,7 +6,7 @@ import dolfinx
 import numpy as np
 from mpi4py import MPI
 
-from benchmarks.peers.exchange import Answer, Case, Ridge, State, plain, steps
+from benchmarks.peers.exchange import Answer, Case, Ridge, left_to_right, plain
 from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import TaggedMesh, load
@@ -20,7 +20,7 @@ from variational.solvers.equations import Control
 
 _MM = 1e-3  # m
 _STIFFNESS = 1e9  # Pa/m in a N/mm^3
-_H_0 = 0.514e-6  # m, not felt: there is no voltage
+_H_0 = 0.514e-6  # m, without effect: there is no voltage
 _IMBALANCE = 1e-9  # N/m
 
 
@@ -48,18 +48,14 @@ def for_peers(body: TaggedMesh) -> Ridge:
 
     points = np.vstack([corners, corners[edges].mean(axis=1)])
     skin = edges_of(tags.ridge(0))
-    backwards = points[skin[:, 0], 0] > points[skin[:, 1], 0]
-    skin[backwards, :2] = skin[backwards, 1::-1]
-    skin = skin[np.argsort(points[skin[:, 2], 0])]
-    return Ridge(
-        points, len(corners), triangles, skin, np.unique(edges_of(tags.BONE_RIM)), np.unique(edges_of(tags.SIDES))
-    )
+    held = (np.unique(edges_of(tag)) for tag in (tags.BONE_RIM, tags.SIDES))
+    return Ridge(points, triangles, left_to_right(skin, points[skin, 0]), *held)
 
 
 def solve(case: Case, body: TaggedMesh, skin: np.ndarray) -> Answer:
     """Lead the ridge along the loads.
 
-    The screen is moved instead of top and sides, the other way: friction feels the screen by its anchors alone.
+    The screen is moved instead of top and sides, the other way: the screen acts on friction by its anchors alone.
 
     Args:
         case: penalty per reference area.
@@ -74,7 +70,7 @@ def solve(case: Case, body: TaggedMesh, skin: np.ndarray) -> Answer:
     places = problem.V.tabulate_dof_coordinates()[:, :2] / _MM
     nodes = [int(np.argmin(np.linalg.norm(places - place, axis=1))) for place in skin]
     answer = Answer("fingerpad", f"{importlib.metadata.version('fenics-dolfinx')} (dolfinx)", "this project")
-    for before, now in steps(case):
+    for before, now in case.steps():
         h, moved = problem.history, (now.x - before.x) * _MM
         problem.set_history(History(h.anchor - moved, h.pressure, h.x))
         solver.x.array_w[-2] -= moved  # of the bone and all that is relative to it: no point slips at first
@@ -82,20 +78,8 @@ def solve(case: Case, body: TaggedMesh, skin: np.ndarray) -> Answer:
         solver.solve()
         s = observer.state()
         problem.set_history(History(s.anchor, s.p_n, s.x))
-        if now.name:
-            loads = observer.ridge_loads(s)
-            displacement = problem.displacement()[nodes] / _MM + (now.x, 0.0)
-            order = np.argsort(s.x.ravel())
-            answer.states.append(
-                State(
-                    now.name,
-                    float(solver.reaction[1]) * _MM,
-                    float(loads.f_friction[0]) * _MM,
-                    plain(displacement),
-                    plain(s.x.ravel()[order] / _MM + now.x),
-                    plain(s.p_n.ravel()[order] / 1e6),
-                    plain(s.t_t.ravel()[order] / 1e6),
-                )
-            )
+        displacement = problem.displacement()[nodes] / _MM + (now.x, 0.0)
+        f_n, f_t = solver.reaction[1] * _MM, observer.ridge_loads(s).f_friction[0] * _MM
+        answer.report(now, f_n, f_t, displacement, s.x.ravel() / _MM + now.x, s.p_n.ravel() / 1e6, s.t_t.ravel() / 1e6)
     answer.iterations = solver.counts.newton
     return answer

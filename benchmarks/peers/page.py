@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.polynomial import Polynomial
 
 from benchmarks.harness import kept, page, picture, table
-from benchmarks.peers import profile
-from benchmarks.peers.cases import PEERS, VARIANTS, cases
-from benchmarks.peers.exchange import Answer, Ridge, State, read_answer
+from benchmarks.peers.exchange import TASKS, Answer, Array, Ridge, State, answer_path, cases
 from fingerpad.io.style import BLUE, GREEN, ORANGE, VERMILION
 
 FORCE, SHAPE = 5e-4, 1e-2  # bars: relative differences of forces, and of half-width and peak pressure
 _BARS = (FORCE, FORCE, SHAPE, SHAPE)
+_TO_POWERS = np.linalg.inv(np.vander([0.0, 1.0, 0.5], increasing=True))  # of the coordinate along an edge
 _HEAD = ["program", "F_n (N/mm)", "F_t (N/mm)", "half-width (mm)", "peak pressure (MPa)"]
 # Colour, marker, and whether it is filled: a variant that explains a program lies in the middle of its marker.
 _STYLES = {"NGSolve": (BLUE, "o", False), "GetFEM": (GREEN, "x", False), "FElupe": (ORANGE, "s", False),
@@ -32,20 +32,31 @@ Differences are from fingerpad; **!** marks one above 0.05 % of a force or 1 % o
 is zero by symmetry in the pressed ridge, and its difference there is not judged."""
 
 
-def stem(name: str, variant: str) -> str:
-    """Return the name of a case's file."""
-    return f"{name}_{variant}".replace(" ", "_") if variant else name
-
-
-def answer_path(folder: Path, size: float, name: str, variant: str, program: str) -> Path:
-    """Return where a program's answer is."""
-    return folder / f"{program}_{stem(name, variant)}_{size:g}.json"
-
-
 # -- numbers -------------------------------------------------------------------------------------------------
 def values(state: State, ridge: Ridge) -> list[float]:
     """Return normal force, friction (N/mm), half-width (mm) and peak pressure (MPa) of a state."""
-    return [state.f_n, state.f_t, profile.half_width(ridge, state), max(state.p_n)]
+    return [state.f_n, state.f_t, half_width(ridge, state), max(state.p_n)]
+
+
+def half_width(ridge: Ridge, state: State) -> float:
+    """Return half the current length (mm) of the skin below the plane, its ends located inside edges."""
+    places = ridge.points[ridge.skin] + np.array(state.displacement).reshape(-1, 3, 2)
+    return sum(_length_below(edge) for edge in places) / 2
+
+
+def _length_below(edge: Array) -> float:
+    """Return the length over which the parabola through an edge's nodes, shape (3, 2), has y < 0."""
+    x, y = (Polynomial(_TO_POWERS @ z) for z in edge.T)
+    roots = y.roots()
+    real = roots[np.abs(np.imag(roots)) < 1e-12].real
+    cuts = [0.0, *np.sort(real[(real > 0) & (real < 1)]), 1.0]
+    gauss, weights = np.polynomial.legendre.leggauss(6)
+    length = 0.0
+    for a, b in zip(cuts, cuts[1:], strict=False):
+        if y((a + b) / 2) < 0:
+            xi = (a + b) / 2 + (b - a) / 2 * gauss
+            length += (b - a) / 2 * float(weights @ np.hypot(x.deriv()(xi), y.deriv()(xi)))
+    return length
 
 
 def differences(found: Sequence[float], reference: Sequence[float]) -> list[float | None]:
@@ -61,10 +72,9 @@ def numbers(folder: Path) -> dict[str, Any]:
         ridge = Ridge.read(folder / f"{size:g}.npz")
         mesh: dict[str, Any] = {"size": size, "triangles": len(ridge.triangles), "states": [], "iterations": {}}
         for name in cases():
-            tasks = [("", peer) for peer in ("ours", *PEERS)]
-            tasks += [(variant, peer) for case, variant, peer in VARIANTS if case == name]
+            tasks = [("", "ours"), *((variant, peer) for case, variant, peer in TASKS if case == name)]
             paths = [(variant, answer_path(folder, size, name, variant, peer)) for variant, peer in tasks]
-            answers = [(variant, read_answer(path)) for variant, path in paths if path.exists()]
+            answers = [(variant, Answer.read(path)) for variant, path in paths if path.exists()]
             programs |= {a.program: [a.program, a.version, a.licence] for _, a in answers}
             mesh["iterations"][name] = {a.program: a.iterations for variant, a in answers if not variant}
             mesh["states"] += [_state(k, answers, ridge) for k in range(len(answers[0][1].states))]
@@ -73,13 +83,11 @@ def numbers(folder: Path) -> dict[str, Any]:
 
 
 def _state(k: int, answers: Sequence[tuple[str, Answer]], ridge: Ridge) -> dict[str, Any]:
-    reference = values(answers[0][1].states[k], ridge)
     rows = list[dict[str, Any]]()
     for variant, answer in answers:
         found, label = values(answer.states[k], ridge), f"{answer.program}, {variant}" if variant else answer.program
-        rows.append(
-            {"program": label, "values": found} | ({"differences": differences(found, reference)} if rows else {})
-        )
+        compared = {"differences": differences(found, rows[0]["values"])} if rows else {}
+        rows.append({"program": label, "values": found} | compared)
     return {"name": answers[0][1].states[k].name, "rows": rows}
 
 
@@ -95,13 +103,11 @@ def line(row: dict[str, Any]) -> list[str]:
 
 def largest(rows: Iterable[dict[str, Any]]) -> list[list[str]]:
     """Return a row a program of its largest differences in all states, variants apart."""
-    found = dict[str, list[float]]()
+    found = dict[str, Array]()
     for row in rows:
         if "differences" in row:
-            sizes = [abs(d or 0.0) for d in row["differences"]]
-            found[row["program"]] = [
-                max(pair) for pair in zip(sizes, found.get(row["program"], [0.0] * 4), strict=True)
-            ]
+            sizes = np.array([abs(d or 0.0) for d in row["differences"]])
+            found[row["program"]] = np.maximum(sizes, found.get(row["program"], 0.0))
     return [[program, *(f"{100 * d:.2g} %" if d > 5e-7 else "0" for d in some)] for program, some in found.items()]
 
 
@@ -111,15 +117,11 @@ def paint(figure: Figure, states: Sequence[dict[str, Any]]) -> None:
     for k, (ax, name, bar) in enumerate(zip(axes, _HEAD[1:], _BARS, strict=True)):
         ax.axhspan(-100 * bar, 100 * bar, color="0.9", lw=0, label="agreement, as judged here")
         for program, (colour, marker, face) in _STYLES.items():
-            found = [
-                (n, row["differences"][k])
-                for n, s in enumerate(states)
-                for row in s["rows"]
-                if row["program"] == program
-            ]
-            known = np.array([pair for pair in found if pair[1] is not None], dtype=float).reshape(-1, 2)
+            rows = [(n, row) for n, state in enumerate(states) for row in state["rows"] if row["program"] == program]
+            known = [(n, row["differences"][k]) for n, row in rows if row["differences"][k] is not None]
+            x, y = np.reshape(known, (-1, 2)).T
             look = {"color": colour, "mfc": colour if face else "none", "ms": 5 if face else 9, "label": program}
-            ax.plot(known[:, 0], 100 * known[:, 1], marker, **look)
+            ax.plot(x, 100 * y, marker, **look)
         ax.set_yscale("symlog", linthresh=0.01)
         ax.set_xticks(range(len(states)), [state["name"].replace(" with", "\nwith") for state in states], rotation=60)
         ax.set(title=name.split(" (")[0], ylim=(-5, 5))
@@ -148,18 +150,8 @@ def draw(docs: Path) -> Path:
     ]
     for mesh in told["meshes"]:
         body.append(f"## Facets of {mesh['size']:g} µm ({mesh['triangles']} triangles)")
-        body += [
-            f"**{state['name'].capitalize()}**\n\n{table(_HEAD, map(line, state['rows']))}" for state in mesh["states"]
-        ]
+        body += [f"**{s['name'].capitalize()}**\n\n{table(_HEAD, map(line, s['rows']))}" for s in mesh["states"]]
         rows = [[name, *some.values()] for name, some in mesh["iterations"].items()]
         body.append(table(["iterations", *next(iter(mesh["iterations"].values()))], rows))
-    return page(
-        docs / "peers.md",
-        "Other codes, same problem",
-        finding,
-        _HOW,
-        body,
-        "benchmarks/peers/run",
-        found.made,
-        ["peers"],
-    )
+    title, command = "Other codes, same problem", "benchmarks/peers/run"
+    return page(docs / "peers.md", title, finding, _HOW, body, command, found.made, ["peers"])

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 
 from benchmarks.harness import keep, made, parser
 from benchmarks.stability import page, plan
-from benchmarks.stability.case import Case, Outcome
 from benchmarks.stability.runs import Runs, run_all
 from fingerpad.cli.arguments import positive
 
@@ -25,12 +24,8 @@ def main(given: Sequence[str] | None = None) -> int:
     left = 0
     if not args.draw:
         runs, cases = Runs(args.out / "runs.jsonl"), plan.cases()
-
-        def report(case: Case, outcome: Outcome, waiting: int) -> None:
-            print(f"{waiting:4d} left  {outcome.seconds:6.1f} s  {outcome.status} {outcome.reason}  {case}", flush=True)
-
         print(f"stability map: {len(cases)} solves, {len(runs.missing(cases))} to be run")
-        left = run_all(cases, runs, args.jobs, args.limit, args.hours, report)
+        left = run_all(cases, runs, args.jobs, args.limit, args.hours)
         keep("stability", runs.numbers(cases), made(), args.docs)
     print(f"{page.draw(args.docs)}" + (f"; {left} runs are missing" if left else ""))
     return 1 if left else 0

@@ -16,14 +16,9 @@ REFERENCE_SIZE = 1.25e-6
 
 @dataclass(frozen=True)
 class Treatment:
-    """A formulation of the contact, with its one numerical parameter.
+    """A formulation of the contact, with its one numerical parameter: five decades of it are on the map.
 
-    Attributes:
-        label: symbol and unit of the parameter.
-        default: value of the parameter.
-        values: on the map, five decades.
-        law: from the parameter to the formulation.
-        everywhere: whether it is on every chart, not on that of its parameter alone.
+    Only what is ``everywhere`` is on every chart, not on that of its parameter alone.
     """
 
     label: str
@@ -84,15 +79,13 @@ class Case:
     @property
     def changed(self) -> dict[str, Any]:
         """Fields that are not the default's: the case as it is kept."""
-        default = asdict(Case())
-        return {name: value for name, value in asdict(self).items() if value != default[name]}
+        return {name: value for name, value in asdict(self).items() if value != getattr(Case(), name)}
 
     @property
     def reference(self) -> "Case":
         """The run on the finest mesh with the same physical parameters and default numerical ones."""
         numerical = ("formulation", "parameter", "element", "step_scale", "pseudo_transient", "detour")
-        default = asdict(Case())
-        return replace(self, contact_size=REFERENCE_SIZE, **{name: default[name] for name in numerical})
+        return replace(self, contact_size=REFERENCE_SIZE, **{name: getattr(Case(), name) for name in numerical})
 
 
 @dataclass

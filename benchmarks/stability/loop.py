@@ -14,30 +14,17 @@ _EPS_0 = 8.854e-12  # F/m
 _TOLERANCE, _CAP = 1e-6, 200
 
 
-def attraction(closure: BearingArea, d: float, voltage: float) -> float:
-    """Return the attraction (Pa) across an air gap ``d`` (m), Eq. 3."""
-    return _EPS_0 * voltage**2 / 2 / (closure.h_0 + d) ** 2
-
-
 @dataclass(frozen=True)
 class Loop:
     """How the two fixed points end: sweeps, or None where they diverge, and the gain a of the second."""
 
-    pressure: float
-    voltage: float
     gain: float
     by_contact: int | None
     by_external: int | None
 
 
 def loop(closure: BearingArea, pressure: float, voltage: float, disturbance: float = 1e-2) -> Loop:
-    """Iterate both fixed points at an external pressure (Pa) and voltage (V) from near their common solution.
-
-    Args:
-        closure: the microscale.
-        pressure: mean external pressure (Pa).
-        voltage: (V).
-        disturbance: relative, of the solution, from which both start.
+    """Iterate both fixed points at an external pressure (Pa) and voltage (V), from a disturbed common solution.
 
     Raises:
         ValueError: no equilibrium in contact at this pressure.
@@ -45,18 +32,19 @@ def loop(closure: BearingArea, pressure: float, voltage: float, disturbance: flo
     solution = closure.air_gap_at_external(pressure, voltage)
     step = 1e-4 * pressure
     above, below = (closure.air_gap_at_external(pressure + side * step, voltage) for side in (1, -1))
-    stiffness = 2 * attraction(closure, solution, voltage) / (closure.h_0 + solution)
-    start = solution * (1 + disturbance)
+
+    def attraction(d: float) -> float:
+        """Return the attraction (Pa) across an air gap (m), Eq. 3."""
+        return _EPS_0 * voltage**2 / 2 / (closure.h_0 + d) ** 2
 
     def by_contact(d: float, previous: float) -> float:
-        return float(closure(pressure + attraction(closure, d, voltage)).d_eq)
+        return float(closure(pressure + attraction(d)).d_eq)
 
     def by_external(d: float, previous: float) -> float:
-        out_of_phase = attraction(closure, previous, voltage) - attraction(closure, d, voltage)
-        return closure.air_gap_at_external(pressure + out_of_phase, voltage)
+        return closure.air_gap_at_external(pressure + attraction(previous) - attraction(d), voltage)
 
     def sweeps(sweep) -> int | None:
-        previous, d = solution, start
+        previous, d = solution, solution * (1 + disturbance)
         for k in range(1, _CAP + 1):
             try:
                 previous, d = d, sweep(d, previous)
@@ -66,4 +54,5 @@ def loop(closure: BearingArea, pressure: float, voltage: float, disturbance: flo
                 return k
         return None
 
-    return Loop(pressure, voltage, (below - above) / (2 * step) * stiffness, sweeps(by_contact), sweeps(by_external))
+    stiffness = 2 * attraction(solution) / (closure.h_0 + solution)
+    return Loop((below - above) / (2 * step) * stiffness, sweeps(by_contact), sweeps(by_external))

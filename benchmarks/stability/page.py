@@ -15,7 +15,7 @@ from benchmarks.harness import kept, page, picture, table
 from benchmarks.stability import plan
 from benchmarks.stability.case import Case
 from benchmarks.stability.loop import loop
-from benchmarks.stability.plan import DEFAULT, Axis, Chart, Named, Panel
+from benchmarks.stability.plan import DEFAULT, Axis, Named, Panel
 from fingerpad.io.style import MAGNITUDE, ORANGE, SKY, VERMILION
 from variational.roughness.bam import BearingArea
 
@@ -59,33 +59,32 @@ _COLUMNS += ["penetration (nm)", "f_T (N/m)", "contact length (µm)"]
 _ERRORS = ["error in f_T (%)", "error in contact length (%)", "normal force (N/m)", "error in it (%)"]
 
 
+def _line(words: str, o: Row, referenced: bool) -> list[Any]:
+    reason = f": {o['reason']}" if o["status"] == "failed" else ""
+    inverted = ", ".join(f"{count} in {layer}" for layer, count in o["inverted"].items()) or "0"
+    line = [words, f"{SYMBOLS[o['status']]} {NAMES[o['status']]}{reason}", o["load"], o["newton"], o["factorisations"]]
+    line += [o["cutbacks"], inverted, f"{o['penetration'] * 1e9:.3g}", o["f_t"], f"{o['contact_length'] * 1e6:.2f}"]
+    errors = [percent(o.get(f"error_{name}")) for name in ("f_t", "contact_length", "f_ext")]
+    return [*line, *errors[:2], o.get("f_ext"), errors[2]] if referenced else line
+
+
 def named_table(named: Named, rows: Rows) -> str:
     """Return a group of runs, one a row."""
-    lines = []
-    for words, case in named.cases:
-        if (o := rows.get(case)) is None:
-            lines.append([words, "not run", *[None] * (len(_COLUMNS) - 2 + len(_ERRORS) * named.referenced)])
-            continue
-        reason = f": {o['reason']}" if o["status"] == "failed" else ""
-        inverted = ", ".join(f"{count} in {layer}" for layer, count in o["inverted"].items()) or "0"
-        line = [words, f"{SYMBOLS[o['status']]} {NAMES[o['status']]}{reason}", o["load"], o["newton"]]
-        line += [o["factorisations"], o["cutbacks"], inverted, f"{o['penetration'] * 1e9:.3g}", o["f_t"]]
-        line.append(f"{o['contact_length'] * 1e6:.2f}")
-        if named.referenced:
-            line += [percent(o.get("error_f_t")), percent(o.get("error_contact_length"))]
-            line += [o.get("f_ext"), percent(o.get("error_f_ext"))]
-        lines.append(line)
-    return table(_COLUMNS + (_ERRORS if named.referenced else []), lines)
+    columns = _COLUMNS + (_ERRORS if named.referenced else [])
+    not_run = ["not run", *[None] * (len(columns) - 2)]
+    lines = [
+        _line(words, rows[case], named.referenced) if case in rows else [words, *not_run]
+        for words, case in named.cases.items()
+    ]
+    return table(columns, lines)
 
 
-def counts_table(charts: Iterable[Chart], rows: Rows) -> str:
+def counts_table(charts: Mapping[str, Iterable[Panel]], rows: Rows) -> str:
     """Return how many runs of each chart and formulation ended how."""
     lines = []
-    for chart in charts:
-        for panel in chart.panels:
-            count = Counter(rows[case]["status"] if case in rows else "not run" for case in panel.cases())
-            ends = [count[status] for status in (*NAMES, "not run")]
-            lines.append([chart.title, panel.title, sum(ends), *ends])
+    for title, panel in ((title, panel) for title, panels in charts.items() for panel in panels):
+        count = Counter(rows[case]["status"] if case in rows else "not run" for case in panel.cases())
+        lines.append([title, panel.title, count.total(), *(count[status] for status in (*NAMES, "not run"))])
     return table(["varied", "formulation or element", "runs", *NAMES.values(), "not run"], lines)
 
 
@@ -94,7 +93,7 @@ def loop_table() -> str:
     lines = []
     for p, u in _LOOP_POINTS:
         found = loop(CLOSURE, p, u)
-        ends = ["diverges" if n is None else n for n in (found.by_external, found.by_contact)]
+        ends = [n or "diverges" for n in (found.by_external, found.by_contact)]
         lines.append([f"{p / 1e3:g}", f"{u:g}", f"{found.gain:.2f}", *ends])
     return table(["p_ext (kPa)", "U (V)", "gain", "sweeps, keyed on p_ext", "sweeps, keyed on p_c"], lines)
 
@@ -150,22 +149,22 @@ def value_cell(name: str, low: float, high: float, scale: float) -> Callable[[Ro
 
 def paint(figure: Figure, rows: Rows) -> None:
     """Draw the eight maps that the choice of the default rests on."""
-    charts = {chart.name: chart.panels for chart in plan.charts()}
-    by_parameter, elements = charts["size_parameter"], {panel.title: panel for panel in charts["nu_size"]}
-    axes = figure.subplots(2, 4)
-    outcomes = [
-        (axes[0, 0], charts["voltage_force"][0], "A  penalty: outcome"),
-        (axes[0, 1], by_parameter[0], "B  penalty: outcome"),
-        (axes[0, 2], by_parameter[1], "C  augmented Lagrangian: outcome"),
-        (axes[0, 3], by_parameter[2], "D  Nitsche, θ = 0: outcome"),
-        (axes[1, 0], charts["step_voltage"][0], "E  penalty: outcome"),
-    ]
-    for ax, panel, title in outcomes:
-        _map(ax, panel, rows, title, outcome_cell)
-    _map(axes[1, 1], by_parameter[0], rows, "F  penalty: penetration (nm)", value_cell("penetration", 0.1, 1e4, 1e9))
+    charts = plan.charts()
+    by_parameter, elements = charts[plan.BY_PARAMETER], {panel.title: panel for panel in charts[plan.BY_ELEMENT]}
+    depth = value_cell("penetration", 0.1, 1e4, 1e9)
     error = value_cell("error_contact_length", 0.01, 100, 100)
-    _map(axes[1, 2], by_parameter[0], rows, "G  penalty: error in contact length (%)", error)
-    _map(axes[1, 3], elements["P2"], rows, "H  P2 elements: error in contact length (%)", error)
+    maps = [
+        (charts["Voltage and force"][0], "A  penalty: outcome", outcome_cell),
+        (by_parameter[0], "B  penalty: outcome", outcome_cell),
+        (by_parameter[1], "C  augmented Lagrangian: outcome", outcome_cell),
+        (by_parameter[2], "D  Nitsche, θ = 0: outcome", outcome_cell),
+        (charts["Step size and voltage"][0], "E  penalty: outcome", outcome_cell),
+        (by_parameter[0], "F  penalty: penetration (nm)", depth),
+        (by_parameter[0], "G  penalty: error in contact length (%)", error),
+        (elements["P2"], "H  P2 elements: error in contact length (%)", error),
+    ]
+    for ax, (panel, title, cell) in zip(figure.subplots(2, 4).flat, maps, strict=True):
+        _map(ax, panel, rows, title, cell)
     keys = [Patch(color=COLOURS[s], label=f"{SYMBOLS[s]} {NAMES[s]}, with Newton iterations") for s in COLOURS]
     keys.append(Patch(fill=False, ec="black", lw=1.8, label="default"))
     figure.legend(handles=keys, loc="outside lower center", ncols=4, frameon=False)
@@ -178,7 +177,7 @@ def draw(docs: Path) -> Path:
     numbers = found.numbers
     rows = {Case(**row["case"]): row for row in numbers["runs"]}
     charts = plan.charts()
-    ends = Counter(rows[c]["status"] for c in charts[0].panels[0].cases() if c in rows)
+    ends = Counter(rows[c]["status"] for c in charts["Voltage and force"][0].cases() if c in rows)
     finding = (
         f"With its default settings the solver follows {ends['converged'] + ends['continuation']} of {ends.total()} "
         "pairs of voltage (0 to 400 V) and force (0.5 to 30 N/m a ridge) to full slip. Pseudo-transient continuation "
@@ -196,7 +195,5 @@ def draw(docs: Path) -> Path:
         f"### The fixed point near the fold\n\n{_LOOP}\n\n{loop_table()}",
     ]
     how = _HOW.format(solves=numbers["solves"], minutes=numbers["seconds"] / 60, symbols=symbols.capitalize())
-    command = "environment/run python3 -m benchmarks.stability"
-    return page(
-        docs / "stability.md", "Where the solver converges", finding, how, body, command, found.made, ["stability"]
-    )
+    title, command = "Where the solver converges", "environment/run python3 -m benchmarks.stability"
+    return page(docs / "stability.md", title, finding, how, body, command, found.made, ["stability"])

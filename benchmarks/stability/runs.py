@@ -4,7 +4,7 @@ A map that is stopped has lost the runs in hand; started again it goes on.
 """
 
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -19,11 +19,7 @@ _SHOWN += ["contact_length", "f_ext"]
 
 
 class Runs:
-    """Outcomes of cases in a file, one line each.
-
-    Attributes:
-        outcomes: by case.
-    """
+    """Outcomes by case, in a file, one line each."""
 
     def __init__(self, path: Path) -> None:
         """Read what is there; a last line that was cut short is left out."""
@@ -58,25 +54,17 @@ class Runs:
     def numbers(self, cases: Iterable[Case]) -> dict[str, Any]:
         """Return what the page shows of cases that have been run, ready for JSON."""
         rows = []
-        for case in cases:
-            if (outcome := self.outcomes.get(case)) is not None:
-                errors = {
-                    f"error_{name}": self.error(case, name)
-                    for name, told in (("f_t", case.slide), ("contact_length", True), ("f_ext", case.indentation))
-                    if told
-                }
-                rows.append({"case": case.changed} | {name: getattr(outcome, name) for name in _SHOWN} | errors)
+        for case in (case for case in cases if case in self.outcomes):
+            compared = {"f_t": case.slide, "contact_length": True, "f_ext": case.indentation}
+            errors = {f"error_{name}": self.error(case, name) for name, told in compared.items() if told}
+            outcome = asdict(self.outcomes[case])
+            rows.append({"case": case.changed} | {name: outcome[name] for name in _SHOWN} | errors)
         seconds = sum(outcome.seconds for outcome in self.outcomes.values())
         return {"solves": len(self.outcomes), "seconds": seconds, "runs": rows}
 
 
 def solve(case: Case, limit: float) -> Outcome:
-    """Run a case in a process of its own; whatever ends the process is an outcome.
-
-    Args:
-        case: what to run.
-        limit: seconds of processor time, the same on a busy machine, after which the process ends.
-    """
+    """Run a case in a process of its own, for at most so many seconds of processor time; however it ends, return."""
     end = processes.run("benchmarks.stability.solve", [json.dumps(case.changed), str(limit)], limit)
     if end.reason:
         return Outcome("failed", end.reason, end.message, seconds=0.0 if end.reason.startswith("CRASH") else limit)
@@ -86,27 +74,17 @@ def solve(case: Case, limit: float) -> Outcome:
         return Outcome("failed", "CRASH", "no outcome printed")
 
 
-def run_all(
-    cases: Iterable[Case],
-    runs: Runs,
-    jobs: int,
-    limit: float,
-    hours: float,
-    report: Callable[[Case, Outcome, int], None] = lambda case, outcome, left: None,
-) -> int:
-    """Run what is missing; return the number of cases that were not run for want of time.
+def run_all(cases: Iterable[Case], runs: Runs, jobs: int, limit: float, hours: float) -> int:
+    """Run what is missing, in order, print and keep it; return the number of cases not run for want of time.
 
     Args:
-        cases: in the order in which they are started.
-        runs: is written after each run.
         jobs: processes at a time.
         limit: seconds of processor time for one run.
         hours: after which no further run is started.
-        report: called with each case, its outcome and the number of those left.
     """
 
     def done(case: Case, outcome: Outcome, left: int) -> None:
         runs.add(case, outcome)
-        report(case, outcome, left)
+        print(f"{left:4d} left  {outcome.seconds:6.1f} s  {outcome.status} {outcome.reason}  {case}", flush=True)
 
     return Pool[Case, Outcome](lambda case: solve(case, limit), jobs, hours).run(runs.missing(cases), done)

@@ -13,7 +13,7 @@ behave like one of many equal ones. Faces are free only where a trailing ridge i
 import json
 import sys
 import time
-from collections.abc import Callable
+from collections import Counter
 from dataclasses import asdict
 from functools import partial
 
@@ -22,7 +22,6 @@ import numpy as np
 import ufl
 from dolfinx import fem
 from mpi4py import MPI
-from numpy.typing import NDArray
 
 from benchmarks.stability.case import FORMULATIONS, Case, Outcome
 from fingerpad.runs.processes import limit_processor_time
@@ -31,53 +30,51 @@ from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from variational import compat, jit
 from variational.body import Body
-from variational.contact.formulation import SurfaceState
 from variational.kinematics import deformation_gradient
 from variational.materials.ogden import Ogden
 from variational.problem import Interface
 from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Attempt, Continuation, StepFailed, Target
 from variational.solvers.coupling import Coupling
-from variational.solvers.equations import Control
 from variational.solvers.failure import NotConverged
+from variational.solvers.newton import Solver
 
 _H_0 = 0.514e-6  # m
 _SKIN = {tags.STRATUM_CORNEUM: 86.76e3, tags.VIABLE_EPIDERMIS: 61.75e3, tags.DERMIS: 2.55e3}  # Pa
 _ALPHA = -14.53
 
 
-class PlainCoupling(Coupling):
-    """Iterations without pseudo-transient continuation."""
+class NewtonAlone(Solver):
+    """Never turns to pseudo-transient continuation, whoever asks for it."""
 
-    def _iterate(self, pseudo_transient: bool) -> tuple[NDArray[np.float64], SurfaceState]:
-        return super()._iterate(False)
+    def solve(self, pseudo_transient: bool = False) -> None:
+        """Find the equilibrium by Newton's method."""
+        super().solve(pseudo_transient=False)
 
 
-class Recorder(Continuation):
+class Recorder(Coupling):
     """Counts failed solves in which steps would have turned elements inside out, by the layer nearest to it."""
 
-    def __init__(self, case: Case, body: Body, on_accept: Callable[[Target, float, Attempt], None]) -> None:
-        if case.pseudo_transient:
-            coupling = body.coupling
-        else:
-            coupling = PlainCoupling(body.solver, body.observer, BearingArea(_H_0))
-        super().__init__(coupling, on_accept, step_scale=case.step_scale)
+    def __init__(self, body: Body, pseudo_transient: bool) -> None:
+        solver = body.solver if pseudo_transient else NewtonAlone(body.solver.equations, body.solver.force_scale)
+        super().__init__(solver, body.observer, BearingArea(_H_0))
         points, _ = basix.make_quadrature(basix.CellType.triangle, 2)
-        self._jacobian = fem.Expression(ufl.det(deformation_gradient(ufl.grad(self.problem.u))), np.asarray(points))
-        self.inverted: dict[str, int] = {}
+        self._jacobian = fem.Expression(ufl.det(deformation_gradient(ufl.grad(body.problem.u))), np.asarray(points))
+        self.inverted = Counter[str]()
 
-    def _least_j(self, tag: int) -> float:
-        cells = self.problem.cell_tags.find(tag)
-        return float(compat.evaluate_on_cells(self._jacobian, self.problem.mesh, cells).min())
+    def _least_j(self, layer: str) -> float:
+        problem = self.solver.problem
+        cells = problem.cell_tags.find(tags.LAYERS[layer])
+        return float(compat.evaluate_on_cells(self._jacobian, problem.mesh, cells).min())
 
-    def _try(self, load: tuple[Control, float], attempt: Attempt, pseudo_transient: bool, on_cone: bool = True) -> None:
+    def solve(self, pseudo_transient: bool = False) -> None:
+        """Solve at the present loads; count the failure where there is one."""
         try:
-            super()._try(load, attempt, pseudo_transient, on_cone)
+            super().solve(pseudo_transient)
         except NotConverged as failure:
             if failure.inverted:
-                layers = {name: tag for name, tag in tags.LAYERS.items() if tag in strip.LAYERS}
-                nearest = min(layers, key=lambda name: self._least_j(layers[name]))
-                self.inverted[nearest] = self.inverted.get(nearest, 0) + 1
+                layers = [name for name, tag in tags.LAYERS.items() if tag in strip.LAYERS]
+                self.inverted[min(layers, key=self._least_j)] += 1
             raise
 
 
@@ -89,7 +86,6 @@ def make(case: Case) -> Body:
         mesh,
         {tag: Ogden(shear, _ALPHA, case.nu) for tag, shear in _SKIN.items()},
         Interface(FORMULATIONS[case.formulation].law(case.parameter), case.mu_f, _H_0),
-        BearingArea(_H_0),
         element=case.element,
         force_scale=case.force * case.ridges,
         moving_sides=mesh.facets(tags.SIDES) if case.sides == "carried" else None,
@@ -110,6 +106,8 @@ def run(case: Case) -> Outcome:
     """Reach the loads of a case; a failure is an outcome like any other."""
     start = time.process_time()
     body, out = make(case), Outcome("converged")
+    coupling = Recorder(body, case.pseudo_transient)
+    solver = coupling.solver
 
     def accepted(target: Target, part: float, attempt: Attempt) -> None:
         state = walk.surface_state
@@ -117,12 +115,12 @@ def run(case: Case) -> Outcome:
         out.steps, out.cutbacks = walk.steps, out.cutbacks + len(attempt.cutbacks)
         out.jumps += attempt.pseudo_transient
         out.penetration = float(np.max(-state.y[state.p_n > 0], initial=0.0))
-        out.f_ext = float(body.solver.reaction[1])
+        out.f_ext = float(solver.reaction[1])
         # What the screen exerts on the skin: carried faces bear a part that the bone does not bear.
         out.f_t = float((loads.f_attraction_x - loads.f_friction).sum())
         out.contact_length = float(loads.length.sum())
 
-    walk = Recorder(case, body, accepted)
+    walk = Continuation(coupling, accepted, step_scale=case.step_scale)
     try:
         for target in targets(case):
             out.load = target.name
@@ -133,8 +131,8 @@ def run(case: Case) -> Outcome:
         out.reason = cause.reason if isinstance(cause, NotConverged) else str(failure)
     else:
         out.status = "continuation" if out.jumps else "converged"
-    out.newton, out.factorisations = body.solver.counts.newton, body.solver.counts.factorisations
-    out.full_slip, out.inverted = walk.slip[1], walk.inverted
+    out.newton, out.factorisations = solver.counts.newton, solver.counts.factorisations
+    out.full_slip, out.inverted = walk.slip[1], dict(coupling.inverted)
     out.seconds = time.process_time() - start
     return out
 
