@@ -11,13 +11,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from benchmarks.calibration import HERTZ, Case
-from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, NU, RADIUS, SPAN, YOUNG
-from benchmarks.verification.over_screen import formulations, over_screen
+from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, RADIUS, SPAN, press
 from fingerpad.richardson import MeshParameter
 from geometry.bodies import pad
-from variational.materials.saint_venant import SaintVenant
-from variational.problem import Interface
-from variational.solvers.continuation import Target
 
 HALF_WIDTHS = tuple(part * HALF_WIDTH for part in (0.817, 0.893, 0.961, 1.049, 1.137))
 FACETS = (5, 10, 20, 40)  # to HALF_WIDTH
@@ -28,10 +24,7 @@ _REACH = 1.4  # of the facets that can touch, over HALF_WIDTH
 def contact_length(a: float, facets: int) -> float:
     """Return the length in contact (m), 2a by Hertz, with ``facets`` facets to :data:`HALF_WIDTH`."""
     size, force = HALF_WIDTH / facets, np.pi * E_STAR * a**2 / (4 * RADIUS)
-    interface = Interface(formulations(YOUNG / size, 1e-11)["penalty"], 0.0, 1e-6)
-    build = pad(size, int(np.ceil(_REACH * facets)), RADIUS, SPAN)
-    run = over_screen(build, SaintVenant(YOUNG, NU), interface, force, touch_depth=0.5e-6, step_scale=15.0)
-    run.run(Target("press", f_ext=force))
+    run = press(pad(size, int(np.ceil(_REACH * facets)), RADIUS, SPAN), "penalty", size, force)
     return float(run.observer.ridge_loads(run.surface_state).length[0])
 
 

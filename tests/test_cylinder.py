@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from benchmarks.verification import dugdale, two_scales
-from benchmarks.verification.microscale import H_0
+from benchmarks.verification import dugdale
+from benchmarks.verification.microscale import H_0, scalar
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, hertz_modulus
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap, Closure
@@ -78,7 +78,7 @@ def test_wide_contact_is_the_closure_table(p_ext, voltage):
     over the scales makes that some times larger.
     """
     state = ridge().over_length(10.0, 10 * p_ext, voltage)
-    d_eq, p_c, _ = two_scales.scalar(p_ext, voltage)
+    d_eq, p_c, _ = scalar(p_ext, voltage)
     assert state.d_eq == pytest.approx(d_eq, rel=1e-6)
     assert state.p_c == pytest.approx(p_c, rel=1e-6)
 

@@ -11,7 +11,6 @@ from benchmarks.verification import (
     microscale,
     normal_contact,
     tube,
-    two_scales,
 )
 from benchmarks.verification.case import Case
 
@@ -22,6 +21,6 @@ AREAS: dict[str, tuple[Case, ...]] = {
     "Friction": friction.CASES,
     "Adhesion": adhesion.CASES,
     "Microscale": microscale.CASES,
-    "Two scales": two_scales.CASES,
+    "Two scales": microscale.TWO_SCALES,
     "Energy": energy.CASES,
 }

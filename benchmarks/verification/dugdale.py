@@ -1,12 +1,8 @@
 r"""A constant attraction of finite range, and Maugis's solution for a cylinder under it.
 
 The law (Dugdale's; Forsbach et al. 2023, Eq. 10) has the strength and the work of adhesion of the electrostatic
-attraction without an air gap, :math:`w = \sigma_0 h_0 = \varepsilon_0 U^2 / 2 h_0`:
-
-.. math:: p_{el} = \sigma_0 = \frac{\varepsilon_0 U^2}{2 h_0^2} \quad (y < h_0), \qquad 0 \quad (y > h_0).
-
-At the Gauss points a traction that jumps has no tangent and may have no equilibrium, so it falls linearly between
-:math:`(1 \mp \delta) h_0`, which leaves the work of adhesion as it is.
+attraction without an air gap, :math:`w = \sigma_0 h_0`: :math:`p_{el} = \sigma_0 = \varepsilon_0 U^2 / (2 h_0^2)` at
+y < h_0 and 0 above. A traction that jumps has no tangent, so it falls linearly between :math:`(1 \mp \delta) h_0`.
 
 A cylinder of radius R on a plane, in contact for |x| < a and attracted for |x| < c (Johnson and Greenwood 2008,
 doi 10.1088/0022-3727/41/15/155315; Baney and Hui 1997, J. Adhesion Sci. Technol. 11, 393), m = c / a:
@@ -14,8 +10,6 @@ doi 10.1088/0022-3727/41/15/155315; Baney and Hui 1997, J. Adhesion Sci. Technol
 .. math:: f = \frac{\pi E^* a^2}{4 R} - 2 \sigma_0 a \sqrt{m^2 - 1}, \qquad
           h_0 = \frac{a^2}{2R} \left( m \sqrt{m^2 - 1} - \operatorname{arcosh} m \right)
           + \frac{4 \sigma_0 a}{\pi E^*} \left( \sqrt{m^2 - 1} \operatorname{arcosh} m - m \ln m \right).
-
-The second says that the gap at c is h_0: Hertz's gap, and that of an external crack under its tractions.
 """
 
 import numpy as np
@@ -42,11 +36,6 @@ def constant_attraction(ramp: float) -> Attraction:
         return -strength(voltage, h_0) * ufl.conditional(ufl.gt(left, 2 * ramp * h_0), h_0 - y, falling)
 
     return Attraction(pressure, potential)
-
-
-def strength(voltage: float, h_0: float) -> float:
-    """Return sigma_0 (Pa) at a voltage (V) and range (m)."""
-    return VACUUM_PERMITTIVITY * voltage**2 / (2 * h_0**2)
 
 
 def ratio(a: float, radius: float, e_star: float, sigma_0: float, h_0: float) -> float:

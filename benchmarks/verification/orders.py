@@ -1,4 +1,4 @@
-"""Orders of convergence: the errors of a field on finer and finer meshes, as rows and as curves."""
+"""Orders of convergence of a displacement field on finer and finer meshes."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -8,19 +8,12 @@ import ufl
 from dolfinx import fem, mesh
 from numpy.typing import NDArray
 
-from benchmarks.verification.case import Curves, Row
+from benchmarks.verification.case import Row, order, order_row
 from variational import jit
 
 Array = NDArray[np.float64]
-ELEMENTS = {"P1": 1, "P2": 2, "P2-P1": 2, "P3": 3}
-"""Degrees of the displacement."""
-Errors = Mapping[str, Sequence[tuple[float, float]]]
-"""Of each element the errors in L2 and H1, mesh by mesh."""
-
-
-def observed(errors: Sequence[float]) -> float:
-    """Return the order between the last two of meshes each twice as fine as the one before."""
-    return float(np.log2(errors[-2] / errors[-1]))
+DEGREES = {"P1": 1, "P2": 2, "P2-P1": 2, "P3": 3}  # of the displacement, by element
+Errors = tuple[float, float]  # in L2 and H1
 
 
 def norm(domain: mesh.Mesh, value: Any) -> float:
@@ -29,7 +22,7 @@ def norm(domain: mesh.Mesh, value: Any) -> float:
     return float(np.sqrt(fem.assemble_scalar(fem.form(squared, jit_options=jit.OPTIONS))))
 
 
-def relative_errors(u: fem.Function, exact: Callable[[Array], Array]) -> tuple[float, float]:
+def relative_errors(u: fem.Function, exact: Callable[[Array], Array]) -> Errors:
     """Return the errors of a displacement and of its gradient over the norms of the exact ones.
 
     The exact one is interpolated by polynomials of degree 6, cell by cell.
@@ -41,25 +34,13 @@ def relative_errors(u: fem.Function, exact: Callable[[Array], Array]) -> tuple[f
     return norm(domain, u - e) / norm(domain, e), gradients
 
 
-def rows(errors: Errors, meshes: Sequence[int], tolerance: float, why: str) -> list[Row]:
-    """Return the observed orders, p + 1 in L2 and p in H1 expected."""
+def rows(errors: Mapping[str, Sequence[Errors]], meshes: Sequence[int], tolerance: float, why: str) -> list[Row]:
+    """Return the orders on the last two meshes, p + 1 in L2 and p in H1 expected, by element."""
     made = []
     for element, found in errors.items():
-        p = ELEMENTS[element]
+        p = DEGREES[element]
         for name, expected, values in zip(("L2", "H1"), (p + 1, p), zip(*found, strict=True), strict=True):
-            order = observed(values)
             finest = f"{meshes[0]} to {meshes[-1]} divisions, last error {values[-1]:.1e}"
-            quantity = f"order in {name}, {element}"
-            made.append(Row(quantity, order, expected, tolerance, why, finest, order, absolute=True))
+            observed = order(values[-2:], meshes[-2:])
+            made.append(order_row(f"order in {name}, {element}", observed, expected, tolerance, why, finest))
     return made
-
-
-def curves(errors: Errors, meshes: Sequence[int]) -> Curves:
-    """Return the picture of the errors in L2 over divisions, with lines of the expected order through the last."""
-    n = np.array(meshes)
-    found = {element: (n, [pair[0] for pair in values]) for element, values in errors.items()}
-    known = {
-        f"order {ELEMENTS[element] + 1}": (n, values[-1][0] * (n[-1] / n) ** (ELEMENTS[element] + 1.0))
-        for element, values in errors.items()
-    }
-    return Curves("divisions (–)", "displacement's relative error in L2", known, found, logarithmic=True)

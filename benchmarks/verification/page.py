@@ -6,14 +6,13 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.harness import kept, page, table
-from benchmarks.verification.case import Case, Outcome, Row
+from benchmarks.verification.case import Case, Row
 
-Results = Mapping[str, Sequence[tuple[Case, Outcome]]]
+Results = Mapping[str, Sequence[tuple[Case, Sequence[Row]]]]
 _HOW = """Each row is a computed number beside its known answer: a closed form, a published benchmark, or an independent
 evaluation. The error is relative where *(rel.)* stands, otherwise in the quantity's unit. The tolerance is given with
 its reason; **!** marks an error above it. *Order* is the observed order of convergence over several meshes. `make
-verify` computes all rows and fails where one is off; its option `--pictures` draws the curves into
-`results/verification`. The same cases on coarser meshes are part of `make test`."""
+verify` computes all rows and fails where one is off. The same cases on coarser meshes are part of `make test`."""
 _HEAD = ["case and source of the answer", "quantity", "known answer", "computed", "error", "tolerance", "mesh", "order"]
 
 
@@ -21,8 +20,8 @@ def numbers(results: Results) -> dict[str, Any]:
     """Return the rows of all cases, ready for JSON."""
     return {
         area: [
-            {"name": case.name, "reference": case.reference, "rows": [asdict(row) for row in outcome.rows]}
-            for case, outcome in cases
+            {"name": case.name, "reference": case.reference, "rows": [asdict(row) for row in rows]}
+            for case, rows in cases
         ]
         for area, cases in results.items()
     }

@@ -1,6 +1,6 @@
 """The package's laws at any number of given deformation gradients: one to a cell of a mesh that is only a list."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import ufl
@@ -15,18 +15,20 @@ from variational.materials.material import Material
 Array = NDArray[np.float64]
 
 
-class Points:
-    """Energy, stresses and tangent of a law; compiled once.
+class Evaluation(NamedTuple):
+    """W (n,), P (n, 2, 2), sigma (n, 3, 3) and dP/dF (n, 2, 2, 2, 2), in Pa."""
 
-    Each rank evaluates all points by itself.
-    """
+    density: Array
+    P: Array
+    sigma: Array
+    tangent: Array
+
+
+class Points:
+    """Energy, stresses and tangent of a law; compiled once. Each rank evaluates all points by itself."""
 
     def __init__(self, solid: Material) -> None:
-        """Compile.
-
-        Args:
-            solid: the law; its numbers are replaced at each evaluation.
-        """
+        """Compile the law; its numbers are replaced at each evaluation."""
         self._mesh = mesh.create_unit_square(MPI.COMM_SELF, 8, 8)
         self._cells = np.arange(128, dtype=np.int32)
 
@@ -37,14 +39,13 @@ class Points:
         made = solid.with_values(dict(zip(solid.names(), self._parameters, strict=True)))
         F = ufl.variable(self._F)
         P = stress.first_piola_kirchhoff(made, F)
-        tangent = ufl.diff(stress.first_piola_kirchhoff(made, F), F)
-        parts: list[Any] = [made.density(F), P, stress.cauchy(made, F), tangent]
+        parts: list[Any] = [made.density(F), P, stress.cauchy(made, F), ufl.diff(P, F)]
         entries = [part[index] if index else part for part in parts for index in np.ndindex(part.ufl_shape)]
         centre = np.array([[1 / 3, 1 / 3]])
         self._compiled = fem.Expression(ufl.as_vector(entries), centre, jit_options=jit.OPTIONS)
 
-    def __call__(self, F: Array, *parameters: Any) -> tuple[Array, Array, Array, Array]:
-        """Return W (n,), P (n, 2, 2), sigma (n, 3, 3) and dP/dF (n, 2, 2, 2, 2), in Pa.
+    def __call__(self, F: Array, *parameters: Any) -> Evaluation:
+        """Evaluate.
 
         Args:
             F: deformation gradients, (n, 2, 2).
@@ -60,10 +61,7 @@ class Points:
                 function.x.array[:] = 1.0
                 function.x.array[:count] = np.broadcast_to(value, (len(F),))[part]
             results.append(compat.evaluate_on_cells(self._compiled, self._mesh, self._cells)[:count])
-        found = np.concatenate(results)
-        return (
-            found[:, 0],
-            found[:, 1:5].reshape(-1, 2, 2),
-            found[:, 5:14].reshape(-1, 3, 3),
-            found[:, 14:].reshape(-1, 2, 2, 2, 2),
-        )
+        found, n = np.concatenate(results), len(F)
+        W, P, sigma, tangent = np.split(found, (1, 5, 14), axis=1)
+        shapes = P.reshape(n, 2, 2), sigma.reshape(n, 3, 3), tangent.reshape(n, 2, 2, 2, 2)
+        return Evaluation(W[:, 0], *shapes)

@@ -5,7 +5,7 @@ r"""Ogden solids in principal stretches, differentiated by hand, in NumPy: what 
                 + K (J - 1) \frac{J}{\lambda_i}
 
 with i = 1, 2, 3 and :math:`\bar\lambda_i = J^{-1/3} \lambda_i`, all three stretches free (Ogden, Non-linear Elastic
-Deformations, 1984, chapters 4 and 7). Nothing here knows of plane strain, of the series about F = I or of the package.
+Deformations, 1984, chapters 4 and 7): independent of plane strain, of the series about F = I and of the package.
 """
 
 from collections.abc import Sequence
@@ -21,18 +21,11 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True)
 class Solid:
-    """Terms of the isochoric part and bulk modulus."""
+    """Terms (G_p in Pa, a_p) of the isochoric part and bulk modulus K (Pa)."""
 
     name: str
     terms: tuple[tuple[float, float], ...]
-    """(G_p in Pa, a_p)."""
     bulk: float
-    """K (Pa)."""
-
-    @property
-    def shear_modulus(self) -> float:
-        """Return the sum of the terms' (Pa)."""
-        return sum(G for G, _ in self.terms)
 
 
 def skin(name: str, shear_modulus: float, alpha: float, poisson: float, sign: int) -> Solid:
