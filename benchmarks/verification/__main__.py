@@ -12,10 +12,32 @@ from pathlib import Path
 from mpi4py import MPI
 
 from benchmarks.harness import DOCS, keep, made
-from benchmarks.verification import page
-from benchmarks.verification.areas import AREAS
+from benchmarks.verification import (
+    adhesion,
+    constitutive,
+    cook,
+    discretisation,
+    energy,
+    friction,
+    invariance,
+    microscale,
+    normal_contact,
+    page,
+    tube,
+)
 from benchmarks.verification.case import Case, Row
 from variational import jit
+
+AREAS: dict[str, tuple[Case, ...]] = {
+    "Constitutive": constitutive.CASES + invariance.CASES + tube.CASES,
+    "Discretisation": discretisation.CASES + cook.CASES,
+    "Normal contact": normal_contact.CASES,
+    "Friction": friction.CASES,
+    "Adhesion": adhesion.CASES,
+    "Microscale": microscale.CASES,
+    "Two scales": microscale.TWO_SCALES,
+    "Energy": energy.CASES,
+}
 
 
 def _run(area: str, case: Case, small: bool) -> Sequence[Row]:

@@ -8,20 +8,31 @@ A parabola :math:`y = g + x^2 / 2R` of half-width L is attracted by (with :math:
 A flat block is a spring of stiffness E / H per area, a plate over the screen: at rest at :math:`s_0 = h_0 + g_0` it is
 pulled in by :math:`U^2 = 8 E s_0^3 / (27 \varepsilon_0 H)`, after a travel of s_0 / 3 (Nathanson, Newell, Wickstrom and
 Davis 1967, doi 10.1109/T-ED.1967.15912). There the least eigenvalue of the tangent vanishes with the root of what
-:math:`U^2` lacks, so pull-in is extrapolated. The cylinder: :mod:`benchmarks.verification.dugdale`.
+:math:`U^2` lacks, so pull-in is extrapolated.
+
+The law (Dugdale's; Forsbach et al. 2023, Eq. 10) has the strength and the work of adhesion of the electrostatic
+attraction without an air gap, :math:`w = \sigma_0 h_0`: :math:`p_{el} = \sigma_0 = \varepsilon_0 U^2 / (2 h_0^2)` at
+y < h_0 and 0 above. A traction that jumps has no tangent, so it falls linearly between :math:`(1 \mp \delta) h_0`.
+
+A cylinder of radius R on a plane, in contact for |x| < a and attracted for |x| < c (Johnson and Greenwood 2008,
+doi 10.1088/0022-3727/41/15/155315; Baney and Hui 1997, J. Adhesion Sci. Technol. 11, 393), m = c / a:
+
+.. math:: f = \frac{\pi E^* a^2}{4 R} - 2 \sigma_0 a \sqrt{m^2 - 1}, \qquad
+          h_0 = \frac{a^2}{2R} \left( m \sqrt{m^2 - 1} - \operatorname{arcosh} m \right)
+          + \frac{4 \sigma_0 a}{\pi E^*} \left( \sqrt{m^2 - 1} \operatorname{arcosh} m - m \ln m \right).
 """
 
 from functools import partial
 
 import numpy as np
+import ufl
 from dolfinx import fem
 from scipy.optimize import brentq, minimize_scalar
 
-from benchmarks.verification import dugdale
 from benchmarks.verification.bodies import Smooth, formulations, over_screen
 from benchmarks.verification.case import Case, Row, order, order_row
 from geometry.bodies import block, pad
-from variational.attraction.electroadhesion import ELECTROSTATIC
+from variational.attraction.electroadhesion import ELECTROSTATIC, Attraction
 from variational.attraction.insulator import VACUUM_PERMITTIVITY
 from variational.contact.penalty import Penalty
 from variational.materials.saint_venant import SaintVenant
@@ -93,7 +104,7 @@ def potential(small: bool) -> list[Row]:
     bent = "a second-order remainder; points that cross an edge of the law bend it"
     why = "central difference over 2 nm of laws that change over 1 um, and the energy's roundoff"
     rows = []
-    for name, law, h_0 in (("Eq. 3", ELECTROSTATIC, _H_0), ("constant", dugdale.constant_attraction(0.2), 3e-6)):
+    for name, law, h_0 in (("Eq. 3", ELECTROSTATIC, _H_0), ("constant", constant_attraction(0.2), 3e-6)):
         build, interface = block(1e-3, 0.5e-3, 0.125e-3), Interface(_CONTACT, 0.0, h_0, law)
         run = over_screen(build, SaintVenant(1e6, 0.3), interface, 1.0)
         body = _Wavy(run)
@@ -141,6 +152,42 @@ def actuator(small: bool) -> list[Row]:
     ]
 
 
+# -- cylinder under a constant attraction --
+def constant_attraction(ramp: float) -> Attraction:
+    """Return the law; ``ramp`` is delta, half the width of its fall over its range."""
+
+    def strength(voltage, h_0):
+        return VACUUM_PERMITTIVITY * voltage**2 / (2 * h_0**2)
+
+    def pressure(y, d_eq, voltage, h_0):
+        part = ((1 + ramp) * h_0 - y) / (2 * ramp * h_0)
+        return strength(voltage, h_0) * ufl.max_value(0.0, ufl.min_value(1.0, part))
+
+    def potential(y, d_eq, voltage, h_0):
+        left = (1 + ramp) * h_0 - y
+        falling = ufl.conditional(ufl.gt(left, 0.0), left**2 / (4 * ramp * h_0), 0.0)
+        return -strength(voltage, h_0) * ufl.conditional(ufl.gt(left, 2 * ramp * h_0), h_0 - y, falling)
+
+    return Attraction(pressure, potential)
+
+
+def maugis_ratio(a: float, radius: float, e_star: float, sigma_0: float, h_0: float) -> float:
+    """Return m = c / a for a half-width (m), a radius (m), E* (Pa), a strength (Pa) and a range (m)."""
+
+    def excess(m: float) -> float:
+        s, angle = np.sqrt(m**2 - 1), np.arccosh(m)
+        hertz = a**2 / (2 * radius) * (m * s - angle)
+        return float(hertz + 4 * sigma_0 * a / (np.pi * e_star) * (s * angle - m * np.log(m)) - h_0)
+
+    return float(brentq(excess, 1.0, 1e6, xtol=1e-13, rtol=1e-14))
+
+
+def maugis_force(a: float, radius: float, e_star: float, sigma_0: float, h_0: float) -> float:
+    """Return f (N/m), positive when pressed; arguments as for :func:`maugis_ratio`."""
+    m = maugis_ratio(a, radius, e_star, sigma_0, h_0)
+    return float(np.pi * e_star * a**2 / (4 * radius) - 2 * sigma_0 * a * np.sqrt(m**2 - 1))
+
+
 def maugis(small: bool) -> list[Row]:
     """Press a cylinder, charge it and pull it off; half-width over force, and the largest pull."""
     young, nu, radius, unit = 1e6, 0.3, 0.1, 0.2e-3  # unit = (w R^2 / E*)^(1/3)
@@ -148,12 +195,12 @@ def maugis(small: bool) -> list[Row]:
     work = unit**3 * e_star / radius**2
     sigma_0 = (e_star**2 * work / radius) ** (1 / 3)  # Maugis's parameter is 1, between Hertz's and Griffith's limits
     h_0 = work / sigma_0
-    load = partial(dugdale.force, radius=radius, e_star=e_star, sigma_0=sigma_0, h_0=h_0)
+    load = partial(maugis_force, radius=radius, e_star=e_star, sigma_0=sigma_0, h_0=h_0)
     pull_off = minimize_scalar(load, bounds=(0.1 * unit, 2 * unit), method="bounded", options={"xatol": 1e-9 * unit})
 
     part = 8 if small else 40
     formulation = formulations(young / (unit / part), 1e-11)["penalty"]
-    interface = Interface(formulation, 0.0, h_0, dugdale.constant_attraction(0.2))
+    interface = Interface(formulation, 0.0, h_0, constant_attraction(0.2))
     build, scale = pad(unit / part, 4 * part, radius, 200 * unit), e_star * unit**2 / radius
     run = over_screen(build, SaintVenant(young, nu), interface, scale, touch_depth=0.5e-6, step_scale=4.0)
     run.run(Target("press", bone_height=-0.5e-6))
@@ -176,7 +223,7 @@ def maugis(small: bool) -> list[Row]:
     return rows
 
 
-_LINE = "Johnson and Greenwood 2008, doi 10.1088/0022-3727/41/15/155315, by the formulas in dugdale.py"
+_LINE = "Johnson and Greenwood 2008, doi 10.1088/0022-3727/41/15/155315, closed form"
 CASES = (
     Case("Attraction of a round body", "closed form, the integral of Eq. 3 over a parabola", total_attraction),
     Case("Potential of the attraction", "differences of the energy at frozen d_eq", potential),

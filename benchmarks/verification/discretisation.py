@@ -17,8 +17,16 @@ import numpy as np
 import ufl
 from dolfinx import fem
 
-from benchmarks.verification import orders
-from benchmarks.verification.bodies import Array, FreeSolver, body, free_problem
+from benchmarks.verification.bodies import (
+    DEGREES,
+    Array,
+    FreeSolver,
+    body,
+    field_orders,
+    free_problem,
+    norm,
+    relative_errors,
+)
 from benchmarks.verification.case import Case, Row, order, order_row
 from geometry import tags
 from geometry.bodies import block
@@ -88,7 +96,7 @@ def solve(element: str, divisions: int) -> Problem:
     if problem.pressure:
         p = problem.pressure.unknown
         p.x.array[:] = 1.0
-        unit = orders.norm(problem.mesh, problem.pressure.p) / SIZE
+        unit = norm(problem.mesh, problem.pressure.p) / SIZE
         points = compat.interpolation_points(p.function_space.element)
         p.interpolate(fem.Expression(exact_pressure(problem) / unit, points, jit_options=jit.OPTIONS))
     solver.solve_from_fields()
@@ -99,27 +107,20 @@ def manufactured(small: bool) -> list[Row]:
     """Orders of the displacement with all elements, and of the mixed one's pressure."""
     meshes = (8, 16, 32) if small else (4, 8, 16, 32, 64)
     found, pressures = {}, []
-    for element in ("P1", "P2") if small else orders.DEGREES:
+    for element in ("P1", "P2") if small else DEGREES:
         problems = [solve(element, n) for n in meshes]
-        found[element] = [orders.relative_errors(problem.w, exact) for problem in problems]
+        found[element] = [relative_errors(problem.w, exact) for problem in problems]
         for problem in problems if problems[0].pressure else ():
             p = exact_pressure(problem)
-            pressures.append(orders.norm(problem.mesh, problem.pressure.p - p) / orders.norm(problem.mesh, p))
+            pressures.append(norm(problem.mesh, problem.pressure.p - p) / norm(problem.mesh, p))
     why = "not yet asymptotic: the orders of P2, P2-P1 and P3 come down to it, that of P1 up"
-    rows = orders.rows(found, meshes, 0.3, why)
+    rows = field_orders(found, meshes, 0.3, why)
     if pressures:
-        observed, mesh = (
-            order(pressures[-2:], meshes[-2:]),
-            f"up to {meshes[-1]} divisions, last error {pressures[-1]:.1e}",
-        )
+        observed = order(pressures[-2:], meshes[-2:])
+        mesh = f"up to {meshes[-1]} divisions, last error {pressures[-1]:.1e}"
         rows.append(order_row("order of the pressure in L2, P2-P1", observed, 2.0, 0.05, why, mesh))
     return rows
 
 
-CASES = (
-    Case(
-        "Manufactured solution, two layers",
-        "Roache 2002, doi 10.1115/1.1436090: body force by differentiation of the exact solution; orders p + 1 and p",
-        manufactured,
-    ),
-)
+_ROACHE = "Roache 2002, doi 10.1115/1.1436090: body force by differentiation of the exact solution; orders p + 1 and p"
+CASES = (Case("Manufactured solution, two layers", _ROACHE, manufactured),)

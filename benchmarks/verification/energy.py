@@ -86,17 +86,11 @@ def closed_cycle(small: bool) -> list[Row]:
     left = balances[-1][-1].stored / sum(abs(b.change) for b in cycles[-1]["press"])
     mesh, phases = f"one ridge, P2, {_SIZE * 1e6:g} µm, {counts[-1]} steps a phase", f"{counts[0]} to {counts[-1]}"
     why = "some four times the steps' errors, which fall with their square: a drift shows"
-    imbalance, inside = (
-        "the imbalances at which solves end",
-        "points touch, part and start to slip somewhere inside a step",
-    )
-    observed, quantity = (
-        order(errors[:: len(errors) - 1], counts[:: len(counts) - 1]),
-        "order of the steps' unexplained energies",
-    )
+    inside = "points touch, part and start to slip somewhere inside a step"
+    imbalance, observed = "the imbalances at which solves end", order((errors[0], errors[-1]), (counts[0], counts[-1]))
     return [
         Row("work over dissipation of the cycle", work / spent[-1], 1.0, 2e-4 if small else 2e-5, why, mesh),
-        order_row(quantity, observed, 2.0, 0.25, inside, f"{phases} steps a phase"),
+        order_row("order of the steps' unexplained energies", observed, 2.0, 0.25, inside, f"{phases} steps a phase"),
         Row("energy left in the body over that of the press", left, 0.0, 1e-9, imbalance, mesh, absolute=True),
     ]
 

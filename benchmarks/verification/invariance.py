@@ -14,13 +14,10 @@ import numpy as np
 import ufl
 from dolfinx import fem
 from dolfinx.fem import petsc as fem_petsc
-from numpy.typing import NDArray
 
-from benchmarks.verification.bodies import NOTHING, body, free_problem, nodal_forces
+from benchmarks.verification.bodies import NOTHING, Array, body, free_problem, nodal_forces
 from benchmarks.verification.case import Case, Row, worst
-from benchmarks.verification.constitutive import LAYERS, ROUNDOFF, in_package
-from benchmarks.verification.points import Evaluation, Points
-from benchmarks.verification.principal import moduli
+from benchmarks.verification.constitutive import LAYERS, ROUNDOFF, Evaluation, Points, in_package, moduli
 from geometry import tags
 from geometry.bodies import block
 from variational.element import ELEMENTS
@@ -31,7 +28,6 @@ from variational.problem import Problem
 from variational.solvers.equations import Equations
 from variational.solvers.newton import Solver
 
-Array = NDArray[np.float64]
 NAIL = (170e6, 0.3)
 SOLIDS: dict[int, Ogden | SaintVenant] = {
     tags.STRATUM_CORNEUM: Ogden(86.76e3, -14.53, 0.48),

@@ -52,13 +52,12 @@ def separations(small: bool) -> list[Row]:
     """Air gap over mean separation, Eqs. 11 and 13, its least value, Eq. 14, and where it is."""
     bam = BearingArea(H_0)
     u = np.linspace(0, 10 * _UM, 20001)
-    d = bam.air_gap(u)
+    gaps = bam.air_gap(u)
+    rows = [_printed(f"d_eq at u_bar = {k} um (um)", float(bam.air_gap(k * _UM)), d, _UM) for k, d in AIR_GAPS.items()]
     return [
-        worst(
-            [_printed(f"d_eq at u_bar = {k} um (um)", float(bam.air_gap(k * _UM)), v, _UM) for k, v in AIR_GAPS.items()]
-        ),
-        _printed("least d_eq (um)", float(d.min()), 1.486, _UM),
-        Row("u_bar of the least d_eq over h_0", float(u[d.argmin()]) / H_0, 0.5, 1e-3, "sampling of 0.5 nm"),
+        worst(rows),
+        _printed("least d_eq (um)", float(gaps.min()), 1.486, _UM),
+        Row("u_bar of the least d_eq over h_0", float(u[gaps.argmin()]) / H_0, 0.5, 1e-3, "sampling of 0.5 nm"),
     ]
 
 

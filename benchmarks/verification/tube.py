@@ -16,24 +16,31 @@ wall are an error of the second order in the triangles' size. With the exact dis
 the element's order shows. The computed pressure is the resultant of the forces at the inner nodes.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 from dolfinx import fem
-from numpy.typing import NDArray
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
-from benchmarks.verification import orders, principal
-from benchmarks.verification.bodies import NOTHING, FreeSolver, Held, body, free_problem, nodal_forces
+from benchmarks.verification import constitutive
+from benchmarks.verification.bodies import (
+    NOTHING,
+    Array,
+    FreeSolver,
+    Held,
+    body,
+    field_orders,
+    free_problem,
+    nodal_forces,
+    relative_errors,
+)
 from benchmarks.verification.case import Case, Row, order, order_row, worst
 from geometry import tags
 from geometry.bodies import quarter_tube
 from variational.materials.ogden import Ogden
-from variational.problem import Problem
 
-Array = NDArray[np.float64]
 A, B, AXIS = 1e-3, 2e-3, 4e-3  # m: inner and outer radius, height of the axis
 SHEAR, ALPHA = 86.76e3, -14.53  # the stratum corneum's, in Pa and as printed
 WIDENED = (1.05, 1.1, 1.2, 1.3)  # a / A
@@ -60,7 +67,7 @@ class Exact:
 
     def __init__(self, poisson: float, widened: float) -> None:
         """Find the radial stretch at the inner surface."""
-        self.solid, self.inner = principal.skin("SC", SHEAR, ALPHA, poisson, -1), widened * A
+        self.solid, self.inner = constitutive.skin("SC", SHEAR, ALPHA, poisson, -1), widened * A
 
         def outer_stress(start: float) -> float:
             r, stretch = self._integrate(start, (A, B)).y[:, -1]
@@ -73,13 +80,13 @@ class Exact:
         self.pressure = -self._stress(start, widened) / widened  # on the current area
 
     def _stress(self, radial: float, hoop: float) -> float:
-        return float(principal.nominal(self.solid, (radial, hoop, 1.0))[0])
+        return float(constitutive.nominal(self.solid, (radial, hoop, 1.0))[0])
 
     def _slope(self, R: float, y: Array) -> list[float]:
         r, radial = y
         hoop = r / R
-        P = principal.nominal(self.solid, (radial, hoop, 1.0))
-        dP = principal.moduli(self.solid, (radial, hoop, 1.0))[0]
+        P = constitutive.nominal(self.solid, (radial, hoop, 1.0))
+        dP = constitutive.moduli(self.solid, (radial, hoop, 1.0))[0]
         return [radial, -(P[0] - P[1] + dP[1] * (radial - hoop)) / (R * dP[0])]
 
     def _integrate(self, start: float, span: tuple[float, float]):
@@ -101,52 +108,39 @@ exact_tube = cache(Exact)
 
 
 # -- computed ------------------------------------------------------------------------------------------
-@dataclass
-class Tube:
-    """A computed quarter: its problem, its inner nodes and all nodes from the axis (m), shape (nodes, 2)."""
+def widen(
+    element: str, divisions: int, poisson: float, widened: float, exact: Exact | None = None
+) -> tuple[fem.Function, float, float]:
+    """Solve for a quarter of the tube, its outer surface free or, with ``exact``, both surfaces displaced by it.
 
-    problem: Problem
-    inner: NDArray[np.int32]
-    X: Array
-
-    @property
-    def pressure(self) -> float:
-        """Return the inner pressure (Pa of current area): the radial forces of the inner nodes over the arc."""
-        X = self.X[self.inner]
-        outwards = X / np.linalg.norm(X, axis=1)[:, None]
-        current = X + self.problem.w.x.array.reshape(-1, 2)[self.inner]
-        radius = np.linalg.norm(current, axis=1).mean()
-        return float((nodal_forces(self.problem)[self.inner] * outwards).sum() / (np.pi / 2 * radius))
-
-    @property
-    def outer_displacement(self) -> float:
-        """Return the displacement (m) of the outer surface's node on the horizontal plane of symmetry."""
-        return float(self.problem.w.x.array[2 * int(np.argmin(np.hypot(self.X[:, 0] - B, self.X[:, 1])))])
-
-
-def widen(element: str, divisions: int, poisson: float, widened: float, exact: Exact | None = None) -> Tube:
-    """Solve for a quarter of the tube, its outer surface free or, with ``exact``, both surfaces displaced by it."""
+    Returns:
+        displacement (m), inner pressure (Pa of current area) and the outer surface's displacement (m).
+    """
     made = body(quarter_tube(A, B, divisions))
     problem = free_problem(made, {tags.STRATUM_CORNEUM: Ogden(SHEAR, ALPHA, poisson)}, element)
     points = problem.V.tabulate_dof_coordinates()
     X = points[:, :2] - [0.0, AXIS]
-    inner, outer = (
-        np.asarray(fem.locate_dofs_topological(problem.V, 1, made.facet_tags.find(tag)))
-        for tag in (tags.BONE_RIM, tags.ridge(0))
-    )
+    surfaces = (made.facet_tags.find(tag) for tag in (tags.BONE_RIM, tags.ridge(0)))
+    inner, outer = (np.asarray(fem.locate_dofs_topological(problem.V, 1, facets)) for facets in surfaces)
     if exact is None:
         # Nodes amid a straight facet are within the circle: they move as those of an incompressible tube do.
         u, driven = X * (_incompressible_stretch(widened, np.linalg.norm(X, axis=1)) - 1)[:, None], inner
     else:
         u, driven = exact(points.T).T, np.concatenate([inner, outer])
     fixed: list[Held] = []
-    for k in (0, 1):
+    for k in (0, 1):  # symmetry
         plane = np.flatnonzero(np.abs(X[:, k]) < 1e-9).astype(np.int32)
         fixed.append((2 * plane + k, 0.0))
         fixed += [(np.array([2 * node + k], np.int32), float(u[node, k])) for node in np.setdiff1d(driven, plane)]
     problem.w.x.array[:] = u.ravel()
     FreeSolver(problem, NOTHING, 1.0, 1e-9, fixed).solve_from_fields()
-    return Tube(problem, inner, X)
+
+    moved, at = problem.w.x.array.reshape(-1, 2), X[inner]
+    radius = np.linalg.norm(at + moved[inner], axis=1).mean()
+    outwards = at / np.linalg.norm(at, axis=1)[:, None]
+    pressure = (nodal_forces(problem)[inner] * outwards).sum() / (np.pi / 2 * radius)
+    end = int(np.argmin(np.hypot(X[:, 0] - B, X[:, 1])))
+    return problem.w, float(pressure), float(moved[end, 0])
 
 
 def inflation(small: bool) -> list[Row]:
@@ -158,12 +152,12 @@ def inflation(small: bool) -> list[Row]:
     for nu in (0.48, 0.49999):
         found = []
         for widened in WIDENED[-1:] if small else WIDENED:
-            exact, tube = exact_tube(nu, widened), widen("P2-P1", n, nu, widened)
+            exact, (_, pressure, end) = exact_tube(nu, widened), widen("P2-P1", n, nu, widened)
             quantity = f"inner pressure, nu = {nu:g}, a/A = {widened:g} (kPa)"
-            found.append(Row(quantity, tube.pressure / 1e3, exact.pressure / 1e3, tolerance, f"{why}: order 2", mesh))
-        errors = [widen("P2-P1", k, nu, most).pressure / exact.pressure - 1 for k in meshes[-2:-1]]
+            found.append(Row(quantity, pressure / 1e3, exact.pressure / 1e3, tolerance, f"{why}: order 2", mesh))
+        errors = [widen("P2-P1", k, nu, most)[1] / exact.pressure - 1 for k in meshes[-2:-1]]
         observed = order([*errors, found[-1].error], meshes[-2:])
-        moved = tube.outer_displacement * 1e3, (float(exact.radius(np.array([B]))[0]) - B) * 1e3
+        moved = end * 1e3, (float(exact.radius(np.array([B]))[0]) - B) * 1e3
         rows += [
             replace(worst(found), order=observed),
             order_row(f"order of the pressure, nu = {nu:g}", observed, 2.0, 0.1, "not yet asymptotic", mesh),
@@ -176,17 +170,17 @@ def inflation(small: bool) -> list[Row]:
     rows.append(Row(quantity, float(np.log10(short[0] / short[1])), 1.0, -ALPHA * 2e-4, next_order, absolute=True))
     quantity = f"inner pressure, nu = 0.49999, a/A = {most:g}, against the incompressible closed form (kPa)"
     why, tolerance = f"{why}, and the change of volume, some 1 - 2 nu, times the exponent", tolerance - ALPHA * 2e-5
-    return [*rows, Row(quantity, tube.pressure / 1e3, limit / 1e3, tolerance, why, mesh)]
+    return [*rows, Row(quantity, pressure / 1e3, limit / 1e3, tolerance, why, mesh)]
 
 
 def convergence(small: bool) -> list[Row]:
     """Errors of the field where the exact solution is prescribed on both surfaces, nu = 0.48."""
     meshes, exact = (4, 8, 16) if small else (4, 8, 16, 32), exact_tube(0.48, WIDENED[-1])
     found = {
-        e: [orders.relative_errors(widen(e, n, 0.48, WIDENED[-1], exact).problem.w, exact) for n in meshes]
+        e: [relative_errors(widen(e, n, 0.48, WIDENED[-1], exact)[0], exact) for n in meshes]
         for e in (("P2-P1",) if small else ("P1", "P2", "P2-P1"))
     }
-    return orders.rows(found, meshes, 0.1, "not yet asymptotic")
+    return field_orders(found, meshes, 0.1, "not yet asymptotic")
 
 
 CASES = (
