@@ -68,38 +68,18 @@ def total_attraction(small: bool) -> list[Row]:
     return rows
 
 
-class _Wavy:
-    """A wavy skin at heights on both sides of d_eq, moved along two fields from its state."""
-
-    def __init__(self, run: Continuation) -> None:
-        self.problem = problem = run.problem
-        problem.set_air_gaps(np.array([2e-6]))
-        problem.w.interpolate(lambda x: np.stack([1e-2 * x[0], 3.3e-6 + 3e-6 * np.sin(7e3 * x[0] + 0.4) - 1e-3 * x[1]]))
-        self.start = problem.w.x.array.copy()
-        x, y = problem.V.tabulate_dof_coordinates()[:, :2].T / 1e-3
-        self.way = np.stack([np.sin(9.1 * x + 4.3 * y + 0.2), np.cos(6.7 * x - 5.9 * y + 1.1)], axis=1).ravel()
-        self.up = np.tile([0.0, 1.0], len(x))
-
-    def charged(self, form):
-        """Return what 200 V add to a form, a vector or a number."""
-        values = []
-        for self.problem.voltage.value in (200.0, 0.0):
-            scalar = form is self.problem.energy
-            values.append(fem.assemble_scalar(form) if scalar else fem.assemble_vector(form).array.copy())
-        return values[0] - values[1]
-
-    def energy(self, step: float, way) -> float:
-        """Return what the voltage adds to the energy (J/m) after a step along a field."""
-        self.problem.w.x.array[:] = self.start + step * way
-        return float(self.charged(self.problem.energy))
-
-    def slope(self, way) -> float:
-        """Return the energy's central difference along a field (N/m)."""
-        return (self.energy(1e-9, way) - self.energy(-1e-9, way)) / 2e-9
+def _added(run: Continuation, form):
+    """Return what 200 V add to a form of a body, a number or a vector."""
+    values = []
+    for voltage in (200.0, 0.0):
+        run.problem.voltage.value = voltage
+        scalar = form is run.problem.energy
+        values.append(fem.assemble_scalar(form) if scalar else fem.assemble_vector(form).array.copy())
+    return values[0] - values[1]
 
 
 def potential(small: bool) -> list[Row]:
-    """The residual against differences of the energy."""
+    """A wavy skin at heights on both sides of d_eq; the residual against differences of the energy."""
     steps, mesh = 1e-7 * 0.5 ** np.arange(5), "64 P2 triangles"
     bent = "a second-order remainder; points that cross an edge of the law bend it"
     why = "central difference over 2 nm of laws that change over 1 um, and the energy's roundoff"
@@ -107,18 +87,25 @@ def potential(small: bool) -> list[Row]:
     for name, law, h_0 in (("Eq. 3", ELECTROSTATIC, _H_0), ("constant", constant_attraction(0.2), 3e-6)):
         build, interface = block(1e-3, 0.5e-3, 0.125e-3), Interface(_CONTACT, 0.0, h_0, law)
         run = over_screen(build, SaintVenant(1e6, 0.3), interface, 1.0)
-        body = _Wavy(run)
-        body.problem.voltage.value = 200.0
+        problem, u = run.problem, run.problem.w.x.array
+        problem.set_air_gaps(np.array([2e-6]))
+        problem.w.interpolate(lambda x: np.stack([1e-2 * x[0], 3.3e-6 + 3e-6 * np.sin(7e3 * x[0] + 0.4) - 1e-3 * x[1]]))
+        start, problem.voltage.value = u.copy(), 200.0
         pull = float(run.observer.ridge_loads().f_attraction[0])
-        slope = float(body.charged(body.problem.residual) @ body.way)
-        zero = body.energy(0.0, body.way)
-        observed = order([body.energy(step, body.way) - zero - step * slope for step in steps], 1 / steps)
-        quantity = f"slope of the energy along a wavy displacement, {name} (N/m)"
-        lifting = f"resultant of the traction against lifting, {name} (N/m)"
+        x, y = problem.V.tabulate_dof_coordinates()[:, :2].T / 1e-3
+        way = np.stack([np.sin(9.1 * x + 4.3 * y + 0.2), np.cos(6.7 * x - 5.9 * y + 1.1)], axis=1).ravel()
+        slope = float(_added(run, problem.residual) @ way)
+
+        def energy(step, field, run=run, u=u, start=start):
+            u[:] = start + step * field
+            return float(_added(run, run.problem.energy))
+
+        observed = order([energy(step, way) - energy(0.0, way) - step * slope for step in steps], 1 / steps)
+        along, lift = ((energy(1e-9, v) - energy(-1e-9, v)) / 2e-9 for v in (way, np.tile([0.0, 1.0], len(x))))
         rows += [
             order_row(f"order of Taylor's remainder, {name}", observed, 2.0, 0.05, bent, mesh),
-            Row(quantity, slope, body.slope(body.way), 1e-5, why, mesh),
-            Row(lifting, pull, body.slope(body.up), 1e-5, why, mesh),
+            Row(f"slope of the energy along a wavy displacement, {name} (N/m)", slope, along, 1e-5, why, mesh),
+            Row(f"resultant of the traction against lifting, {name} (N/m)", pull, lift, 1e-5, why, mesh),
         ]
     return rows
 

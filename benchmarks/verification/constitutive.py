@@ -74,11 +74,8 @@ def cauchy(solid: Solid, F: Array) -> NDArray[Any]:
 
 def free_stretch(solid: Solid, stretch: float) -> float:
     """Return the in-plane lateral stretch at which P_2 = 0, with lambda_3 = 1."""
-
-    def lateral(x: float) -> float:
-        return float(nominal(solid, (stretch, x, 1.0))[1])
-
-    return float(brentq(lateral, 0.4 / stretch, 2.5 / stretch, xtol=1e-15, rtol=1e-15))  # J from 0.4 to 2.5
+    ends = 0.4 / stretch, 2.5 / stretch  # J from 0.4 to 2.5
+    return float(brentq(lambda x: nominal(solid, (stretch, x, 1.0))[1], *ends, xtol=1e-15, rtol=1e-15))
 
 
 def moduli(solid: Solid, stretches: Sequence[float], step: float = 1e-30) -> NDArray[Any]:
@@ -121,20 +118,16 @@ class Points:
         """Evaluate.
 
         Args:
-            F: deformation gradients, (n, 2, 2).
+            F: deformation gradients, (n, 2, 2), n up to 128.
             parameters: its numbers in the order of the law's names, each a number or of shape (n,).
         """
-        results = []
-        for start in range(0, len(F), len(self._cells)):
-            part = slice(start, start + len(self._cells))
-            count = len(F[part])
-            self._F.x.array[:] = np.tile(np.eye(2).ravel(), len(self._cells))
-            self._F.x.array[: 4 * count] = F[part].ravel()
-            for function, value in zip(self._parameters, parameters, strict=True):
-                function.x.array[:] = 1.0
-                function.x.array[:count] = np.broadcast_to(value, (len(F),))[part]
-            results.append(compat.evaluate_on_cells(self._compiled, self._mesh, self._cells)[:count])
-        found, n = np.concatenate(results), len(F)
+        n = len(F)
+        self._F.x.array[:] = np.tile(np.eye(2).ravel(), len(self._cells))
+        self._F.x.array[: 4 * n] = np.asarray(F).ravel()
+        for function, value in zip(self._parameters, parameters, strict=True):
+            function.x.array[:] = 1.0
+            function.x.array[:n] = value
+        found = compat.evaluate_on_cells(self._compiled, self._mesh, self._cells)[:n]
         W, P, sigma, tangent = np.split(found, (1, 5, 14), axis=1)
         shapes = P.reshape(n, 2, 2), sigma.reshape(n, 3, 3), tangent.reshape(n, 2, 2, 2, 2)
         return Evaluation(W[:, 0], *shapes)

@@ -26,7 +26,6 @@ from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
 from variational.problem import Problem
 from variational.solvers.equations import Equations
-from variational.solvers.newton import Solver
 
 NAIL = (170e6, 0.3)
 SOLIDS: dict[int, Ogden | SaintVenant] = {
@@ -138,13 +137,6 @@ def dense(A) -> Array:
     return np.asarray(A.getValues(rows, rows))
 
 
-def assembled(solver: Solver) -> Array:
-    """Return the tangent of a solver in its problem's state."""
-    A = solver.layout.create_matrix()
-    solver.equations.assemble_tangent(A)
-    return dense(A)
-
-
 def linear_stiffness(problem: Problem) -> Array:
     """Return the matrix of linear elasticity from Lame's constants, written anew."""
     v, du = ufl.TestFunction(problem.V), ufl.TrialFunction(problem.V)
@@ -183,14 +175,18 @@ def tangent(small: bool) -> list[Row]:
 
     for element in ELEMENTS:
         problem = deformed(element)
-        solver = Solver(Equations(problem, NOTHING), 1.0)
-        matrix, sums = assembled(solver), "roundings of sums over triangles"
+        equations = Equations(problem, NOTHING)
+        A, sums = equations.layout.create_matrix(), "roundings of sums over triangles"
+        equations.assemble_tangent(A)
+        matrix = dense(A)
         quantity, scale = f"assembled tangent less its transpose, {element}", np.abs(matrix).max()
         matrices.append(apart(quantity, matrix[None], matrix.T[None], scale, 1e-14, sums, _MESH))
         if element in ("P1", "P2"):
             problem.w.x.array[:] = 0.0
-            unknowns = np.ix_(solver.layout.rows, solver.layout.rows)
-            ours, expected = assembled(solver)[unknowns], linear_stiffness(problem)
+            A.zeroEntries()
+            equations.assemble_tangent(A)
+            unknowns = np.ix_(equations.layout.rows, equations.layout.rows)
+            ours, expected = dense(A)[unknowns], linear_stiffness(problem)
             quantity, scale = f"tangent at rest less linear elasticity's, {element}", np.abs(expected).max()
             linear.append(apart(quantity, ours[None], expected[None], scale, ROUNDOFF, why, _MESH))
     return [worst(found) for found in rows]
