@@ -155,7 +155,8 @@ def linear_stiffness(problem: Problem) -> Array:
 def tangent(small: bool) -> list[Row]:
     """Symmetry, closed forms and Hooke's law of points; symmetry and linear elasticity of a body."""
     why = "roundings; the series about F = I leaves 3e-14 of the tangent"
-    symmetry, at_rest, pulled, matrices, linear = rows = [], [], [], [], []
+    rows: list[list[Row]] = [[] for _ in range(5)]
+    symmetry, at_rest, pulled, matrices, linear = rows
     for name, (*_, A) in evaluations(states(64)).items():
         quantity = f"dP/dF major symmetry, {name}"
         symmetry.append(apart(quantity, A, A.transpose(0, 3, 4, 1, 2), largest(A), ROUNDOFF, why))

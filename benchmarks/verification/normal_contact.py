@@ -17,6 +17,7 @@ surface sinks, 2 f / (pi E*) arcosh(x / a), and low against the facet that it ta
 
 from collections.abc import Callable, Sequence
 from functools import cache, partial
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
@@ -63,7 +64,7 @@ def patch(small: bool) -> list[Row]:
     return rows
 
 
-def press(build: Callable[[], float], name: str, size: float, force: float = FORCE, **options: float) -> Continuation:
+def press(build: Callable[[], float], name: str, size: float, force: float = FORCE, **options: Any) -> Continuation:
     """Return a body pressed by a force (N/m), in one step, by the formulation of a name for facets of a size (m)."""
     interface = Interface(formulations(YOUNG / size, 1e-11)[name], 0.0, _H_0)
     run = over_screen(build, _SOLID, interface, force, step_scale=15.0, **({"touch_depth": 0.5e-6} | options))
@@ -71,7 +72,7 @@ def press(build: Callable[[], float], name: str, size: float, force: float = FOR
     return run
 
 
-def _off(run: Continuation, exact: Callable[[Array], Array], width: float) -> float:
+def _off(run: Continuation, exact: Callable[[Array], Any], width: float) -> float:
     """Return the error of p_n in L2 for |x| < width (m), relative."""
     s, surface = run.surface_state, run.problem.surface
     middle = np.abs(s.x) < width
