@@ -177,17 +177,17 @@ def tangent(small: bool) -> list[Row]:
     for element in ELEMENTS:
         problem = deformed(element)
         equations = Equations(problem, NOTHING)
-        A, sums = equations.layout.create_matrix(), "roundings of sums over triangles"
-        equations.assemble_tangent(A)
-        matrix = dense(A)
+        K, sums = equations.layout.create_matrix(), "roundings of sums over triangles"
+        equations.assemble_tangent(K)
+        matrix = dense(K)
         quantity, scale = f"assembled tangent less its transpose, {element}", np.abs(matrix).max()
         matrices.append(apart(quantity, matrix[None], matrix.T[None], scale, 1e-14, sums, _MESH))
         if element in ("P1", "P2"):
             problem.w.x.array[:] = 0.0
-            A.zeroEntries()
-            equations.assemble_tangent(A)
+            K.zeroEntries()
+            equations.assemble_tangent(K)
             unknowns = np.ix_(equations.layout.rows, equations.layout.rows)
-            ours, expected = dense(A)[unknowns], linear_stiffness(problem)
+            ours, expected = dense(K)[unknowns], linear_stiffness(problem)
             quantity, scale = f"tangent at rest less linear elasticity's, {element}", np.abs(expected).max()
             linear.append(apart(quantity, ours[None], expected[None], scale, ROUNDOFF, why, _MESH))
     return [worst(found) for found in rows]
