@@ -1,6 +1,6 @@
 # make demo   press, charge and slide the default finger; results in results/demo
-# make test   all tests, then those marked mpi on two ranks; six minutes on two cores
-# make check  tests of every module that run no whole finger; a minute or so
+# make test   all tests, then those marked mpi on two ranks
+# make check  tests of every module that run no whole finger
 # make lint   style, layout and types: ruff and mypy, half a minute
 # make test-order  all tests with other rounding: cells numbered the other way round, other kernels of OpenBLAS
 # make fuzz   10 000 scenes and command lines, each ready to run or refused in one sentence; some minutes

@@ -8,7 +8,7 @@ from mpi4py import MPI
 from fingerpad.model.options import plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data
-from variational.solvers import newton as solver_module
+from variational.solvers import iteration
 from variational.solvers.continuation import StepFailed
 
 FINGER = {
@@ -97,7 +97,7 @@ def test_solve_ends_at_its_floor(at_the_start):
 
 def test_residual_that_stalls_above_roundoff_is_no_floor(monkeypatch):
     """With a thousandth of the roundoff allowed, the same solve finds no equilibrium."""
-    monkeypatch.setattr(solver_module, "_ROUNDINGS", 1e-3)
+    monkeypatch.setattr(iteration, "_ROUNDINGS", 1e-3)
     with pytest.raises(StepFailed, match="DIVERGED_"):
         slid(0.0, 1.0, 100.0, 1e-15)
 

@@ -228,7 +228,7 @@ class Continuation:
                         raise StepFailed(self._describe(target, part, failure)) from failure
             self._accept()
             part += step
-            if self.on_accept(target, part, attempt):
+            if self.on_accept(target, part, attempt) is True:
                 return False
             if target.until_full_slip and self.slip[1]:
                 return True
