@@ -17,13 +17,9 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks import harness
-from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, NU, RADIUS, SPAN, YOUNG
-from benchmarks.verification.over_screen import formulations, over_screen
+from benchmarks.verification.normal_contact import E_STAR, HALF_WIDTH, RADIUS, SPAN, press
 from fingerpad.richardson import MORE, ONCE, MeshParameter
 from geometry.bodies import pad
-from variational.materials.saint_venant import SaintVenant
-from variational.problem import Interface
-from variational.solvers.continuation import Target
 
 WANTED = 0.9  # of the cases of each kind
 KINDS = {"friction": ("µ_app", "f_T"), "contact length": ("contact length",), "energy density": ("SED",)}
@@ -90,10 +86,7 @@ def kept(docs: Path = harness.DOCS) -> list[Case]:
 def _contact_length(a: float, facets: int) -> float:
     """Return the length in contact (m), 2a by Hertz, with ``facets`` facets to :data:`HALF_WIDTH`."""
     size, force = HALF_WIDTH / facets, np.pi * E_STAR * a**2 / (4 * RADIUS)
-    interface = Interface(formulations(YOUNG / size, 1e-11)["penalty"], 0.0, 1e-6)
-    build = pad(size, int(np.ceil(_REACH * facets)), RADIUS, SPAN)
-    run = over_screen(build, SaintVenant(YOUNG, NU), interface, force, touch_depth=0.5e-6, step_scale=15.0)
-    run.run(Target("press", f_ext=force))
+    run = press(pad(size, int(np.ceil(_REACH * facets)), RADIUS, SPAN), "penalty", size, force)
     return float(run.observer.ridge_loads(run.surface_state).length[0])
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from benchmarks.verification import dugdale, two_scales
-from benchmarks.verification.microscale import H_0
+from benchmarks.verification.adhesion import maugis_force, maugis_ratio
+from benchmarks.verification.microscale import H_0, scalar
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, hertz_modulus
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap, Closure
@@ -47,9 +47,9 @@ def test_charged_cylinder_is_maugis(f):
     d_eq = 1.7e-6
     state = ridge(Held(d_eq)).under_load(f, VOLTAGE)
     sigma, a = EPS_0 * VOLTAGE**2 / 2 / (H_0 + d_eq) ** 2, state.length / 2
-    m = dugdale.ratio(a, RADIUS, MODULUS, sigma, H_0 + 2 * d_eq)
+    m = maugis_ratio(a, RADIUS, MODULUS, sigma, H_0 + 2 * d_eq)
     assert state.attracted == pytest.approx(2 * m * a, rel=1e-9)
-    assert dugdale.force(a, RADIUS, MODULUS, sigma, H_0 + 2 * d_eq) == pytest.approx(f, rel=1e-9)
+    assert maugis_force(a, RADIUS, MODULUS, sigma, H_0 + 2 * d_eq) == pytest.approx(f, rel=1e-9)
     assert state.f_attraction == pytest.approx(sigma * state.attracted, rel=1e-9)
 
 
@@ -78,7 +78,7 @@ def test_wide_contact_is_the_closure_table(p_ext, voltage):
     over the scales makes that some times larger.
     """
     state = ridge().over_length(10.0, 10 * p_ext, voltage)
-    d_eq, p_c, _ = two_scales.scalar(p_ext, voltage)
+    d_eq, p_c, _ = scalar(p_ext, voltage)
     assert state.d_eq == pytest.approx(d_eq, rel=1e-6)
     assert state.p_c == pytest.approx(p_c, rel=1e-6)
 

@@ -8,7 +8,7 @@ import pytest
 import ufl
 from scipy.optimize import brentq
 
-from benchmarks.verification.points import Points
+from benchmarks.verification.constitutive import Points
 from geometry import tags
 from tests.test_problem import H_0, anchor_apart, direction, make, rates, taylor, wave
 from variational.contact.nitsche import Nitsche

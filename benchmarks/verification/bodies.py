@@ -1,32 +1,99 @@
-"""Bodies without a screen: what the cases of solids and elements have in common."""
+"""Bodies of the cases, over the screen and free of it, set up by :class:`variational.body.Body`."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import dolfinx
 import numpy as np
+import ufl
 from dolfinx import fem
 from mpi4py import MPI
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from petsc4py import PETSc
 
+from benchmarks.verification.case import Row, order, order_row
+from geometry import tags
 from geometry.mesh import TaggedMesh, load
 from variational import jit
 from variational.body import Body
+from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.formulation import Formulation
+from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.materials.material import Material
 from variational.problem import Interface, Problem
+from variational.roughness.closure import AirGap, Closure
+from variational.solvers.continuation import Continuation
 from variational.solvers.equations import Equations
 from variational.solvers.newton import Solver
 
 Array = NDArray[np.float64]
-Solid = Material
-Facets = NDArray[np.int32]
-Held = tuple[NDArray[np.int32], float]
+Dofs = NDArray[np.int32]
+Held = tuple[Dofs, float]
+DEGREES = {"P1": 1, "P2": 2, "P2-P1": 2, "P3": 3}  # of the displacement, by element
+Errors = tuple[float, float]  # in L2 and H1
 NOTHING = np.empty(0, dtype=np.int32)  # facets of the bone's rim
 
 
+# -- over the screen -----------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class Smooth(Closure):
+    """A screen and skin without roughness: one air gap (m) at any pressure."""
+
+    d_eq: float
+
+    def __call__(self, p_c: ArrayLike) -> AirGap:
+        """Return the air gap, which does not follow the pressure."""
+        return AirGap(self.d_eq + 0 * np.asarray(p_c, dtype=np.float64))
+
+
+def over_screen(
+    build: Callable[[], float],
+    solid: Material,
+    interface: Interface,
+    force: float,
+    *,
+    sides_held: bool = False,
+    closure: Closure = Smooth(1e-6),  # noqa: B008, frozen
+    **options: Any,
+) -> Continuation:
+    """Return a body over the screen, unloaded.
+
+    Args:
+        build: makes the mesh.
+        solid: material of the body.
+        interface: laws of the contact.
+        force: force per length (N/m) in which residuals are measured.
+        sides_held: whether the sides may not move sideways.
+        closure: the microscale.
+        options: further arguments of :class:`variational.body.Body`.
+    """
+    body = load(MPI.COMM_SELF, build)
+    held = body.facets(tags.SIDES) if sides_held else None
+    solids = {tags.STRATUM_CORNEUM: solid}
+    return Body(body, solids, interface, closure, force_scale=force, held=held, **options).continuation
+
+
+def formulations(stiffness: float, depth: float) -> dict[str, Formulation]:
+    """Return each contact formulation by name.
+
+    Args:
+        stiffness: of the skin over a facet's length (Pa/m).
+        depth: penetration (m) that the augmented Lagrangian leaves.
+    """
+    return {
+        "penalty": Penalty(100 * stiffness, 10 * stiffness),
+        "Nitsche 1": Nitsche(100.0, 1),
+        "Nitsche 0": Nitsche(10.0, 0),
+        "Nitsche -1": Nitsche(10.0, -1),
+        "augmented Lagrangian": AugmentedLagrangian(100 * stiffness, 10 * stiffness, depth),
+    }
+
+
+# -- without a screen ----------------------------------------------------------------------------------
 def body(build: Callable[[], float], layer: Callable[[Array], Array] | None = None) -> TaggedMesh:
-    """Return a mesh; with ``layer`` its cells have the tags that this gives for their midpoints (m), shape (n, 3)."""
+    """Return a mesh; ``layer`` gives the tags of its cells from their midpoints (m), shape (n, 3)."""
     made = load(MPI.COMM_SELF, build)
     if layer is None:
         return made
@@ -36,19 +103,9 @@ def body(build: Callable[[], float], layer: Callable[[Array], Array] | None = No
     return TaggedMesh(made.mesh, cell_tags, made.facet_tags)
 
 
-def free_problem(made: TaggedMesh, solids: Mapping[int, Solid], element: str) -> Problem:
+def free_problem(made: TaggedMesh, solids: Mapping[int, Material], element: str) -> Problem:
     """Return the problem of a body that no screen bears: the penalty is zero, and so is the voltage."""
     return Body(made, solids, Interface(Penalty(0.0, 1e11), 0.0, 1e-6), element=element).problem
-
-
-def nodes_of(problem: Problem, facets: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Return the displacement's nodes on facets."""
-    return np.asarray(fem.locate_dofs_topological(problem.V, 1, facets))
-
-
-def held(dofs: NDArray[np.int32], values: Array) -> list[Held]:
-    """Return unknowns, each with a value of its own (m), as a solver takes them."""
-    return [(np.array([dof], dtype=np.int32), float(value)) for dof, value in zip(dofs, values, strict=True)]
 
 
 def nodal_forces(problem: Problem) -> Array:
@@ -60,36 +117,64 @@ class FreeEquations(Equations):
     """Those of a body that need not have a bone."""
 
     def assemble_tangent(self, A: PETSc.Mat) -> None:
-        """Make sure that the bone has a diagonal, which nothing else does where no facet is glued to it."""
+        """Give the bone a diagonal, which nothing else does where no facet is glued to it."""
         for row in self.layout.rigid_rows:
             A.setValue(row, row, 0.0, PETSc.InsertMode.ADD_VALUES)
         super().assemble_tangent(A)
 
 
 class FreeSolver(Solver):
-    """A solver of a body that need not have a bone, with dead loads on its nodes, of which the finger has none.
-
-    Attributes:
-        load: nodal forces (N/m) as a vector of unknowns; zero where displacements are prescribed.
-    """
+    """A solver of a body that need not have a bone, with dead loads on its nodes."""
 
     def __init__(
-        self, problem: Problem, rim: Facets, force_scale: float, tolerance: float = 1e-9, fixed: Sequence[Held] = ()
+        self, problem: Problem, rim: Dofs, force_scale: float, tolerance: float = 1e-9, fixed: Sequence[Held] = ()
     ) -> None:
         """Set the solver up; the arguments are those of :class:`Equations` and :class:`Solver`."""
         super().__init__(FreeEquations(problem, rim, fixed), force_scale, tolerance)
-        self.load = self.equations.dead_load
 
     def set_load(self, form) -> None:
-        """Take the nodal forces of a linear form, UFL, in the displacement's test function."""
-        self.load.set(0.0)
-        self.layout.add_to_unknowns(fem.assemble_vector(fem.form(form, jit_options=jit.OPTIONS)).array, self.load)
-        self.load.array_w[self.equations.local(self.equations.prescribed_rows())] = 0.0
+        """Apply the nodal forces of a linear form, UFL, but in prescribed rows."""
+        load = self.equations.dead_load
+        load.set(0.0)
+        self.layout.add_to_unknowns(fem.assemble_vector(fem.form(form, jit_options=jit.OPTIONS)).array, load)
+        load.array_w[self.equations.local(self.equations.prescribed_rows())] = 0.0
         self.equations.load_part = 1.0
 
-    def start(self) -> None:
-        """Start from the problem's displacement and, if it has one, pressure; on one rank."""
+    def solve_from_fields(self) -> None:
+        """Solve, starting from the problem's displacement and, if it has one, pressure; on one rank."""
         self.set_displacement(self.problem.displacement(), np.zeros(2))
         if self.problem.pressure:
             rows = self.problem.pressure.rows(0)
             self.x.array_w[rows[rows >= 0]] = self.problem.pressure.unknown.x.array[rows >= 0]
+        self.solve()
+
+
+# -- orders of convergence -----------------------------------------------------------------------------
+def norm(domain: dolfinx.mesh.Mesh, value: Any) -> float:
+    """Return the L2 norm of a UFL expression, integrated to degree 10."""
+    squared = ufl.inner(value, value) * ufl.dx(domain, metadata={"quadrature_degree": 10})
+    return float(np.sqrt(fem.assemble_scalar(fem.form(squared, jit_options=jit.OPTIONS))))
+
+
+def relative_errors(u: fem.Function, exact: Callable[[Array], Array]) -> Errors:
+    """Return the errors of a displacement and of its gradient over the norms of the exact ones.
+
+    The exact one is interpolated by polynomials of degree 6, cell by cell.
+    """
+    domain = u.function_space.mesh
+    e = fem.Function(fem.functionspace(domain, ("Discontinuous Lagrange", 6, (2,))))
+    e.interpolate(exact)
+    gradients = norm(domain, ufl.grad(u - e)) / norm(domain, ufl.grad(e))
+    return norm(domain, u - e) / norm(domain, e), gradients
+
+
+def field_orders(found: Mapping[str, Sequence[Errors]], meshes: Sequence[int], tolerance: float, why: str) -> list[Row]:
+    """Return the orders on the last two meshes, p + 1 in L2 and p in H1 expected, by element."""
+    made = []
+    for element, pairs in found.items():
+        p = DEGREES[element]
+        for name, expected, errors in zip(("L2", "H1"), (p + 1, p), zip(*pairs, strict=True), strict=True):
+            finest = f"{meshes[0]} to {meshes[-1]} divisions, last error {errors[-1]:.1e}"
+            observed = order(errors[-2:], meshes[-2:])
+            made.append(order_row(f"order in {name}, {element}", observed, expected, tolerance, why, finest))
+    return made

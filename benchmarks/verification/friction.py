@@ -6,25 +6,22 @@ the normal force P that is then pushed sideways by Q < mu P sticks for |x| < c a
 .. math:: t = \mu p_0 \left( \sqrt{1 - x^2 / a^2} - \frac ca \sqrt{1 - x^2 / c^2} \right), \qquad
           c = a \sqrt{1 - Q / (\mu P)},
 
-the second root in |x| < c only. It takes normal tractions that do not move the surface sideways, as for a rigid screen
-at a Poisson's ratio of 1/2; here it is 0.499. The body is the block of Hertz's case with a side of 300 a: pressed, it
-bulges, and the strain of its bottom, f / (E* 300 a), is felt as a shear of 1 % of mu p_0. It is incompressible, so its
-element is P2-P1.
+the second root in |x| < c only. It takes normal tractions that do not move the surface sideways: nu is 0.499, the
+element P2-P1. The body is the block of Hertz's case with a side of 300 a: pressed, it bulges, and the strain of its
+bottom, f / (E* 300 a), is felt as a shear of 1 % of mu p_0.
 
 NAFEMS CGS-4 (Feng and Prinja, Benchmark Tests for Finite Element Modelling of Contact, Gapping and Sliding, NAFEMS
 R0081, 2001): a wedge of weight G is pushed up a slope of tan alpha = 0.1 by a horizontal force F, with
 F / G = (tan alpha + mu) / (1 - mu tan alpha). The screen here is horizontal, so the slope is one of the loads: with N
-normal to it and Q along it, F = Q cos alpha + N sin alpha and G = N cos alpha - Q sin alpha. The bone's N is given and
-its Q found; Coulomb's law knows no scale, so N may be any. Formula and tan alpha are as FrontISTR's tests cite them
-(gitlab.com/FrontISTR-Commons/FrontISTR, merge request 599); the benchmark's own report was not at hand.
+normal to it and Q along it, F = Q cos alpha + N sin alpha and G = N cos alpha - Q sin alpha. Formula and tan alpha are
+as FrontISTR's tests cite them (gitlab.com/FrontISTR-Commons/FrontISTR, merge request 599); the benchmark's own report
+was not at hand.
 """
-
-from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.verification.case import Case, Curves, Outcome, Row
-from benchmarks.verification.over_screen import Array, formulations, over_screen, profile
+from benchmarks.verification.bodies import Array, Smooth, formulations, over_screen
+from benchmarks.verification.case import Case, Row
 from geometry.bodies import block, pad, ridge
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.formulation import Formulation
@@ -36,13 +33,11 @@ from variational.problem import Interface
 from variational.solvers.continuation import Continuation, Target
 
 _H_0 = 0.514e-6
-_SKIN = Ogden(86.76e3, -14.53, 0.48)
 
 
-# -- full slip -----------------------------------------------------------------------------------------
-def full_slip(small: bool) -> Outcome:
+def full_slip(small: bool) -> list[Row]:
     """One ridge of skin under 100 V, dragged to full slip and 0.2 mm further."""
-    mu_f, force = 0.25, 5.0
+    mu_f, force, mesh = 0.25, 5.0, "P2, facets of 20 um"
     ways: dict[str, Formulation] = {"penalty": Penalty(1.5e12, 5e10), "Nitsche 0": Nitsche(10.0, 0)}
     if not small:
         ways |= {
@@ -50,41 +45,28 @@ def full_slip(small: bool) -> Outcome:
             "Nitsche -1": Nitsche(10.0, -1),
             "augmented Lagrangian": AugmentedLagrangian(1.5e13, 5e11, 5e-10),
         }
-    rows, paths = [], {}
+    rows = []
     for name, formulation in ways.items():
-        path: list[tuple[float, float, float]] = []
-
-        def accept(target, part, attempt, path=path) -> None:
-            load = run.observer.ridge_loads(run.surface_state)  # noqa: B023, of this round
-            path.append((run.solver.control.x, -run.solver.reaction[0], float(load.f_contact[0])))  # noqa: B023
-
-        interface = Interface(formulation, mu_f, _H_0)
-        run = over_screen(ridge(20e-6), _SKIN, interface, force, d_eq=2e-6, on_accept=accept)
+        skin, interface = Ogden(86.76e3, -14.53, 0.48), Interface(formulation, mu_f, _H_0)
+        run = over_screen(ridge(20e-6), skin, interface, force, closure=Smooth(2e-6))
         run.run(Target("press", f_ext=force))
         run.run(Target("charge", voltage=100.0))
         for x in (10e-6, 20e-6, 30e-6, 45e-6, 0.4e-3):
             run.run(Target("slide", bone_x=x, until_full_slip=True))
-        first = path[-1][1]
-        run.run(Target("slide on", bone_x=path[-1][0] + 0.2e-3))
-        _, f_t, f_c = path[-1]
-        paths[name] = np.array(path)
+        first = -run.solver.reaction[0]
+        run.run(Target("slide on", bone_x=run.solver.control.x + 0.2e-3))
+        f_t, f_c = -run.solver.reaction[0], float(run.observer.ridge_loads(run.surface_state).f_contact[0])
         why = "asked for: the law, to the nodal imbalances of the solve"
-        mesh = "P2, facets of 20 um"
         rows.append(Row(f"f_T at full slip over mu_0 f_c, {name}", f_t / (mu_f * f_c), 1.0, 1e-6, why, mesh))
         same = 1e-6
         if isinstance(formulation, AugmentedLagrangian):
             same, why = 1e-5, "multipliers end at 0.5 nm, over which the attraction beside the contact changes by 4e-4"
         rows.append(Row(f"f_T after 0.2 mm more, over that, {name}", f_t / first, 1.0, same, why, mesh))
-
-    found = {name: (path[:, 0] * 1e6, path[:, 1] / (mu_f * path[:, 2])) for name, path in paths.items()}
-    known = {"Coulomb": (np.linspace(0, 600, 50), np.ones(50))}
-    return Outcome(tuple(rows), Curves("bone's displacement (µm)", "f_T / (mu_0 f_c) (–)", known, found))
+    return rows
 
 
-# -- partial slip --------------------------------------------------------------------------------------
 SHEAR_MODULUS, NU, RADIUS, HALF_WIDTH, MU_F = 1e6 / 3, 0.499, 1.0, 0.5e-3, 0.5
-E_STAR = 2 * SHEAR_MODULUS / (1 - NU)
-FORCE = np.pi * E_STAR * HALF_WIDTH**2 / (4 * RADIUS)
+FORCE = np.pi * 2 * SHEAR_MODULUS / (1 - NU) * HALF_WIDTH**2 / (4 * RADIUS)
 
 
 def shear(x: Array, part: float) -> Array:
@@ -97,66 +79,50 @@ def shear(x: Array, part: float) -> Array:
     return MU_F * 2 * FORCE / (np.pi * a) * (root(a) - c / a * root(c))
 
 
-@dataclass(frozen=True)
-class _Partial:
-    part: float  # Q / (mu P)
-    stick: float  # half-width (m)
-    x: Array
-    t: Array
-    cumulated: float  # largest error of the shear borne left of a place, over Q
-
-
-def _partial(run: Continuation) -> _Partial:
-    s = run.surface_state
+def _partial(run: Continuation) -> tuple[float, float, float]:
+    """Return Q / (mu P), the stick's half-width (m) and the largest error of the shear borne left of a place over Q."""
+    s, surface = run.surface_state, run.problem.surface
     q = -float(run.solver.reaction[0])
     part = q / (MU_F * FORCE)
-    x, t = profile(run, -s.t_t)
-    _, sticks = profile(run, (s.p_n > 0) & (np.abs(s.t_t) < MU_F * s.p_n * (1 - 1e-8)))
+    order = np.argsort(s.x.ravel())
+    x, sticks = s.x.ravel()[order], ((s.p_n > 0) & (np.abs(s.t_t) < MU_F * s.p_n * (1 - 1e-8))).ravel()[order]
     inside = np.flatnonzero(sticks)
     left, right = (x[k] + x[k + 1] for k in (inside[0] - 1, inside[-1]))
-    surface = run.problem.surface
     off = (-s.t_t - shear(s.x, part)) @ surface.weights * surface.length
-    by_place = np.cumsum(off[np.argsort(s.x[:, 0])])
-    return _Partial(part, (right - left) / 4, x, t, float(np.abs(by_place).max()) / q)
+    return part, (right - left) / 4, float(np.abs(np.cumsum(off[np.argsort(s.x[:, 0])])).max()) / q
 
 
-def partial_slip(small: bool) -> Outcome:
+def partial_slip(small: bool) -> list[Row]:
     """A cylinder pressed, then pushed sideways in four steps."""
     facets = 10 if small else 60
     size = HALF_WIDTH / (facets + 0.5)
-    formulation = formulations(3 * SHEAR_MODULUS / size, 1e-11)["penalty"]
     # At alpha = -2 Ogden's law has squares of the stretches.
-    build = pad(size, int(np.ceil(1.3 * facets)), RADIUS, 300 * HALF_WIDTH)
-    solid, interface = Ogden(SHEAR_MODULUS, -2.0, NU), Interface(formulation, MU_F, _H_0)
+    solid = Ogden(SHEAR_MODULUS, -2.0, NU)
+    interface = Interface(formulations(3 * SHEAR_MODULUS / size, 1e-11)["penalty"], MU_F, _H_0)
     # Pressing moves the surface sideways so little that one step will do.
-    run = over_screen(build, solid, interface, FORCE, "P2-P1", tolerance=1e-6, touch_depth=0.5e-6, step_scale=15.0)
+    run = over_screen(
+        pad(size, int(np.ceil(1.3 * facets)), RADIUS, 300 * HALF_WIDTH), solid, interface, FORCE,
+        element="P2-P1", tolerance=1e-6, touch_depth=0.5e-6, step_scale=15.0,
+    )  # fmt: skip
     run.run(Target("press", f_ext=FORCE))
-    states = []
-    for x in (0.2e-6, 0.4e-6, 0.6e-6, 0.8e-6):
-        run.run(Target("slide", bone_x=x))
-        states.append(_partial(run))
     mesh = f"P2-P1, facets of a / {facets + 0.5:g}"
     tolerance, why = 0.01, "asked for; a facet is 1.7 % of a, its points lie a quarter of that apart"
     if small:
         tolerance, why = 0.03, "a third of a facet of a / 10"
-    rows = []
-    for state in states:
-        load, exact = f"at Q / mu P = {state.part:.3f}", HALF_WIDTH * float(np.sqrt(1 - state.part))
-        rows.append(Row(f"stick half-width {load} (m)", state.stick, exact, tolerance, why, mesh))
-    for state in states:
-        quantity = f"shear borne left of a place over Q, most off, at Q / mu P = {state.part:.3f}"
-        rows.append(Row(quantity, state.cumulated, 0.0, tolerance, why, mesh, absolute=True))
-
-    along, unit = np.linspace(-1.2, 1.2, 961), MU_F * 2 * FORCE / (np.pi * HALF_WIDTH)
-    known = {f"Cattaneo, Q / μP = {s.part:.2f}": (along, shear(along * HALF_WIDTH, s.part) / unit) for s in states}
-    found = {f"Q / μP = {s.part:.2f}": (s.x / HALF_WIDTH, s.t / unit) for s in states}
-    return Outcome(tuple(rows), Curves("x / a (–)", "t / (μ p_0) (–)", known, found, limits=(-1.2, 1.2)))
+    widths, shears = [], []
+    for x in (0.2e-6, 0.4e-6, 0.6e-6, 0.8e-6):
+        run.run(Target("slide", bone_x=x))
+        part, stick, cumulated = _partial(run)
+        load, exact = f"at Q / mu P = {part:.3f}", HALF_WIDTH * float(np.sqrt(1 - part))
+        widths.append(Row(f"stick half-width {load} (m)", stick, exact, tolerance, why, mesh))
+        quantity = f"shear borne left of a place over Q, most off, {load}"
+        shears.append(Row(quantity, cumulated, 0.0, tolerance, why, mesh, absolute=True))
+    return widths + shears
 
 
-# -- incline -------------------------------------------------------------------------------------------
-def incline(small: bool) -> Outcome:
+def incline(small: bool) -> list[Row]:
     """A block pushed up a slope: horizontal force over weight."""
-    slope, normal = np.arctan(0.1), 2.0
+    slope, normal, why = np.arctan(0.1), 2.0, "nodal imbalances of the solve"
     rows = []
     for mu_f in (0.0, 0.1, 0.2, 0.3):
         interface = Interface(Nitsche(10.0), mu_f, _H_0)
@@ -166,10 +132,9 @@ def incline(small: bool) -> Outcome:
         along = -float(run.solver.reaction[0])
         F = along * np.cos(slope) + normal * np.sin(slope)
         G = normal * np.cos(slope) - along * np.sin(slope)
-        why = "nodal imbalances of the solve"
         expected = (0.1 + mu_f) / (1 - 0.1 * mu_f)
         rows.append(Row(f"F / G at mu = {mu_f:g}", F / G, expected, 1e-6, why, "16 P2 triangles"))
-    return Outcome(tuple(rows))
+    return rows
 
 
 _COULOMB = "Coulomb's law: f_T is mu_0 times the contact force, wherever the plane is"

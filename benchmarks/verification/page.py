@@ -6,26 +6,23 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.harness import kept, page, table
-from benchmarks.verification.case import Case, Outcome, Row
+from benchmarks.verification.case import Case, Row
 
-Results = Mapping[str, Sequence[tuple[Case, Outcome]]]
+Results = Mapping[str, Sequence[tuple[Case, Sequence[Row]]]]
 _HOW = """Each row is a computed number beside its known answer: a closed form, a published benchmark, or an independent
 evaluation. The error is relative where *(rel.)* stands, otherwise in the quantity's unit. The tolerance is given with
 its reason; **!** marks an error above it. *Order* is the observed order of convergence over several meshes. `make
-verify` computes all rows and fails where one is off; its option `--pictures` draws the curves into
-`results/verification`. The same cases on coarser meshes are part of `make test`."""
+verify` computes all rows and fails where one is off. The same cases on coarser meshes are part of `make test`."""
 _HEAD = ["case and source of the answer", "quantity", "known answer", "computed", "error", "tolerance", "mesh", "order"]
 
 
 def numbers(results: Results) -> dict[str, Any]:
     """Return the rows of all cases, ready for JSON."""
-    return {
-        area: [
-            {"name": case.name, "reference": case.reference, "rows": [asdict(row) for row in outcome.rows]}
-            for case, outcome in cases
-        ]
-        for area, cases in results.items()
-    }
+
+    def record(case: Case, rows: Sequence[Row]) -> dict[str, Any]:
+        return {"name": case.name, "reference": case.reference, "rows": [asdict(row) for row in rows]}
+
+    return {area: [record(*found) for found in cases] for area, cases in results.items()}
 
 
 def _lines(name: str, reference: str, rows: Sequence[Row]) -> list[list[str]]:
@@ -52,8 +49,7 @@ def draw(docs: Path) -> Path:
         for area, cases in found.numbers.items()
     }
     rows = [row for cases in areas.values() for *_, some in cases for row in some]
-    held = sum(row.holds for row in rows)
-    count = sum(map(len, areas.values()))
+    held, count = sum(row.holds for row in rows), sum(map(len, areas.values()))
     finding = (
         f"{held} of {len(rows)} computed numbers in {count} cases agree with their known answers within tolerance."
     )
@@ -61,6 +57,5 @@ def draw(docs: Path) -> Path:
         f"## {area}\n\n{table(_HEAD, [line for case in cases for line in _lines(*case)])}"
         for area, cases in areas.items()
     ]
-    return page(
-        docs / "verification.md", "Verification", finding, _HOW, body, "make verify", found.made, ["verification"]
-    )
+    path, names = docs / "verification.md", ["verification"]
+    return page(path, "Verification", finding, _HOW, body, "make verify", found.made, names)
