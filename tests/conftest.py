@@ -21,7 +21,7 @@ from variational import jit
 
 LONGER = (
     "accuracy api demo demos element ending energy environment faults formulations light mirror needs own_mesh "
-    "reach results smooth stability_map translation untuned verification zone"
+    "reach results smooth stability_map translation verification zone"
 )
 """Tests that `make check` leaves out, by the names of their files: whole runs. A new file is checked."""
 

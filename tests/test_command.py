@@ -40,7 +40,7 @@ def test_options():
 
 def test_options_win_over_the_file():
     scene, _, _ = run_line(str(SCENES / "coarse.toml"), "--set", "voltage=0")
-    assert (scene.f_ext, scene.voltage, scene.mesh.interface) == (10.0, 0.0, 120e-6)
+    assert (scene.f_ext, scene.voltage, scene.mesh.interface) == (3.0, 0.0, 200e-6)
 
 
 @pytest.mark.parametrize("key", ['contact.formulation="nitsche"', "contact.formulation=nitsche"])
