@@ -104,7 +104,7 @@ def test_arrays_have_documented_shapes(ran):
 
 def test_model_without_its_libraries_is_refused_in_a_sentence(monkeypatch):
     monkeypatch.setitem(sys.modules, "fingerpad.reduced.smooth", None)
-    monkeypatch.delattr(fp, "smooth", raising=False)
+    monkeypatch.delattr("fingerpad.reduced.smooth", raising=False)
     monkeypatch.setattr("fingerpad.installed.OPTIONAL", ("fingerpad",))
     with pytest.raises(ImportError, match="the model 'smooth' needs fingerpad, which is not installed;"):
         fp.run(from_data(SMALL), model="smooth")
