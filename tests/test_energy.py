@@ -22,7 +22,7 @@ from variational.solvers.equations import Control
 def cycles(request):
     """Cycles of 8, 16, 32 and 64 steps a phase, without jumps."""
     flat = request.param == "block"
-    model = block(WIDTH, HEIGHT, 0.25e-3) if flat else ridge(20e-6)
+    model = block(WIDTH, HEIGHT, 0.25e-3) if flat else ridge(40e-6)
     depth, far = (2e-6, 30e-6) if flat else (20e-6, 150e-6)
     body = load(MPI.COMM_WORLD, model)
     law = {"mu_f": MU_F, "eps_n": 1e11, "eps_t": 1e10, "held": False}
