@@ -10,6 +10,7 @@ import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
+from fingerpad import reduced
 from fingerpad.io.result import Cost
 from fingerpad.io.states import PREFIXES, STATES
 from fingerpad.model.hints import finer_mesh_may_help
@@ -104,7 +105,7 @@ def test_arrays_have_documented_shapes(ran):
 
 def test_model_without_its_libraries_is_refused_in_a_sentence(monkeypatch):
     monkeypatch.setitem(sys.modules, "fingerpad.reduced.smooth", None)
-    monkeypatch.delattr("fingerpad.reduced.smooth", raising=False)
+    monkeypatch.delattr(reduced, "smooth", raising=False)
     monkeypatch.setattr("fingerpad.installed.OPTIONAL", ("fingerpad",))
     with pytest.raises(ImportError, match="the model 'smooth' needs fingerpad, which is not installed;"):
         fp.run(from_data(SMALL), model="smooth")

@@ -37,7 +37,7 @@ def total(phase: list[Balance], name: str) -> float:
 def test_balance_closes_with_the_square_of_the_step(cycles, phase):
     """The imbalances of a phase add up to a quarter when the step is halved.
 
-    Over three halvings the rates measured lie between 1.78 and 2.25. One halving's lie between 1.3 and 3.4: points
+    Over three halvings the rates measured lie between 1.82 and 2.42. One halving's lie between 1.5 and 3.2: points
     touch, part and start to slip somewhere inside a step. The last step of the lift is left out: it ends where the
     body just leaves the screen, and roundoff says which points still bear.
     """
