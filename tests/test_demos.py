@@ -29,7 +29,6 @@ def run(demo: Path, out: Path) -> str:
     return done.stdout
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("demo", DEMOS, ids=lambda demo: demo.stem)
 def test_demo(demo, tmp_path):
     """Each but the first run leaves a picture."""

@@ -18,7 +18,6 @@ from tests.measures import accepted
 
 ROOT = Path(__file__).resolve().parents[1]
 GOOD = 2  # steps accepted before a run is disturbed
-COARSE = ROOT / "demos" / "scenes" / "coarse.toml"
 LONG = """# a light finger on a long way: its start is short, and there are a hundred steps to disturb it in
 geometry.ridge_count = 9
 mesh = {contact = 40e-6, receptor = 100e-6, interface = 200e-6, growth = 1.0, touching_half_arc = 1.0e-3}
@@ -160,16 +159,17 @@ def test_what_one_rank_raises_ends_all(tmp_path, rank):
 def test_full_disk(tmp_path):
     """ADIOS2 cannot write the first load's fields; a limit of file sizes stands for the disk."""
     code = "import resource, runpy, sys\nfrom fingerpad.startup import start; start()\n"
-    code += "resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))\n"
+    code += "resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))\n"
     code += "runpy.run_module('fingerpad', run_name='__main__')"
-    command = [sys.executable, "-c", code, "run", str(COARSE), "--out", str(tmp_path)]
+    (scene := tmp_path / "scene.toml").write_text(LONG, encoding="utf-8")
+    command = [sys.executable, "-c", code, "run", str(scene), "--out", str(tmp_path / "out")]
     done = subprocess.run(command, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True)
     assert done.returncode == 1
     said = done.stderr.strip()
     assert said.startswith("fingerpad: File too large: no more results can be written")
     assert "\n" not in said and len(said) < 300
-    assert len(accepted(tmp_path)) >= 1
-    assert not (tmp_path / "summary.json").exists()
+    assert len(accepted(tmp_path / "out")) >= 1
+    assert not (tmp_path / "out" / "summary.json").exists()
 
 
 def test_no_room_for_a_row(tmp_path):

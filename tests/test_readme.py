@@ -68,7 +68,6 @@ def test_claims_of_the_readme_are_those_of_its_pages():
     assert count is not None and count[1] in (ROOT / "docs" / "verification.md").read_text(encoding="utf-8")
 
 
-@pytest.mark.slow
 def test_own_laws_run_as_written(monkeypatch):
     """With another scene; each law acts: the gap is constant, and friction is its limit summed over the skin."""
     small = from_data(SMALL)
@@ -88,7 +87,6 @@ def test_own_laws_run_as_written(monkeypatch):
     assert low < abs(slip.f_t) < high
 
 
-@pytest.mark.slow
 def test_tutorial_prints_what_it_shows(tmp_path, monkeypatch):
     """One block after the other; numbers within 2 %, since the mesh may differ from one version of gmsh to the next."""
     monkeypatch.chdir(tmp_path)

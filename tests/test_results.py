@@ -1,6 +1,7 @@
 """What a run says of itself: of which state, under which loads, on which mesh, and nothing of a state it rejects."""
 
 import csv
+import json
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -38,9 +39,8 @@ def rows_of(folder: Path, name: str = "steps") -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-@pytest.fixture
-def titles(monkeypatch) -> dict[str, str]:
-    """Titles of the pictures that would be drawn, by file; of the surface's panels, by state."""
+def kept_titles(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
+    """Return titles of the pictures that later runs would draw, by file; of the surface's panels, by state."""
     found: dict[str, str] = {}
 
     def finger(path, snapshot, sites, title, ridges, highest):
@@ -56,6 +56,12 @@ def titles(monkeypatch) -> dict[str, str]:
     for module, function in (("finger", finger), ("skin", surface), ("history", history)):
         monkeypatch.setattr(getattr(drawing, f"{module}_picture"), function.__name__, function)
     return found
+
+
+@pytest.fixture
+def titles(monkeypatch) -> dict[str, str]:
+    """Titles of a run's pictures."""
+    return kept_titles(monkeypatch)
 
 
 # -- which full slip ---------------------------------------------------------------------------------------
@@ -158,7 +164,6 @@ COARSE_RUNS = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", COARSE_RUNS)
 def test_force_error_bounds_the_balance(tmp_path, name):
     """Bone, screen and cone of full slip agree within what the solve's tolerance guarantees, on coarse runs."""
@@ -222,27 +227,52 @@ def test_rejected_state_leaves_the_one_before(tmp_path, monkeypatch):
 
 
 # -- on which mesh -----------------------------------------------------------------------------------------
-@pytest.mark.slow
-def test_headline_states_are_shown_on_the_final_mesh(tmp_path, titles):
-    """And the path, with its own unknowns, on the mesh that it started from, each with its label."""
+@pytest.fixture(scope="module")
+def refined(tmp_path_factory) -> tuple[Path, dict, dict[str, str]]:
+    """A small finger with an accuracy: its folder, the summary on disk and the titles of its pictures."""
+    folder = tmp_path_factory.mktemp("refined")
     scene = from_data(SMALL | {"f_ext": 1.0, "voltage": 100.0, "accuracy": {"mu_app": 0.2}})
-    summary = run(scene, tmp_path, MPI.COMM_WORLD)
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        titles = kept_titles(monkeypatch)
+        run(scene, folder, MPI.COMM_WORLD)
+    return folder, json.loads((folder / "summary.json").read_text(encoding="utf-8")), titles
+
+
+def test_refined_states_come_with_their_errors(refined):
+    """Estimated from two re-solved meshes, within the accuracy; contact lengths have errors below their values."""
+    summary = refined[1]
+    assert "failure" not in summary
+    found = summary["accuracy"]
+    assert found["reached"]
+    assert 0 < summary["slip_mu_app_error"] <= 0.2 * summary["slip_mu_app"]
+    for name in ("normal_contact_length", "slip_contact_length"):
+        assert 0 < summary[f"{name}_error"] < summary[name]
+    assert set(found["quantities"]["normal_contact_length"]["shares"]) == {"contact", "bulk"}
+    assert set(found["quantities"]["slip_mu_app"]["shares"]) == {"contact", "bulk"}
+    again = found["solves"][1]
+    assert again["factorisations"] < found["solves"][0]["factorisations"] / 2
+    assert summary["slip_f_t"] == pytest.approx(0.25 * summary["slip_f_contact"], rel=1e-6)
+
+
+def test_headline_states_are_shown_on_the_final_mesh(refined):
+    """And the path, with its own unknowns, on the mesh that it started from, each with its label."""
+    folder, summary, titles = refined
     final = summary["accuracy"]["mesh"]["contact"]
     assert summary["path_mesh"]["contact"] == 40e-6 > final
     assert summary["unknowns_path"] < summary["unknowns"] == summary["accuracy"]["solves"][-1]["unknowns"]
-    assert {float(row["mesh_contact"]) for row in rows_of(tmp_path)} == {40e-6}
+    assert {float(row["mesh_contact"]) for row in rows_of(folder)} == {40e-6}
     path, end = "path on the starting mesh, contact size 40 µm", f"final mesh, contact size {final * 1e6:.3g} µm"
     for name in ("finger_press", "finger_charge", "finger_slide", "history", "Partial slip"):
         assert path in titles.get(name, path), name
     for name in ("finger_charged_normal_contact", "finger_full_slip", "Charged normal contact", "Full slip"):
         assert end in titles[name], name
-    ridges = [row for row in rows_of(tmp_path, "ridges_final") if row["of"] == "full_slip"]
+    ridges = [row for row in rows_of(folder, "ridges_final") if row["of"] == "full_slip"]
     assert sum(float(row["f_friction"]) for row in ridges) == pytest.approx(
         -summary["slip_f_t"], abs=summary["force_error"]
     )
     assert {float(row["mesh_contact"]) for row in ridges} == {final}
-    assert {row["of"] for row in rows_of(tmp_path, "receptors_final")} == {"charged", "full_slip"}
-    with np.load(tmp_path / "surface.npz") as arrays:
+    assert {row["of"] for row in rows_of(folder, "receptors_final")} == {"charged", "full_slip"}
+    with np.load(folder / "surface.npz") as arrays:
         x, p = arrays["slip_x"], arrays["slip_p"]
     known = np.isfinite(x[1:] + x[:-1])
     force = float((np.diff(x) * (p[1:] + p[:-1]) / 2)[known].sum())

@@ -27,7 +27,6 @@ def path():
     return keeper.solve()
 
 
-@pytest.mark.slow
 def test_lengths_by_ridge_are_the_length(path):
     """Each ridge of the nine at its place: the length in contact is their sum, and the central ones touch."""
     state = path.states["full_slip"]
@@ -39,7 +38,6 @@ def test_lengths_by_ridge_are_the_length(path):
     assert path.parts()["slip_contact_length"] is state.lengths
 
 
-@pytest.mark.slow
 def test_slip_that_is_never_steady_ends_with_the_slide(monkeypatch):
     """The bone never goes back to where the slide should have ended."""
     monkeypatch.setattr(full_slip, "_STEADY", -1.0)

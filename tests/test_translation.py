@@ -55,7 +55,6 @@ def at_the_start() -> Simulation:
     return slid(0.0, 1.0, 100.0, 1e-11)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("away", [1e-3, 10e-3])
 def test_forces_do_not_depend_on_where_the_finger_is(at_the_start, away):
     """Relative 1e-9 of the load, a hundred times the tolerance of the solve; before, the residual stalled above it."""
@@ -65,7 +64,6 @@ def test_forces_do_not_depend_on_where_the_finger_is(at_the_start, away):
     np.testing.assert_allclose(forces(moved), forces(at_the_start), rtol=0, atol=1e-9)
 
 
-@pytest.mark.slow
 def test_light_press_at_200_v_after_5_mm():
     """Half a newton a metre: friction is mu_0 times the contact force, to the solve's tolerance over some ridges."""
     made = slid(5e-3, 0.5, 200.0, 1e-9)
@@ -86,7 +84,6 @@ def test_translated_body_bears_no_force():
     np.testing.assert_array_equal(fem.assemble_vector(made.finger.problem.residual).array, 0.0)
 
 
-@pytest.mark.slow
 def test_solve_ends_at_its_floor(at_the_start):
     """A tolerance below roundoff: what is left is some units of it, is said, and the forces are the same."""
     made = slid(0.0, 1.0, 100.0, 1e-14)
@@ -102,7 +99,6 @@ def test_residual_that_stalls_above_roundoff_is_no_floor(monkeypatch):
         slid(0.0, 1.0, 100.0, 1e-15)
 
 
-@pytest.mark.slow
 def test_points_of_little_friction_come_to_stick():
     """At mu_0 = 0.002 a point sticks within 0.1 nm. The press goes on in full steps, and nothing is taken for a jump.
 
