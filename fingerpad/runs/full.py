@@ -75,7 +75,7 @@ def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console) -> Resu
                 restart = attempt.follow()
                 if restart is None:
                     break
-                restarts.record(restart, attempt, clock)
+                restarts.record(restart, attempt.report.record.states, attempt.simulation.finger, clock)
                 writer.restart()
                 present, options = restart.scene, restart.options
             result = attempt.result(scene, restarts)

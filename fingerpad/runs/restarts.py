@@ -1,14 +1,14 @@
 """Restarts of a run: all loads again, since an omitted part of the model turned out to matter."""
 
 import logging
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 from fingerpad.io.console import Console
 from fingerpad.model.cost import Clock
+from fingerpad.model.finger import Finger
 from fingerpad.model.simulation import RestartRequired
-
-if TYPE_CHECKING:
-    from fingerpad.runs.attempt import Attempt
+from variational.state import ContactState
 
 
 class Restarts:
@@ -26,15 +26,16 @@ class Restarts:
         self.notes: list[str] = []
         self._seconds = 0.0
 
-    def record(self, restart: RestartRequired, attempt: "Attempt", clock: Clock) -> None:
+    def record(self, restart: RestartRequired, states: Sequence[ContactState], finger: Finger, clock: Clock) -> None:
         """Record a restart; collective.
 
         Args:
             restart: what is to be added, and why.
-            attempt: the run until here.
+            states: accepted until here.
+            finger: with the model until here.
             clock: of the run.
         """
-        states, finger, mesh = attempt.report.record.states, attempt.simulation.finger, restart.scene.mesh
+        mesh = restart.scene.mesh
         step, load = (states[-1].step, states[-1].load) if states else (0, "start")
         whole, seconds = restart.options.both_halves, clock.processor_seconds()
         halves = " and both halves of the finger" if whole and not finger.options.both_halves else ""

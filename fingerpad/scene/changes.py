@@ -1,33 +1,33 @@
 """From a scene and changes of some keys to the data of another scene; element sizes of a coarse start."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fingerpad.scene.contradictions import DEFAULT_HISTORY
-from fingerpad.scene.parameters import FORMULATION_KEYS
-from fingerpad.scene.reading import plain
-
-if TYPE_CHECKING:
-    from fingerpad.scene.scene import Scene
+from fingerpad.scene.parameters import FORMULATION_KEYS, Accuracy
 
 _START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}  # m, but for the growth
 _START_AT_SITES = 10e-6  # m; coarser elements do not resolve the tips of 6 µm: halving them does not show the error
 
 
-def changed(scene: "Scene", changes: Mapping[str, Any]) -> dict[str, Any]:
+def changed(
+    present: Mapping[str, Any], accuracy: Accuracy | None, formulation: str, changes: Mapping[str, Any]
+) -> dict[str, Any]:
     """Return the data of a scene with changes, without the keys that the changes make meaningless.
 
     Args:
-        scene: the present one.
+        present: the keys that are given so far.
+        accuracy: the present one.
+        formulation: the present one, of the contact.
         changes: values by key, as for :meth:`fingerpad.scene.Scene.replace`.
     """
-    present = plain(scene)
-    if "accuracy" in changes and scene.accuracy is not None:
-        coarse = start(scene.accuracy.tolerances())
+    present = dict(present)
+    if "accuracy" in changes and accuracy is not None:
+        coarse = start(accuracy.tolerances())
         present["mesh"] = {key: size for key, size in present.get("mesh", {}).items() if coarse.get(key) != size}
     if changes.get("history") is not None:
         present = {key: value for key, value in present.items() if key not in DEFAULT_HISTORY}
-    contact, formulation = changes.get("contact"), scene.contact.formulation
+    contact = changes.get("contact")
     if isinstance(contact, Mapping) and contact.get("formulation", formulation) != formulation:
         present["contact"] = {
             key: value for key, value in present.get("contact", {}).items() if key not in FORMULATION_KEYS

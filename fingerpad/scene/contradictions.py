@@ -1,61 +1,71 @@
 """Keys of a scene that contradict each other although each is within its own bounds."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from fingerpad.scene.load_names import first_clash
+from fingerpad.scene.materials import Roughness
 from fingerpad.scene.messages import show
-
-if TYPE_CHECKING:
-    from fingerpad.scene.scene import Scene
+from fingerpad.scene.parameters import Accuracy, Load, Output
 
 DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 """Keys of the default loads, which a history replaces."""
 _LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
 
 
-def refuse_contradictions(scene: "Scene") -> None:
+def refuse_contradictions(
+    accuracy: Accuracy | None,
+    output: Output,
+    roughness: Roughness,
+    h_0: float,
+    history: Sequence[Load] | None,
+    given: Mapping[str, Any],
+) -> None:
     """Refuse the first contradiction between keys.
+
+    Args:
+        accuracy: table of the scene, likewise ``output``, ``roughness`` and ``history``.
+        output: see there.
+        roughness: see there.
+        h_0: effective insulator thickness (m).
+        history: see there.
+        given: the values of :data:`DEFAULT_HISTORY` that are given.
 
     Raises:
         ValueError: the keys, their values and the remedy.
     """
-    _refuse_accuracy(scene)
-    _refuse_endless_gap(scene)
-    if scene.history is not None:
-        _refuse_history(scene)
-        _refuse_floating(scene)
+    _refuse_accuracy(accuracy, output)
+    _refuse_endless_gap(roughness, h_0)
+    if history is not None:
+        _refuse_history(history, given)
+        _refuse_floating(history)
 
 
-def _refuse_accuracy(scene: "Scene") -> None:
+def _refuse_accuracy(accuracy: Accuracy | None, output: Output) -> None:
     """Refuse an accuracy of receptor sites that are not there."""
-    if scene.accuracy is None:
-        return
-    if scene.accuracy.sed is not None and not scene.output.receptors:
+    if accuracy is not None and accuracy.sed is not None and not output.receptors:
         raise ValueError(
-            f"accuracy.sed is {show(scene.accuracy.sed)} and output.receptors is false, without which there are no "
+            f"accuracy.sed is {show(accuracy.sed)} and output.receptors is false, without which there are no "
             "sites; leave out one of the two"
         )
 
 
-def _refuse_endless_gap(scene: "Scene") -> None:
+def _refuse_endless_gap(roughness: Roughness, h_0: float) -> None:
     """Refuse a roughness that holds the air gap of an unloaded ridge at more than a metre."""
-    gap = scene.roughness.largest_gap(scene.h_0)
+    gap = roughness.largest_gap(h_0)
     if not gap < _LARGEST_GAP:
         raise ValueError(
-            f"roughness.p_floor is {show(scene.roughness.p_floor)}, where the air gap would be held at {gap:.3g} m; "
+            f"roughness.p_floor is {show(roughness.p_floor)}, where the air gap would be held at {gap:.3g} m; "
             f"it must be below {_LARGEST_GAP:g} m: take a larger p_floor, or a smaller gamma or h_rms"
         )
 
 
-def _refuse_history(scene: "Scene") -> None:
+def _refuse_history(history: Sequence[Load], given: Mapping[str, Any]) -> None:
     """Refuse a history beside keys of the default loads, without a first height, or with two loads of one name."""
-    history = scene.history or ()
-    for name in DEFAULT_HISTORY:
-        if name in scene.model_fields_set:
-            raise ValueError(
-                f"{name} is {show(getattr(scene, name))} and history is given too; "
-                "with a history each load states its own values"
-            )
+    for name, value in given.items():
+        raise ValueError(
+            f"{name} is {show(value)} and history is given too; with a history each load states its own values"
+        )
     first = history[0]
     if first.f_ext is None and first.bone_height is None:
         raise ValueError(
@@ -71,10 +81,10 @@ def _refuse_history(scene: "Scene") -> None:
         )
 
 
-def _refuse_floating(scene: "Scene") -> None:
+def _refuse_floating(history: Sequence[Load]) -> None:
     """Refuse loads that leave the bone neither held nor pressed nor attracted."""
     f_ext, voltage = None, 0.0
-    for k, load in enumerate(scene.history or ()):
+    for k, load in enumerate(history):
         if load.f_ext is not None or load.bone_height is not None:
             f_ext = load.f_ext
         voltage = voltage if load.voltage is None else load.voltage

@@ -81,7 +81,8 @@ class Scene(Part):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
-        refuse_contradictions(self)
+        given = {name: getattr(self, name) for name in DEFAULT_HISTORY if name in self.model_fields_set}
+        refuse_contradictions(self.accuracy, self.output, self.roughness, self.h_0, self.history, given)
         return self
 
     def replace(self, **changes: Any) -> "Scene":
@@ -98,7 +99,7 @@ class Scene(Part):
         Raises:
             SceneError: the first key at fault, or one in whose place the scene has a law.
         """
-        found = Scene(**changed(self, changes))
+        found = Scene(**changed(plain(self), self.accuracy, self.contact.formulation, changes))
         for name, value in (self.__pydantic_private__ or {}).items():
             setattr(found, name, value)
         if "friction" in changes:
