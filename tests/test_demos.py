@@ -29,7 +29,14 @@ def run(demo: Path, out: Path) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize("demo", DEMOS, ids=lambda demo: demo.stem)
+LONG = "accuracy_and_reduced_models"
+
+
+@pytest.mark.parametrize(
+    "demo",
+    [pytest.param(demo, marks=pytest.mark.long) if demo.stem == LONG else demo for demo in DEMOS],
+    ids=lambda demo: demo.stem,
+)
 def test_demo(demo, tmp_path):
     """Each but the first run leaves a picture."""
     assert run(demo, tmp_path)

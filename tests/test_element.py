@@ -28,7 +28,6 @@ from variational.solvers.equations import Control, Equations
 from variational.solvers.newton import Solver
 from variational.surface import Surface
 
-pytestmark = pytest.mark.mpi
 WIDTH, HEIGHT = 1e-3, 0.5e-3
 G_0, ALPHA, EPS_N = 86.76e3, -14.53, 1e12
 SOFT, HARD, NAIL = 1, 2, 3
@@ -100,6 +99,7 @@ def norm(values) -> float:
 
 
 @pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.mpi
 def test_jacobian(element):
     """Of the whole linear system, rim and pressures included: the remainder is of second order in the step.
 
@@ -122,6 +122,7 @@ def test_jacobian(element):
     np.testing.assert_allclose(np.log2(np.divide(remainders[:-1], remainders[1:])), 2, atol=0.02)
 
 
+@pytest.mark.mpi
 def test_residual_is_the_energys_derivative():
     """With the pressure among the unknowns too: what the energy has left after its first-order term is of second."""
     solver = layered("P2-P1", eps_n=0.0)
@@ -146,6 +147,7 @@ def test_residual_is_the_energys_derivative():
     np.testing.assert_allclose(np.log2(np.divide(remainders[:-1], remainders[1:])), 2, atol=0.1)
 
 
+@pytest.mark.mpi
 def test_mixed_jacobian_is_symmetric():
     """Displacement and pressure derive from one energy. Tolerance: roundoff."""
     solver = layered("P2-P1", eps_n=0.0)
@@ -193,6 +195,7 @@ def pressed(request) -> Solver:
     return solver
 
 
+@pytest.mark.mpi
 def test_patch_of_layers(pressed):
     """Each layer is homogeneous, and the pressure jumps between them: exact for all.
 
@@ -201,6 +204,7 @@ def test_patch_of_layers(pressed):
     np.testing.assert_allclose(Observer(pressed.problem).state().p_n, 10e3, rtol=1e-8)
 
 
+@pytest.mark.mpi
 def test_stress_of_layers(pressed):
     """The sampled stress is each layer's own confined compression; the nail has no pressure to go wrong.
 
@@ -223,6 +227,7 @@ def test_stress_of_layers(pressed):
             np.testing.assert_allclose(found[cells, component], lateral, rtol=1e-6)
 
 
+@pytest.mark.mpi
 def test_pressures_are_numbered_by_layer():
     """One unknown a vertex and layer: 9 x 2 and 9 x 3 vertices of the skins, none in the nail."""
     solver, plain = layered("P2-P1"), layered("P2")
@@ -230,6 +235,7 @@ def test_pressures_are_numbered_by_layer():
     assert solver.layout.global_size == plain.layout.global_size + 9 * 2 + 9 * 3
 
 
+@pytest.mark.mpi
 def test_pressure_is_compiled_once():
     """Its scale, which goes with the mesh and the moduli, is no part of the compiled forms."""
     signatures = set()
@@ -250,6 +256,7 @@ def pressed_layers(element, comm=MPI.COMM_WORLD) -> Problem:
     return solver.problem
 
 
+@pytest.mark.mpi
 def test_same_on_any_number_of_ranks():
     """Mixed elements: the force of all ranks together is that of each alone. Tolerance: some hundred imbalances."""
     together, alone = (
@@ -260,6 +267,7 @@ def test_same_on_any_number_of_ranks():
 
 
 @pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.mpi
 def test_sampled_density_is_the_energys(element):
     """What receptors and fields show integrates to the energy that was made stationary.
 

@@ -57,7 +57,7 @@ def test_killed(tmp_path):
     assert not (tmp_path / "summary.json").exists()
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize("number", [signal.SIGTERM, pytest.param(signal.SIGINT, marks=pytest.mark.long)])
 def test_asked_to_stop(tmp_path, number):
     """The run ends after the step it is at, names the signal, and leaves a summary."""
     with start(tmp_path) as process:
@@ -72,6 +72,7 @@ def test_asked_to_stop(tmp_path, number):
     assert len(accepted(tmp_path)) == summary["steps"] >= GOOD
 
 
+@pytest.mark.long
 def test_several_signals_at_once_are_one(tmp_path):
     """Terminals, launchers and batch systems send more than one; another one a second later would act at once."""
     with start(tmp_path) as process:
@@ -143,7 +144,7 @@ run(load(Path(sys.argv[1])), Path(sys.argv[2]), MPI.COMM_WORLD)
 """
 
 
-@pytest.mark.parametrize("rank", [0, 1])
+@pytest.mark.parametrize("rank", [pytest.param(0, marks=pytest.mark.long), 1])
 def test_what_one_rank_raises_ends_all(tmp_path, rank):
     """The other one waits in a collective call."""
     (scene := tmp_path / "scene.toml").write_text(LONG, encoding="utf-8")

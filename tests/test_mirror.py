@@ -200,6 +200,7 @@ def fingers(tmp_path_factory):
     return (half, whole), folders
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "rel"), [("f_ext", 0.03), ("f_contact", 0.03), ("f_electrostatic", 0.03), ("contact_length", 0.1)]
 )
@@ -214,6 +215,7 @@ def test_half_the_finger_has_the_whole_s_numbers(fingers, name, rel):
     assert half[key] == pytest.approx(whole[key], rel=rel)
 
 
+@pytest.mark.long
 def test_half_the_finger_has_the_whole_s_tables(fingers):
     _, (half, whole) = fingers
     for name in ("ridges", "receptors"):
@@ -227,6 +229,7 @@ def test_half_the_finger_has_the_whole_s_tables(fingers):
     assert {path.name for path in half.iterdir()} == {path.name for path in whole.iterdir()}
 
 
+@pytest.mark.long
 def test_half_the_finger_comes_with_its_error(fingers):
     """Two halves of a length are not known better than one: of the size of the whole's, of which a facet is a fifth."""
     half, whole = (summary["normal_contact_length_error"] for summary in fingers[0])
@@ -234,6 +237,7 @@ def test_half_the_finger_comes_with_its_error(fingers):
     assert set(fingers[0][0]["accuracy"]["quantities"]) >= {"normal_contact_length", "normal_sed_0", "normal_sed_1"}
 
 
+@pytest.mark.long
 def test_half_the_finger_costs_half(fingers):
     (half, whole), _ = fingers
     assert half["unknowns"] < 0.55 * whole["unknowns"]

@@ -192,6 +192,7 @@ def test_run_without_receptors(pressed, tmp_path, capsys):
     assert capsys.readouterr().out.count("output.receptors is false") == 1
 
 
+@pytest.mark.long
 def test_unknowns_spared_without_receptors(coarse):
     """With elements of 20 um at the sites, as by default, they are a twelfth of this coarse mesh and more."""
     size = coarse.model_copy(update={"receptor": 20e-6})

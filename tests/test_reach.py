@@ -115,6 +115,7 @@ def test_run_reports_what_was_left_out(lean):
     assert summary["parameters"]["mesh"]["touching_half_arc"] is None
 
 
+@pytest.mark.long
 def test_same_answer_with_fewer_unknowns(lean, tmp_path):
     """As with ridges -10 to 10, on meshes that differ from ridge 4 on.
 

@@ -164,7 +164,9 @@ COARSE_RUNS = {
 }
 
 
-@pytest.mark.parametrize("name", COARSE_RUNS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.long) if name == "heavy" else name for name in COARSE_RUNS]
+)
 def test_force_error_bounds_the_balance(tmp_path, name):
     """Bone, screen and cone of full slip agree within what the solve's tolerance guarantees, on coarse runs."""
     data = LEAN | {"f_ext": 1.0, "voltage": 100.0} | COARSE_RUNS[name]

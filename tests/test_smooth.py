@@ -62,6 +62,7 @@ def rough(voltage: float, contact: float):
     return from_data(SCENE | {"voltage": voltage, "roughness": ROUGH, "mesh": mesh})
 
 
+@pytest.mark.long
 def test_facets_that_lose_the_ridge_are_refused(tmp_path):
     """At 200 V a lifted ridge of facets of 20 um is lost while it is pressed on the screen: no answer comes of that."""
     with pytest.raises(SceneError, match=r"mesh.contact is 2e-05 m, .* is lost at .*; give a mesh.contact of 1e-05 m"):

@@ -55,7 +55,7 @@ def at_the_start() -> Simulation:
     return slid(0.0, 1.0, 100.0, 1e-11)
 
 
-@pytest.mark.parametrize("away", [1e-3, 10e-3])
+@pytest.mark.parametrize("away", [1e-3, pytest.param(10e-3, marks=pytest.mark.long)])
 def test_forces_do_not_depend_on_where_the_finger_is(at_the_start, away):
     """Relative 1e-9 of the load, a hundred times the tolerance of the solve; before, the residual stalled above it."""
     moved = slid(away, 1.0, 100.0, 1e-11)
@@ -92,6 +92,7 @@ def test_solve_ends_at_its_floor(at_the_start):
     np.testing.assert_allclose(forces(made), forces(at_the_start), rtol=0, atol=1e-10)
 
 
+@pytest.mark.long
 def test_residual_that_stalls_above_roundoff_is_no_floor(monkeypatch):
     """With a thousandth of the roundoff allowed, the same solve finds no equilibrium."""
     monkeypatch.setattr(iteration, "_ROUNDINGS", 1e-3)

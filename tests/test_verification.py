@@ -13,7 +13,14 @@ from benchmarks.verification.case import Case, Row
 CASES = [case for cases in AREAS.values() for case in cases]
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+LONG = ("Closed cycle", "Convergence of the contact pressure", "Three Ogden terms")
+
+
+@pytest.mark.parametrize(
+    "case",
+    [pytest.param(case, marks=pytest.mark.long) if case.name in LONG else case for case in CASES],
+    ids=lambda case: case.name,
+)
 def test_case(case):
     """Every number is within the tolerance that its row explains."""
     rows = case.run(True)
