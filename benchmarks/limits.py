@@ -35,7 +35,7 @@ from fingerpad.accuracy.recompute import Solve, StateRecorder, solve_again
 from fingerpad.io.files import replace
 from fingerpad.io.states import PREFIXES
 from fingerpad.model.finger import Step
-from fingerpad.model.options import plan
+from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.runs.batch import key
 from fingerpad.runs.processes import End, Pool, limit_processor_time, run
@@ -137,7 +137,7 @@ def _path(scene: Scene) -> Solve:
     for contact in _STARTS:
         sizes = start({}) | {"receptor": 2 * _FIRST["receptor"], "contact": contact}
         coarse = scene.model_copy(update={"mesh": scene.mesh.model_copy(update=sizes)})
-        simulation = Simulation(coarse, plan(scene), MPI.COMM_WORLD, on_step, on_load)
+        simulation = Simulation(FingerModel(coarse, plan(scene)), MPI.COMM_WORLD, on_step, on_load)
         recorder = StateRecorder(simulation)
         try:
             restart = simulation.run()
@@ -150,8 +150,10 @@ def _path(scene: Scene) -> Solve:
 
 
 def _solve(scene: Scene, levels: int) -> dict[str, Any]:
+    model = FingerModel(scene, plan(scene))
+
     def again(mesh: MeshSize, before: Solve) -> Solve:
-        return solve_again(scene.model_copy(update={"mesh": mesh}), plan(scene), before.states, MPI.COMM_WORLD)
+        return solve_again(model.changed(mesh=mesh), before.states, MPI.COMM_WORLD)
 
     def summary(solve: Solve) -> dict[str, Any]:
         ridges = {f"{PREFIXES[name]}_ridges_in_contact": s.state.ridges_in_contact for name, s in solve.states.items()}

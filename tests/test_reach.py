@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
-from fingerpad.model.options import plan
+from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import by_rule, left_out
+from fingerpad.model.touching import by_rule
 from fingerpad.scene import Scene, from_data
 from geometry.profiles import GeometryError
 from geometry.sizing import touching_ridges
@@ -86,14 +86,16 @@ def test_number_that_is_given_stands():
 
 def test_undecided_finger_is_refused():
     with pytest.raises(GeometryError, match="touching_half_arc is not given"):
-        Simulation(Scene(), plan(Scene()), COMM, lambda step, done: None, lambda: None)
+        Simulation(FingerModel(Scene(), plan(Scene())), COMM)
 
 
 # -- what is left out ------------------------------------------------------------------------------------------
 @pytest.mark.parametrize(("half_arc", "words"), [(1.3e-3, ["contact of the ridges beyond ±3"]), (0.1, [])])
 def test_ridges_left_out_are_named(half_arc, words):
     scene = from_data({"mesh": {"touching_half_arc": half_arc}})
-    assert [omission.what for omission in left_out(scene)] == words
+    needed = plan(scene)
+    omitted = FingerModel(scene, needed).omitted
+    assert [omission.what for omission in omitted[len(needed.omitted) :]] == words
 
 
 # -- runs ------------------------------------------------------------------------------------------------------

@@ -16,7 +16,7 @@ from fingerpad.io.states import RESULTS, named
 from fingerpad.io.views import Profile
 from fingerpad.model import full_slip, report
 from fingerpad.model.balance import force_error
-from fingerpad.model.options import plan
+from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data
 from tests.runs import run
@@ -129,7 +129,7 @@ TURN = {"name": "turn", "bone_x": 0.258e-3}  # after 0.26 mm: too little for a s
 def test_errors_are_estimated_of_the_headline(more, load):
     """The states kept for it are the last full slip that was held and normal contact, not those of another load."""
     scene = from_data(LEAN | {"history": [PRESS, SLIDE, *more]})
-    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: keeper.record(step), lambda: None)
+    simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD, lambda step, done: keeper.record(step))
     keeper = StateRecorder(simulation)
     simulation.run()
     found, kept = named(simulation.states), keeper.solve().states
@@ -146,7 +146,7 @@ def test_probe_of_full_slip_leaves_no_trace(monkeypatch):
     scene = from_data(LEAN | {"history": [PRESS, CHARGE, *slides]})
     probed, plain = [], []
     for rows in (probed, plain):
-        simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
+        simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
         simulation.run()
         rows += [state.row() for state in simulation.states]
         monkeypatch.setattr(full_slip.FullSlip, "_holds", lambda self: False)
