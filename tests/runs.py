@@ -1,6 +1,7 @@
 """A run of the full model as tests look at it: its summary, as it is on disk."""
 
-from contextlib import ExitStack
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -15,6 +16,15 @@ from fingerpad.scene import Scene
 PICTURES = ((finger_picture, "finger"), (skin_picture, "surface"), (history_picture, "history"))
 
 
+@contextmanager
+def no_pictures() -> Iterator[None]:
+    """Leave the files of a run's pictures empty: to draw them takes two seconds, more than a small finger does."""
+    with ExitStack() as stack:
+        for module, name in PICTURES:
+            stack.enter_context(patch.object(module, name, touch))
+        yield
+
+
 def touch(path: Path, *args: Any, **options: Any) -> None:
     """Leave a picture's file empty."""
     Path(path).touch()
@@ -23,13 +33,8 @@ def touch(path: Path, *args: Any, **options: Any) -> None:
 def run(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, pictures: bool = False) -> dict[str, Any]:
     """Return the summary of a run into a folder; the files of its pictures are empty.
 
-    To draw them takes two seconds, more than a small finger does. Commands and demos draw theirs. With ``pictures``
-    they are built all the same.
+    Commands and demos draw theirs. With ``pictures`` they are built, and not written.
     """
-    with ExitStack() as stack:
-        if pictures:
-            stack.enter_context(patch.object(Figure, "savefig", lambda figure, path, **options: touch(path)))
-        else:
-            for module, name in PICTURES:
-                stack.enter_context(patch.object(module, name, touch))
+    built = patch.object(Figure, "savefig", lambda figure, path, **options: touch(path))
+    with built if pictures else no_pictures():
         return full.run(scene, folder, comm).to_dict()
