@@ -52,12 +52,8 @@ STUDIES: dict[str, tuple[str, float, str, Sequence[float]]] = {  # heading, unit
 # -- numbers -------------------------------------------------------------------------------------------------
 def study(name: str) -> dict[float, Scene]:
     """Return the scenes of a study by the value of its setting, from coarse to fine."""
-
-    mesh, key = (
-        {"mesh.contact": AT, "mesh.receptor": AT_SITES},
-        "contact.eps_n" if name == "penalty" else f"mesh.{name}",
-    )
-    return {value: by_rule(load(None, mesh | {key: value})) for value in STUDIES[name][3]}
+    key, at = "contact.eps_n" if name == "penalty" else f"mesh.{name}", {"mesh.contact": AT, "mesh.receptor": AT_SITES}
+    return {value: by_rule(load(None, at | {key: value})) for value in STUDIES[name][3]}
 
 
 def values(run: Run) -> dict[str, float]:
@@ -78,11 +74,9 @@ def lengths(run: Run, state: str) -> Array:
 
 
 def reference(again: Mapping[str, Any], whole: Mapping[str, float]) -> dict[str, Limit]:
-    """Return the limits of the default scene's quantities.
+    """Return the limits of the default scene's quantities from its states solved ``again`` and its ``whole`` run.
 
-    Args:
-        again: its states solved again, of :func:`benchmarks.limits.solve_all`.
-        whole: its whole run. What the coarse path changes on the default mesh is added to the error bar.
+    What the coarse path changes on the default mesh is added to the error bar.
     """
     ends, own = limits.limits(again), again["own"]["values"]
     return {n: Limit(ends[n].value, ends[n].bar + abs(own[n] - whole[n]), ends[n].order) for n in QUANTITIES}

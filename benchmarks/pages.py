@@ -20,9 +20,7 @@ PAGES = {
     "models": "benchmarks.models",
     "paper": "benchmarks.paper.page",
     "peers": "benchmarks.peers.page",
-    "sensitivity": "benchmarks.sensitivity",
     "stability": "benchmarks.stability.page",
-    "topography": "benchmarks.topography",
     "verification": "benchmarks.verification.page",
 }
 

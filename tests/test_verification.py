@@ -13,7 +13,7 @@ from benchmarks.verification.case import Case, Row
 CASES = [case for cases in AREAS.values() for case in cases]
 
 
-LONG = ("Closed cycle", "Convergence of the contact pressure", "Three Ogden terms")
+LONG = ("Convergence of the contact pressure",)
 
 
 @pytest.mark.parametrize(

@@ -10,22 +10,18 @@ from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 
 Status = Literal["converged", "continuation", "failed"]
-REFERENCE_SIZE = 1.25e-6
-"""Contact size (m) of the run with which others are compared."""
+REFERENCE_SIZE = 1.25e-6  # m, contact size of the run with which others are compared
 
 
 @dataclass(frozen=True)
 class Treatment:
-    """A formulation of the contact, with its one numerical parameter: five decades of it are on the map.
-
-    Only what is ``everywhere`` is on every chart, not on that of its parameter alone.
-    """
+    """A formulation of the contact, with its one numerical parameter: five decades of it are on the map."""
 
     label: str
     default: float
     values: tuple[float, ...]
     law: Callable[[float], Formulation]
-    everywhere: bool = True
+    everywhere: bool = True  # on every chart, not on that of its parameter alone
 
 
 _EPS_N = (1.5e10, 1.5e11, 1.5e12, 1.5e13, 1.5e14, 1.5e15)
@@ -45,36 +41,24 @@ ELEMENTS = ("P1", "P2", "P2 reduced", "P2-P1")
 
 @dataclass(frozen=True)
 class Case:
-    """A strip pressed, charged and dragged to full slip; SI units, forces per ridge and out-of-plane length.
-
-    Attributes:
-        force: the finger's 75 N/m over its 17 ridges in contact (N/m).
-        indentation: if not zero, the bone is lowered by so much (m) instead of being pressed by the force.
-        detour: if not zero, a voltage (V) reached between the press and the final voltage.
-        nu: Poisson's ratio of all layers.
-        step_scale: factor on the largest steps of force, voltage and sliding.
-        slide: farthest the bone slides towards full slip (m); zero for no sliding.
-        height: of the strip (m).
-        sides: lateral faces moved sideways with the bone and free to slide up and down, or free.
-        pseudo_transient: whether pseudo-transient continuation is allowed.
-    """
+    """A strip pressed, charged and dragged to full slip; SI units, forces per ridge and out-of-plane length."""
 
     formulation: str = "penalty"
     parameter: float = 1.5e12
     element: str = "P2"
     contact_size: float = 5e-6
-    force: float = 4.4
-    indentation: float = 0.0
+    force: float = 4.4  # the finger's 75 N/m over its 17 ridges in contact
+    indentation: float = 0.0  # if not zero, the bone is lowered by so much instead of being pressed by the force
     voltage: float = 200.0
-    detour: float = 0.0
-    nu: float = 0.48
+    detour: float = 0.0  # if not zero, a voltage reached between the press and the final voltage
+    nu: float = 0.48  # Poisson's ratio of all layers
     mu_f: float = 0.25
-    step_scale: float = 1.0
-    slide: float = 1e-3
+    step_scale: float = 1.0  # factor on the largest steps of force, voltage and sliding
+    slide: float = 1e-3  # farthest the bone slides towards full slip; zero for no sliding
     ridges: int = 1
     height: float = 1.5e-3
-    sides: Literal["carried", "free"] = "carried"
-    pseudo_transient: bool = True
+    sides: Literal["carried", "free"] = "carried"  # lateral faces: moved sideways with the bone, free up and down
+    pseudo_transient: bool = True  # whether pseudo-transient continuation is allowed
 
     @property
     def changed(self) -> dict[str, Any]:
@@ -90,28 +74,20 @@ class Case:
 
 @dataclass
 class Outcome:
-    """What became of a case; lengths in m, forces per out-of-plane length in N/m, of the last accepted state.
+    """What became of a case; lengths in m, forces per out-of-plane length in N/m, of the last accepted state."""
 
-    Attributes:
-        status: reached by Newton's method, with the help of pseudo-transient continuation, or not at all.
-        reason: name of the failure, for example that of SNES.
-        load: in which the run ended.
-        seconds: processor time (s).
-        jumps: solves that needed pseudo-transient continuation.
-        inverted: failed solves in which steps led to J <= 0, by the layer with the least J in the end.
-    """
-
-    status: Status
-    reason: str = ""
+    status: Status  # reached by Newton's method, with the help of pseudo-transient continuation, or not at all
+    reason: str = ""  # name of the failure, for example that of SNES
     message: str = ""
-    load: str = ""
+    load: str = ""  # in which the run ended
     full_slip: bool = False
     seconds: float = 0.0
     steps: int = 0
     newton: int = 0
     factorisations: int = 0
     cutbacks: int = 0
-    jumps: int = 0
+    jumps: int = 0  # solves that needed pseudo-transient continuation
+    # Failed solves in which steps led to J <= 0, by the layer with the least J in the end.
     inverted: dict[str, int] = field(default_factory=dict)
     penetration: float = 0.0
     f_ext: float = 0.0

@@ -6,8 +6,7 @@ from typing import Any
 
 from benchmarks.stability.case import ELEMENTS, FORMULATIONS, Case
 
-MOST = 400
-"""Solves of the whole map, references included."""
+MOST = 400  # solves of the whole map, references included
 DEFAULT = Case()
 
 
@@ -47,10 +46,8 @@ class Panel:
 
 @dataclass(frozen=True)
 class Named:
-    """A known failure: what the runs show, the runs by name, and whether it takes references to show it."""
+    """Runs by name, and whether it takes references to show what they are for."""
 
-    name: str
-    says: str
     cases: Mapping[str, Case]
     referenced: bool = False
 
@@ -84,8 +81,8 @@ def charts() -> dict[str, list[Panel]]:
     return found | {BY_ELEMENT: [Panel(e, replace(DEFAULT, element=e), nu, FEW_SIZES) for e, nu in ratios.items()]}
 
 
-def named() -> list[Named]:
-    """Return the known failures with the runs that reproduce them."""
+def named() -> dict[str, Named]:
+    """Return the known failures by name, with the runs that reproduce them."""
     coarse = replace(DEFAULT, contact_size=10e-6)
     free = replace(coarse, sides="free")
     squeezed = replace(free, indentation=30e-6, voltage=0.0, slide=0.0)
@@ -93,53 +90,27 @@ def named() -> list[Named]:
     trailing = replace(free, ridges=3, force=1.0)
     ways = {"up to 200 V": 0.0, "up to 400 V, down to 200 V": 400.0}
     edges = [(5e-6, "P2"), (20e-6, "P2"), (40e-6, "P2"), (20e-6, "P1")]
-    return [
-        Named(
-            "locking",
-            "Locking of first-order elements near ν = 0.5: force at a given indentation of 30 µm, free sides, 10 µm.",
-            {f"{e}, ν = {nu}": replace(squeezed, element=e, nu=nu) for nu in (0.48, 0.4999) for e in ELEMENTS},
-            referenced=True,
-        ),
-        Named(
-            "penalty",
-            "Ill-conditioning at high penalty, 10 µm.",
-            {f"ε_n = {e:g} Pa/m": replace(coarse, parameter=e) for e in (1.5e12, 1.5e14, 1.5e16, 1.5e18)},
-        ),
-        Named(
-            "coercivity",
-            "Nitsche's method below its coercivity limit, 10 µm: θ = 0 loses its equilibria, θ = -1 is stable for any "
-            "γ_0 in the linear problem.",
-            {
-                f"{theta}, γ_0 = {gamma_0:g}": replace(coarse, formulation=f"Nitsche, {theta}", parameter=gamma_0)
-                for theta in ("θ = 0", "θ = -1")
-                for gamma_0 in (0.01, 0.1, 10.0)
-            },
-        ),
-        Named(
-            "edge",
-            "The contact's edge trapped between the nodes of coarse surfaces when voltage should move it: pressed by "
-            "1 N/m and charged, without friction and sliding. The way to 200 V should not matter.",
-            {
-                f"{h * 1e6:g} µm, {e}, {way}": replace(smooth, contact_size=h, element=e, detour=ways[way])
-                for h, e in edges
-                for way in ways
-            },
-            referenced=True,
-        ),
-        Named(
-            "snap-off",
-            "Newton's method cycling when a trailing ridge snaps off: three ridges with free sides, 1 N/m each, 10 µm.",
-            {
-                "with pseudo-transient continuation": trailing,
-                "Newton alone, with cutback": replace(trailing, pseudo_transient=False),
-            },
-        ),
-        Named(
-            "inversion",
-            "J <= 0 in the dermis under a large force: three ridges with free sides under 20 N/m each, 0 V, 10 µm.",
-            {"20 N/m a ridge": replace(trailing, force=20.0, voltage=0.0)},
-        ),
-    ]
+    locking = {f"{e}, ν = {nu}": replace(squeezed, element=e, nu=nu) for nu in (0.48, 0.4999) for e in ELEMENTS}
+    penalty = {f"ε_n = {e:g} Pa/m": replace(coarse, parameter=e) for e in (1.5e12, 1.5e14, 1.5e16, 1.5e18)}
+    coercivity = {
+        f"{theta}, γ_0 = {gamma_0:g}": replace(coarse, formulation=f"Nitsche, {theta}", parameter=gamma_0)
+        for theta in ("θ = 0", "θ = -1")
+        for gamma_0 in (0.01, 0.1, 10.0)
+    }
+    edge = {
+        f"{h * 1e6:g} µm, {e}, {way}": replace(smooth, contact_size=h, element=e, detour=detour)
+        for h, e in edges
+        for way, detour in ways.items()
+    }
+    alone = replace(trailing, pseudo_transient=False)
+    return {
+        "locking": Named(locking, referenced=True),
+        "penalty": Named(penalty),
+        "coercivity": Named(coercivity),
+        "edge": Named(edge, referenced=True),
+        "snap-off": Named({"with pseudo-transient continuation": trailing, "Newton alone, with cutback": alone}),
+        "inversion": Named({"20 N/m a ridge": replace(trailing, force=20.0, voltage=0.0)}),
+    }
 
 
 def neighbours() -> Named:
@@ -155,18 +126,15 @@ def neighbours() -> Named:
         "steps × 2": replace(DEFAULT, step_scale=2.0),
         "1.25 µm, ε_n × 10": replace(DEFAULT.reference, parameter=DEFAULT.parameter * 10),
     }
-    return Named("default", "", runs, referenced=True)
+    return Named(runs, referenced=True)
 
 
 def cases() -> list[Case]:
-    """Return everything to be run, each once: named runs first, then references, without which others say less.
-
-    Raises:
-        ValueError: more than MOST.
-    """
+    """Return all runs, each once: named ones first, then references; ValueError if they are more than MOST."""
+    groups = [neighbours(), *named().values()]
     shown = [case for panels in charts().values() for panel in panels for case in panel.cases()]
-    runs = [case for group in [neighbours(), *named()] for case in group.cases.values()]
-    compared = [case for group in named() if group.referenced for case in group.cases.values()] + shown
+    runs = [case for group in groups for case in group.cases.values()]
+    compared = [case for group in groups[1:] if group.referenced for case in group.cases.values()] + shown
     unique = list(dict.fromkeys([*runs, *(case.reference for case in compared), *shown]))
     if len(unique) > MOST:
         raise ValueError(f"the map has {len(unique)} solves; at most {MOST}: make the axes shorter")

@@ -17,9 +17,7 @@ from benchmarks.verification import (
     constitutive,
     cook,
     discretisation,
-    energy,
     friction,
-    invariance,
     microscale,
     normal_contact,
     page,
@@ -29,14 +27,13 @@ from benchmarks.verification.case import Case, Row
 from variational import jit
 
 AREAS: dict[str, tuple[Case, ...]] = {
-    "Constitutive": constitutive.CASES + invariance.CASES + tube.CASES,
+    "Constitutive": constitutive.CASES + tube.CASES,
     "Discretisation": discretisation.CASES + cook.CASES,
     "Normal contact": normal_contact.CASES,
     "Friction": friction.CASES,
     "Adhesion": adhesion.CASES,
     "Microscale": microscale.CASES,
     "Two scales": microscale.TWO_SCALES,
-    "Energy": energy.CASES,
 }
 
 

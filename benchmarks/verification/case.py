@@ -9,27 +9,20 @@ from numpy.typing import ArrayLike
 
 @dataclass(frozen=True)
 class Row:
-    """One computed number beside the known answer.
-
-    Attributes:
-        quantity: with its unit in parentheses where it has one.
-        computed: by the program.
-        reference: the known answer.
-        tolerance: largest error that passes.
-        why: where the tolerance comes from, in one sentence.
-        mesh: elements and their size, or what else the number was computed with.
-        order: observed order of convergence, where several meshes were run.
-        absolute: whether error and tolerance are in the quantity's unit; relative otherwise.
-    """
+    """One computed number beside the known answer."""
 
     quantity: str
+    """With its unit in parentheses where it has one."""
     computed: float
     reference: float
     tolerance: float
+    """Largest error that passes; ``why`` says in one sentence where it comes from."""
     why: str
     mesh: str = "–"
     order: float | None = None
+    """Observed order of convergence, where several meshes were run."""
     absolute: bool = False
+    """Whether error and tolerance are in the quantity's unit; relative otherwise."""
 
     @property
     def error(self) -> float:
@@ -45,16 +38,11 @@ class Row:
 
 @dataclass(frozen=True)
 class Case:
-    """A problem with a known answer.
-
-    Attributes:
-        name: of the case.
-        reference: where the answer comes from, with its DOI or equation number.
-        run: computes its rows; the argument selects the small form, of seconds and coarse meshes, that the tests run.
-    """
+    """A problem with a known answer; ``run(small)`` computes its rows, small on the coarse meshes of the tests."""
 
     name: str
     reference: str
+    """Where the answer comes from, with its DOI or equation number."""
     run: Callable[[bool], Sequence[Row]]
 
 

@@ -5,14 +5,10 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from benchmarks.harness import kept, page, table
+from benchmarks.harness import kept, page, prose, table
 from benchmarks.verification.case import Case, Row
 
 Results = Mapping[str, Sequence[tuple[Case, Sequence[Row]]]]
-_HOW = """Each row is a computed number beside its known answer: a closed form, a published benchmark, or an independent
-evaluation. The error is relative where *(rel.)* stands, otherwise in the quantity's unit. The tolerance is given with
-its reason; **!** marks an error above it. *Order* is the observed order of convergence over several meshes. `make
-verify` computes all rows and fails where one is off. The same cases on coarser meshes are part of `make test`."""
 _HEAD = ["case and source of the answer", "quantity", "known answer", "computed", "error", "tolerance", "mesh", "order"]
 
 
@@ -50,12 +46,11 @@ def draw(docs: Path) -> Path:
     }
     rows = [row for cases in areas.values() for *_, some in cases for row in some]
     held, count = sum(row.holds for row in rows), sum(map(len, areas.values()))
-    finding = (
-        f"{held} of {len(rows)} computed numbers in {count} cases agree with their known answers within tolerance."
-    )
+    text = prose("verification")
+    finding = text["finding"].format(held=held, n=len(rows), count=count)
     body = [
         f"## {area}\n\n{table(_HEAD, [line for case in cases for line in _lines(*case)])}"
         for area, cases in areas.items()
     ]
     path, names = docs / "verification.md", ["verification"]
-    return page(path, "Verification", finding, _HOW, body, "make verify", found.made, names)
+    return page(path, "Verification", finding, text["how"], body, "make verify", found.made, names)
