@@ -137,10 +137,7 @@ def _title(name: str) -> str:
 
 
 def judged(scene: str, summary: Summary, ends: Mapping[str, Limit]) -> list[Case]:
-    """Return the cases of a whole run: friction, contact lengths, and the worst energy density of each state.
-
-    Energy densities are left out where an accuracy was requested of other quantities alone: their sites are coarse.
-    """
+    """Return the cases of a whole run: friction, contact lengths, and the worst energy density of each state."""
     quantities, found = summary["accuracy"]["quantities"], dict[str, Case]()
     request = any(q["allowed"] is not None for q in quantities.values())
     # Contact and bulk; steps, which lengths and energies of normal contact depend on; the sites.
@@ -149,7 +146,7 @@ def judged(scene: str, summary: Summary, ends: Mapping[str, Limit]) -> list[Case
     for name, q in quantities.items():
         sites = "_sed_" in name
         if name not in ends or name == "slip_f_t" or (sites and request and q["allowed"] is None):
-            continue
+            continue  # the last: the sites are coarse where an accuracy was requested of others alone
         end, of = ends[name], abs(ends[name].value)
         if sites:  # over the largest of the state
             state = name.split("sed_")[0]

@@ -229,7 +229,6 @@ def draw(docs: Path) -> Path:
     reference[ALL] = Limit(1.0, max(end.relative for end in reference.values()), None)
     fronts = {quantity: "; ".join(p.label for p in front(points, quantity)) for quantity in (*QUANTITIES, ALL)}
     lists = "\n".join(f"- {_words(quantity)}: {labels}" for quantity, labels in fronts.items())
-
     work, time = (_costs(points, reference, measure) for measure in MEASURES)
     body = [
         harness.picture(docs / "chart.png", (9, 7), lambda figure: _paint(figure, points, reference), text["caption"]),

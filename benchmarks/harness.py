@@ -31,7 +31,8 @@ from fingerpad.scene import Scene
 ROOT = Path(__file__).resolve().parents[1]
 DOCS, RESULTS = ROOT / "docs", ROOT / "results"
 PACKAGES = ("geometry", "variational", "fingerpad")
-Compute, Draw = Callable[[argparse.Namespace], None], Callable[[Path], Path]
+Compute = Callable[[argparse.Namespace], None]
+Draw = Callable[[Path], Path]
 _LINE = 400  # characters of a record that is kept on one line
 
 
@@ -46,9 +47,9 @@ def parser(description: str | None, out: str = "traces") -> argparse.ArgumentPar
     return found
 
 
-def run(scenes: Mapping[str, Scene], args: argparse.Namespace, limit: float, model: str = "full") -> dict[str, Summary]:
+def run(scenes: Mapping[str, Scene], args: argparse.Namespace, limit: float) -> dict[str, Summary]:
     """Run the scenes that are missing in ``args.out``, each for at most ``limit`` (s); return all summaries by name."""
-    return sweep(scenes, args.out, args.jobs, limit, model)
+    return sweep(scenes, args.out, args.jobs, limit)
 
 
 def main(description: str | None, compute: Compute, draw: Draw, given: Sequence[str] | None = None) -> int:
@@ -131,10 +132,9 @@ def kept(name: str, docs: Path = DOCS) -> Kept:
 def page(
     path: Path, title: str, finding: str, how: str, body: Iterable[str], command: str, by: Made, names: Iterable[str]
 ) -> Path:
-    """Write a page that starts with its finding and goes on with how it was found; return its path.
+    """Write a page: finding, how it was found, sections of which empty ones are left out, and origin; return its path.
 
-    ``body`` are its sections, of which empty ones are left out. ``command`` computes the numbers anew, ``by`` made
-    them, and they are in the files ``docs/NAME.json`` of ``names``.
+    ``command`` computes the numbers anew, ``by`` made them, and they are in the files ``docs/NAME.json`` of ``names``.
     """
     files = ", ".join(f"[{name}.json]({name}.json)" for name in names)
     origin = f"{by} Computed by `{command}` into {files}; drawn from there by `make pages`: do not edit this page."

@@ -18,7 +18,7 @@ from benchmarks import harness
 from benchmarks.runs import FORCES, VOLTAGES, trace
 from fingerpad.io.states import PREFIXES, WORDS
 from fingerpad.reduced import cylinders
-from fingerpad.runs.batch import Summary
+from fingerpad.runs.batch import Summary, sweep
 from fingerpad.scene import Scene
 from variational.state import RESULTS
 
@@ -57,11 +57,9 @@ def answer(summary: Summary) -> dict[str, Any]:
 
 def compute(args: argparse.Namespace) -> None:
     """Run what is missing and keep the numbers."""
-    wanted = scenes()
+    wanted, found = scenes(), {}
     full = harness.run(wanted, args, _LIMIT)
-    own = argparse.Namespace(**vars(args) | {"out": args.out.parent / "smooth"})
-    smooth = harness.run(wanted, own, _LIMIT, "smooth")
-    found = {}
+    smooth = sweep(wanted, args.out.parent / "smooth", args.jobs, _LIMIT, "smooth")
     for key, scene in wanted.items():
         summaries = {"cylinders": cylinders.solve(scene).to_dict(), "smooth": smooth[key], "full": full[key]}
         found[key] = {model: answer(summary) for model, summary in summaries.items()}
@@ -89,7 +87,6 @@ _WHICH = {  # model: finger it is for, its answers
 
 
 def _largest(scenes: Mapping[str, Any], model: str, key: str) -> str:
-    """Return the largest error of a model."""
     found = [abs(e) for each in scenes.values() if (e := error(each, model, key)) is not None]
     return f"{100 * max(found):.1f} %" if found and model != "full" else "–"
 
@@ -102,7 +99,6 @@ def _takes(scenes: Mapping[str, Any], model: str) -> str:
 
 
 def _which(scenes: Mapping[str, Any]) -> str:
-    """Return the table that chooses a model."""
     rows, keys = [], ("slip_mu_app", "slip_contact_length")
     for model, words in _WHICH.items():
         rows.append([f"`{model}`", *words, *(_largest(scenes, model, key) for key in keys), _takes(scenes, model)])
@@ -123,7 +119,6 @@ def _matrix(scenes: Mapping[str, Any], model: str, key: str) -> str:
 
 
 def _section(scenes: Mapping[str, Any], model: str) -> list[str]:
-    """Return the parts of the page on a reduced model."""
     failed = [key for key, each in scenes.items() if "failure" in each.get(model, {})]
     answers = [each[model]["more"] for each in scenes.values() if "more" in each.get(model, {})]
     versions = [more.get("table_version", 0) for more in answers]

@@ -21,7 +21,7 @@ PAGES = {
     "paper": "benchmarks.paper.page",
     "peers": "benchmarks.peers.page",
     "stability": "benchmarks.stability.page",
-    "verification": "benchmarks.verification.page",
+    "verification": "benchmarks.verification.case",
 }
 
 

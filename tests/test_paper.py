@@ -139,11 +139,14 @@ def test_section_statements():
     assert by(fields.section(run), "1.7 to 3").numbers["share"] == pytest.approx(12 / 18)
 
 
-SITES = {"ridge": [-2, -1, 0], "voltage": [100.0, 200.0, 400.0], "friction": [80.0, 202.0, 400.0]}
-
-
 def test_claim_is_judged_site_by_site():
-    found = fields.claim(SITES)
+    """At the three sites of which a ridge is in contact in either run."""
+
+    def run(sed, touching):
+        receptors = {"ridge": np.array([-3, -2, -1, 0]), "merkel_sed": np.array([sed])}
+        return SimpleNamespace(receptors=receptors, slip=0, on_ridges=lambda row, name: (touching, None))
+
+    found = fields.claim(run([9.0, 100.0, 200.0, 400.0], [-2, -1]), run([1.0, 80.0, 202.0, 400.0], [-1, 0]))
     assert found.numbers == pytest.approx({"median": 0.01, "largest": -0.2})
     assert "at ridge -2; 2 of 3 sites" in found.ours
     assert found.verdict == IN_PART

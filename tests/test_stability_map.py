@@ -12,7 +12,7 @@ from benchmarks.harness import DOCS, kept
 from benchmarks.stability import __main__ as keeping
 from benchmarks.stability import page, plan, solve
 from benchmarks.stability.__main__ import Runs, run_all
-from benchmarks.stability.case import Case, Outcome
+from benchmarks.stability.plan import Case, Outcome
 from variational.solvers.coupling import Coupling
 from variational.solvers.equations import Control
 from variational.solvers.failure import NotConverged

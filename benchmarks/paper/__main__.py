@@ -13,24 +13,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from benchmarks.harness import keep, made, parser, run
 from benchmarks.paper import fields, friction, page, scenes
 from benchmarks.paper.statement import Statement
 from benchmarks.runs import Run
 
 _LIMIT = 3600.0  # s of processor time for one run; the sine takes longest
-
-
-def _rises(run: Run) -> float:
-    """Return in how many steps from normal contact to full slip the contact length rises."""
-    return float((np.diff(run.steps["contact_length"][run.normal : run.slip + 1]) > 0).sum())
-
-
-def mu_app(high: Run) -> float:
-    """Return the apparent friction coefficient of a run."""
-    return float(high.steps["mu_app"][high.slip])
 
 
 def collect(out: Path) -> dict[str, Any]:
@@ -45,12 +33,11 @@ def collect(out: Path) -> dict[str, Any]:
         runs = {pair: at(*pair) for pair in grid}
         gathered = friction.gather(runs)
         numbers["grid"] = {name: values.tolist() for name, values in gathered.items()}
-        rises = {f"{u:g}": _rises(runs[scenes.TRANSITION, u]) for u in gathered["voltage"]}
-        return friction.statements(gathered, rises)
+        return friction.statements(gathered, friction.rises(runs))
 
     def of_claim() -> list[Statement]:
         high = at(scenes.MAP, 200.0)
-        return [fields.claim(fields.gather(high, Run(scenes.rougher(mu_app(high)), out)))]
+        return [fields.claim(high, Run(scenes.rougher(high), out))]
 
     parts: dict[str, Callable[[], list[Statement]]] = {
         "Fig. 2": lambda: fields.section(at(*scenes.SECTION)),
@@ -77,7 +64,7 @@ def main(given: Sequence[str] | None = None) -> int:
         summaries = run({"sine": scenes.sine()} | named, args, _LIMIT)
         try:
             high = Run(scenes.grid()[scenes.MAP, 200.0], args.out)
-            summaries |= run({"friction": scenes.rougher(mu_app(high))}, args, _LIMIT)
+            summaries |= run({"friction": scenes.rougher(high)}, args, _LIMIT)
         except FileNotFoundError as lost:
             print(f"the run without voltage but with more friction cannot be made: {lost}")
         numbers = collect(args.out)

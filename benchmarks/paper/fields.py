@@ -1,8 +1,5 @@
 """Figs. 2, 4, 5 and 9 and section 5: tractions and air gaps, the microscale, and the receptors' energy density."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 
 from benchmarks.paper.statement import Statement, statement
@@ -122,18 +119,12 @@ def maps(run: Run) -> list[Statement]:
 
 
 # -- section 5 -----------------------------------------------------------------------------------------------
-def gather(with_voltage: Run, rougher: Run) -> dict[str, Any]:
-    """Return the ridges in contact in either run, and their energy density (J/m^3) by voltage and by friction."""
-    runs = {"voltage": with_voltage, "friction": rougher}
-    touching = [ridge for run in runs.values() for ridge in run.on_ridges(run.slip, "p_c")[0]]
-    mine = np.isin(with_voltage.receptors["ridge"], touching)
-    found = {name: run.receptors["merkel_sed"][run.slip][mine] for name, run in runs.items()}
-    return {"ridge": with_voltage.receptors["ridge"][mine].astype(int)} | found
-
-
-def claim(sites: Mapping[str, Any]) -> Statement:
-    """Return the verdict on the paper's central claim, site by site."""
-    off = np.array(sites["friction"]) / np.array(sites["voltage"]) - 1
+def claim(with_voltage: Run, rougher: Run) -> Statement:
+    """Return the verdict on the paper's central claim, at the sites of the ridges in contact in either run."""
+    runs, ridges = (with_voltage, rougher), with_voltage.receptors["ridge"]
+    mine = np.isin(ridges, [ridge for run in runs for ridge in run.on_ridges(run.slip, "p_c")[0]])
+    by_voltage, by_friction = (run.receptors["merkel_sed"][run.slip][mine] for run in runs)
+    off = by_friction / by_voltage - 1
     worst, median, near = int(np.argmax(np.abs(off))), np.median(np.abs(off)), np.abs(off) < 0.05
-    words = {"ridge": sites["ridge"][worst], "within": near.sum(), "count": len(off)}
+    words = {"ridge": int(ridges[mine][worst]), "within": near.sum(), "count": len(off)}
     return statement("claim", {"median": median, "largest": off[worst]}, near.all(), median < 0.05, **words)

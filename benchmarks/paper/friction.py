@@ -30,16 +30,23 @@ def gather(runs: Mapping[tuple[float, float], Run]) -> dict[str, Array]:
     return found
 
 
+def rises(runs: Mapping[tuple[float, float], Run]) -> dict[str, float]:
+    """Return by voltage in how many steps of the path to full slip at ``TRANSITION`` the contact length rises."""
+    found = {}
+    for (force, voltage), run in runs.items():
+        if force == TRANSITION:
+            lengths = run.steps["contact_length"][run.normal : run.slip + 1]
+            found[f"{voltage:g}"] = float((np.diff(lengths) > 0).sum())
+    return found
+
+
 @dataclass(frozen=True)
 class Reduction:
-    """Share of contact length lost by sliding over the mean shear stress f_T / L_R (Pa), with a fit through the origin.
+    """Share of contact length lost by sliding over the mean shear stress f_T / L_R, with a fit through the origin."""
 
-    ``stress`` and ``lost`` have shape (forces, voltages); ``slope`` (1/Pa) has the determination ``r_squared``.
-    """
-
-    stress: Array
-    lost: Array
-    slope: float
+    stress: Array  # Pa, shape (forces, voltages)
+    lost: Array  # likewise
+    slope: float  # 1/Pa
     r_squared: float
 
 

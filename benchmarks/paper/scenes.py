@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.runs import FORCES, SITES, VOLTAGES, trace
+from benchmarks.runs import FORCES, SITES, VOLTAGES, Run, trace
 from fingerpad.model.touching import by_rule
 from fingerpad.scene import Scene, from_data
 
@@ -25,11 +25,7 @@ def grid() -> dict[tuple[float, float], Scene]:
 
 
 def sine() -> Scene:
-    """Return Fig. 9B's scene: slid to full slip without voltage, then on while the voltage follows a sine.
-
-    Between its values the voltage changes evenly while the finger slides; at each the finger slides on until every
-    point slips again: the voltage changes slowly.
-    """
+    """Return Fig. 9B's scene: slid to full slip without voltage, then on to full slip again and again on the sine."""
     history: list[dict[str, Any]] = [
         {"name": "press", "f_ext": MAP},
         {"name": "slide", "bone_x": _SLIP, "until_full_slip": True},
@@ -44,6 +40,6 @@ def sine() -> Scene:
     return by_rule(from_data({"mesh": {"contact": SIZE, "receptor": SITES}, "history": history}))
 
 
-def rougher(mu_app: float) -> Scene:
+def rougher(high: Run) -> Scene:
     """Return the scene of section 5's claim: no voltage, and the friction coefficient that voltage led to."""
-    return trace(MAP, 0.0, SIZE, friction=round(mu_app, 4))
+    return trace(MAP, 0.0, SIZE, friction=round(float(high.steps["mu_app"][high.slip]), 4))

@@ -16,14 +16,13 @@ from typing import Any
 
 from benchmarks.harness import keep, made, parser
 from benchmarks.stability import page, plan
-from benchmarks.stability.case import Case, Outcome
+from benchmarks.stability.plan import Case, Outcome
 from fingerpad.cli.arguments import positive
 from fingerpad.runs import processes
 from fingerpad.runs.processes import Pool
 
 # Of an outcome, what the page shows.
-_SHOWN = ["status", "reason", "load", "newton", "factorisations", "cutbacks", "inverted", "penetration", "f_t"]
-_SHOWN += ["contact_length", "f_ext"]
+_SHOWN = "status reason load newton factorisations cutbacks inverted penetration f_t contact_length f_ext".split()
 
 
 class Runs:

@@ -13,8 +13,7 @@ from matplotlib.patches import Patch, Rectangle
 
 from benchmarks.harness import kept, page, picture, prose, table
 from benchmarks.stability import plan
-from benchmarks.stability.case import Case
-from benchmarks.stability.plan import DEFAULT, Axis, Named, Panel
+from benchmarks.stability.plan import DEFAULT, Axis, Case, Named, Panel
 from fingerpad.io.style import MAGNITUDE, ORANGE, SKY, VERMILION
 
 Row = Mapping[str, Any]

@@ -1,9 +1,4 @@
-r"""Attraction: its resultant on a round body, pull-in of a plate, and adhesive contact of a cylinder.
-
-A parabola :math:`y = g + x^2 / 2R` of half-width L is attracted by (with :math:`s = h_0 + g`, :math:`k^2 = 2 R s`)
-
-.. math:: \frac{\varepsilon_0 U^2}{2} \int_{-L}^L \frac{dx}{(s + x^2 / 2R)^2}
-          = \frac{\varepsilon_0 U^2}{2 s^2} \left( \frac{L}{1 + L^2 / k^2} + k \arctan \frac Lk \right).
+r"""Attraction: pull-in of a plate, and adhesive contact of a cylinder.
 
 A flat block is a spring of stiffness E / H per area, a plate over the screen: at rest at :math:`s_0 = h_0 + g_0` it is
 pulled in by :math:`U^2 = 8 E s_0^3 / (27 \varepsilon_0 H)`, after a travel of s_0 / 3 (Nathanson, Newell, Wickstrom and
@@ -29,7 +24,7 @@ import ufl
 from scipy.optimize import brentq, minimize_scalar
 
 from benchmarks.verification.bodies import Smooth, formulations, over_screen
-from benchmarks.verification.case import Case, Row, order
+from benchmarks.verification.case import Case, Row
 from geometry.bodies import block, pad
 from variational.attraction.electroadhesion import Attraction
 from variational.attraction.insulator import VACUUM_PERMITTIVITY
@@ -41,30 +36,6 @@ from variational.solvers.stability import StabilityCheck
 
 _H_0 = 0.514e-6
 _CONTACT = Penalty(1e12, 1e11)
-
-
-def total_attraction(small: bool) -> list[Row]:
-    """A cylinder too stiff to deform, at several heights, on three meshes."""
-    radius, span, voltage = 10e-3, 2e-3, 1.0
-    parts = (2, 4, 8) if small else (5, 10, 20)
-    tolerance, mesh = 0.5 / parts[-1] ** 2, f"P2, facets of sqrt(2 R (h_0 + g)) / {parts[-1]}"
-    why = "(h / k)^2 / 2: chords of facets of length h are too high by h^2 / 12 R; the outermost quarter is coarser"
-    rows = []
-    for gap in (1e-6, 3e-6, 10e-6):
-        s, end = _H_0 + gap, span / 2
-        k = np.sqrt(2 * radius * s)
-        extent = end / (1 + (end / k) ** 2) + k * np.arctan(end / k)
-        exact = float(VACUUM_PERMITTIVITY * voltage**2 / (2 * s**2) * extent)
-        found = []
-        for part in parts:
-            build, interface = pad(k / part, int(0.75 * end / k * part), radius, span), Interface(_CONTACT, 0.0, _H_0)
-            run = over_screen(build, SaintVenant(1e7, 0.3), interface, 0.1, closure=Smooth(1e-7))
-            run.run(Target("lift", bone_height=gap))
-            run.run(Target("charge", voltage=voltage))
-            found.append(float(run.observer.ridge_loads(run.surface_state).f_attraction[0]))
-        quantity, observed = f"attraction at g = {gap * 1e6:g} um (N/m)", order(np.array(found) - exact, parts)
-        rows.append(Row(quantity, found[-1], exact, tolerance, why, mesh, observed))
-    return rows
 
 
 def actuator(small: bool) -> list[Row]:
@@ -168,7 +139,6 @@ def maugis(small: bool) -> list[Row]:
 
 _LINE = "Johnson and Greenwood 2008, doi 10.1088/0022-3727/41/15/155315, closed form"
 CASES = (
-    Case("Attraction of a round body", "closed form, the integral of Eq. 3 over a parabola", total_attraction),
     Case("Parallel-plate actuator", "Nathanson et al. 1967, doi 10.1109/T-ED.1967.15912", actuator),
     Case("Maugis-Dugdale line contact", _LINE, maugis),
 )

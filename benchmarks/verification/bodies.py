@@ -143,10 +143,7 @@ def norm(domain: dolfinx.mesh.Mesh, value: Any) -> float:
 
 
 def relative_errors(u: fem.Function, exact: Callable[[Array], Array]) -> Errors:
-    """Return the errors of a displacement and of its gradient over the norms of the exact ones.
-
-    The exact one is interpolated by polynomials of degree 6, cell by cell.
-    """
+    """Return the errors of a displacement and of its gradient over the norms of the exact ones, of degree 6 by cell."""
     domain = u.function_space.mesh
     e = fem.Function(fem.functionspace(domain, ("Discontinuous Lagrange", 6, (2,))))
     e.interpolate(exact)

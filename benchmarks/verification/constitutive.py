@@ -47,10 +47,7 @@ def nominal(solid: Solid, stretches: Sequence[Any]) -> Array:
 
 
 def cauchy(solid: Solid, F: Array) -> Array:
-    """Return the Cauchy stress (Pa), shape (n, 3, 3), at in-plane deformation gradients (n, 2, 2), lambda_3 = 1.
-
-    From the eigenvectors n_i of b = F F^T: sigma = sum_i (lambda_i P_i / J) n_i n_i^T.
-    """
+    """Return sigma = sum_i (lambda_i P_i / J) n_i n_i^T (Pa), (n, 3, 3), at F in the plane, (n, 2, 2)."""
     full = np.zeros((len(F), 3, 3))
     full[:, :2, :2], full[:, 2, 2] = F, 1.0
     squares, n = np.linalg.eigh(full @ full.transpose(0, 2, 1))
@@ -128,10 +125,7 @@ MODES: dict[str, Callable[[Solid], tuple[Any, Any, Any]]] = {  # mode: F_11, F_2
 
 
 def _compared(mode: str, solid: Solid, points: Points) -> list[Row]:
-    """Return a row for each state: the component of the Cauchy stress that is furthest off, in kPa.
-
-    Those that are zero are shown only if they are not.
-    """
+    """Return a row for each state: the component of sigma, zero ones apart, that is furthest off, in kPa."""
     xx, yy, xy = np.broadcast_arrays(*MODES[mode](solid))
     F = np.stack([xx, xy, 0.0 * xx, yy], axis=-1).reshape(-1, 2, 2)
     ours, rows = points(F, solid.shear, solid.bulk, solid.exponent), []
