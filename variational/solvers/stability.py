@@ -95,7 +95,8 @@ class StabilityCheck:
             ValueError: the tangent is not symmetric, as where points slip.
             NotConverged: the factorisation failed.
         """
-        K = self._tangent(0.0, self.solver.equations.prescribed_rows()).copy()
+        K = self._tangent(0.0, self.solver.equations.prescribed_rows())
+        K = K.convert(PETSc.Mat.Type.AIJ, PETSc.Mat())  # a copy, which Cholesky's factorisation takes
         if not K.isSymmetric(1e-9 * K.norm(PETSc.NormType.INFINITY)):
             raise ValueError("the tangent is not symmetric: its inertia does not decide stability")
         K.setOption(PETSc.Mat.Option.SYMMETRIC, True)
