@@ -32,6 +32,7 @@ DEFAULTS = {
     "ksp_type": "preonly",
     "pc_type": "lu",
     "pc_factor_mat_solver_type": "mumps",
+    "mat_mumps_icntl_8": "0",  # no scaling, which takes a sixth of a factorisation: all rows are forces over lengths
 }
 _PATIENCE = 4  # iterations in which the least residual must fall
 _CONTRACTS = 0.5  # reduction of the residual an iteration below which a factorisation is kept
