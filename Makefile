@@ -7,6 +7,7 @@
 # make pages  every generated page and picture of docs/ from the numbers kept there; seconds, no run
 # make verify every number with a known answer, some minutes; docs/verification.md
 # make paper  the statements of the paper beside this model's numbers; docs/paper.md, an hour or two
+# make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour
 # make chart  error over work, one numerical setting after the other; docs/chart.md, hours
 #
 # With SUITE=sid in Debian unstable, that is with a newer dolfinx: make test SUITE=sid
@@ -14,7 +15,7 @@
 
 run := environment/run
 
-.PHONY: help demo lint test check test-order fuzz pages verify paper chart
+.PHONY: help demo lint test check test-order fuzz pages verify paper chart performance
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -52,3 +53,6 @@ paper:
 chart:
 	$(run) python3 -m benchmarks.errors
 	$(run) python3 -m benchmarks.chart
+
+performance:
+	$(run) python3 -m benchmarks.performance

@@ -20,6 +20,7 @@ PAGES = {
     "models": "benchmarks.models",
     "paper": "benchmarks.paper.page",
     "peers": "benchmarks.peers.page",
+    "performance": "benchmarks.performance",
     "stability": "benchmarks.stability.page",
     "verification": "benchmarks.verification.case",
 }

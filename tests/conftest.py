@@ -20,8 +20,8 @@ from geometry.profiles import Profiles
 from variational import jit
 
 LONGER = (
-    "accuracy api demo demos element ending energy environment faults formulations light mirror needs own_mesh readme "
-    "reach results smooth stability_map steady_slip translation verification zone"
+    "accuracy api counts demo demos element ending energy environment faults formulations light mirror needs own_mesh "
+    "performance readme reach results smooth stability_map steady_slip translation verification zone"
 )
 """Tests that `make check` leaves out, by the names of their files: whole runs. A new file is checked."""
 
