@@ -40,9 +40,9 @@ def test_busy_machine_is_refused(monkeypatch, tmp_path, capsys):
 
 
 def test_explicit_dynamics_end_in_the_equilibrium():
-    """A ridge of facets of 40 um, led along the loads over eight periods: within 1 % of forces and contact lengths.
+    """A ridge of facets of 40 um, led along the loads over eight periods: forces and contact lengths within 3 %.
 
-    What is left swings on: the loads are applied over so few periods that the kinetic energy is some percent.
+    What is left swings on: the loads are applied in so few periods that the kinetic energy is some percent.
     """
     base = explicit.implicit(40e-6)
     for scaled in (False, True):
