@@ -196,16 +196,9 @@ def processor_seconds() -> float:
 
 @dataclass
 class Answer:
-    """What a program gives for a case.
+    """What a program gives for a case, with its factorisations if these are fewer than its iterations.
 
-    Attributes:
-        program, version, licence: which program.
-        states: reported equilibria.
-        iterations: linear systems solved.
-        factorisations: of a matrix; zero where every iteration has one.
-        setup: processor seconds, of children too, from the start of the program to :meth:`ready`.
-        seconds: those from there to :meth:`done`.
-        load: average number of the machine's processes that ran, at the end.
+    ``setup`` are processor seconds to :meth:`ready`, ``seconds`` from there to :meth:`done`; ``load`` is the machine's.
     """
 
     program: str
