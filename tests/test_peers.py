@@ -1,13 +1,15 @@
 """What other codes are told and how their answers are read: the parts that need none of them."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from benchmarks.harness import Made, keep
-from benchmarks.peers import calculix_ridge, ours, page
+from benchmarks.peers import calculix_ridge, ours, page, plain, speed
 from benchmarks.peers.exchange import Answer, Case, Load, Ridge, State, answer_path, cases, left_to_right, write
+from benchmarks.peers.quantities import differences, half_width, values
 
 WIDTH = 0.483  # mm
 
@@ -99,7 +101,7 @@ def test_half_width_holds_the_points_that_touch(ridge, answer):
     """The contact ends beyond the outermost points under pressure, by less than a facet at each end."""
     for state in answer.states:
         touching = np.array(state.x)[np.array(state.p_n) > 0]
-        half = page.half_width(ridge, state)
+        half = half_width(ridge, state)
         assert np.ptp(touching) / 2 < half < np.ptp(touching) / 2 + 0.04
 
 
@@ -110,17 +112,18 @@ def test_half_width_of_a_parabola():
     state = State("", 0, 0, [[0.0, -1.0], [0.0, 3.0], [0.0, 0.25]], [], [], [])
     x = np.linspace(0, (-0.5 + np.sqrt(0.25 + 3)) / 1.5, 200001)
     exact = np.hypot(np.diff(x), np.diff(-1 + x / 2 + 0.75 * x**2)).sum() / 2
-    assert page.half_width(mesh, state) == pytest.approx(exact, rel=1e-5)  # the error of six Gauss points
+    assert half_width(mesh, state) == pytest.approx(exact, rel=1e-5)  # the error of six Gauss points
 
 
 def test_deck(ridge):
-    """CalculiX gets Ogden's exponent in its own sign, D = 2/K, and every facet of the skin once."""
+    """CalculiX gets Ogden's exponent in its own sign, D = 2/K, every facet once, and numbers short enough for it."""
     deck = calculix_ridge.deck(cases()["friction"], ridge)
     lines = deck.splitlines()
     law = [float(word) for word in lines[lines.index("*HYPERELASTIC, OGDEN, N=1") + 1].split(",")]
     assert law == pytest.approx([0.08676, 14.53, 3 * (1 - 2 * 0.48) / (0.08676 * 1.48)])
     slave = lines[lines.index("*SURFACE, NAME=SLAVE") + 1 : lines.index("*SURFACE, NAME=MASTER")]
     assert len(slave) == len(ridge.skin)
+    assert max(len(word.strip()) for line in lines for word in line.split(",") if "*" not in line) <= 20
     assert deck.count("*STEP") == len(cases()["friction"].loads)
 
 
@@ -133,18 +136,18 @@ def test_tables_of_calculix():
 
 def test_differences_are_marked(answer, ridge):
     """A difference is flagged above the bar and only there; friction that vanishes by symmetry is not judged."""
-    one = page.values(answer.states[1], ridge)
+    one = values(answer.states[1], ridge)
 
     def text(k: int, part: float) -> str:
         other = [value * (1 + part * (n == k)) for n, value in enumerate(one)]
-        row = {"program": "other", "values": other, "differences": page.differences(other, one)}
+        row = {"program": "other", "values": other, "differences": differences(other, one)}
         return " ".join(page.line(row))
 
     assert "%" not in " ".join(page.line({"program": "fingerpad", "values": one}))
     assert "**!**" not in text(0, 0.9 * page.FORCE)
     assert text(0, 1.1 * page.FORCE).count("**!**") == 1
     assert text(3, -1.1 * page.SHAPE).count("**!**") == 1
-    assert page.differences([1.0, 1e-6, 1.0, 1.0], [1.0, 1e-9, 1.0, 1.0])[1] is None
+    assert differences([1.0, 1e-6, 1.0, 1.0], [1.0, 1e-9, 1.0, 1.0])[1] is None
 
 
 def test_page(answer, ridge, tmp_path):
@@ -170,3 +173,39 @@ def test_largest_differences():
         {"program": "A", "values": [1.0] * 4, "differences": [-0.03, 0.5, 0.0, 0.0]},
     ]
     assert page.largest(rows) == [["A", "3 %", "50 %", "2 %", "0"]]
+
+
+def timed_answers(answer: Answer, folder: Path) -> None:
+    """Write answers of three programs on the timed meshes, as fast as their names say."""
+    for size, repeat, program in speed.tasks():
+        if program in ("ours", "plain", "getfem"):
+            seconds = {"ours": 1.0, "plain": 1.5, "getfem": 4.0}[program] * (1 + 0.1 * int(repeat))
+            name = {"ours": "fingerpad", "plain": "plain dolfinx", "getfem": "GetFEM"}[program]
+            found = replace(answer, program=name, setup=2.0, seconds=seconds, load=3.0, iterations=7, factorisations=0)
+            write(found, answer_path(folder, size, "timed", repeat, program))
+
+
+def test_speed(answer, ridge, tmp_path):
+    """The least of the repeats counts, and errors are relative to the finest mesh: none for the same states."""
+    for size in (*speed.SIZES, speed.FINEST):
+        ridge.save(tmp_path / f"{size:g}.npz")
+    timed_answers(answer, tmp_path)
+    told = speed.numbers(tmp_path) | {"made": "a test"}
+    row = told["meshes"][0]["rows"][1]
+    assert (row["program"], row["iterations"], row["factorisations"]) == ("plain dolfinx", 7, 7)
+    assert row["seconds"] == pytest.approx(1.65)
+    assert row["spread"] == pytest.approx(1.3 / 1.1 - 1)
+    assert row["errors"] == [0.0] * 4
+    text = speed.section(told)
+    assert "| plain dolfinx | 2.00 | 1.65 | 1.50 | 18 % |" in text
+    assert "The largest spread is 18 %" in text
+    assert "takes the least" in text
+
+
+def test_plain_script_agrees(body, ridge):
+    """The same forms on the same mesh give the same forces; tolerance: imbalances of 1e-12 N/mm on some 30 nodes."""
+    case = Case(0.25, (Load(0.0, -0.005, "pressed"), Load(0.0035, -0.005, "moved")))
+    one, other = plain.solve(case, ridge), ours.solve(case, body, ridge.points[ridge.skin].reshape(-1, 2))
+    for a, b in zip(one.states, other.states, strict=True):
+        assert (a.f_n, a.f_t) == pytest.approx((b.f_n, b.f_t), abs=1e-10)
+        np.testing.assert_allclose(a.displacement, b.displacement, atol=1e-8)

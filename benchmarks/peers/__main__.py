@@ -1,15 +1,15 @@
 """Meshes, cases and fingerpad's answers before the peers run, numbers and page after; benchmarks/peers/run does both.
 
-environment/run python3 -m benchmarks.peers prepare FOLDER SIZE ... | page FOLDER
+environment/run python3 -m benchmarks.peers prepare FOLDER SIZE ... | page FOLDER | prepare-timed FOLDER | timed FOLDER
 """
 
 import argparse
 from dataclasses import replace
 from pathlib import Path
 
-from benchmarks.harness import DOCS, keep, made
-from benchmarks.peers import page
-from benchmarks.peers.exchange import TASKS, answer_path, cases, write
+from benchmarks.harness import DOCS, keep, kept, made
+from benchmarks.peers import page, speed
+from benchmarks.peers.exchange import TASKS, answer_path, cases, timed, write
 
 
 def prepare(folder: Path, sizes: list[float]) -> None:
@@ -35,17 +35,40 @@ def prepare(folder: Path, sizes: list[float]) -> None:
     (folder / "tasks").write_text("\n".join(tasks) + "\n", encoding="utf-8")
 
 
+def prepare_timed(folder: Path) -> None:
+    """Write meshes, the timed case, and the tasks of all programs."""
+    from benchmarks.peers import ours
+
+    folder.mkdir(parents=True, exist_ok=True)
+    write(timed(), case := folder / "case.json")
+    for size in (*speed.SIZES, speed.FINEST):
+        ours.for_peers(ours.make(size * 1e-3)).save(folder / f"{size:g}.npz")
+    lines = [
+        f"{program} {case} {folder / f'{size:g}.npz'} {answer_path(folder, size, 'timed', repeat, program)}"
+        for size, repeat, program in speed.tasks()
+    ]
+    (folder / "tasks").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
 def main() -> None:
     """Read the command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("action", choices=("prepare", "page"))
+    parser.add_argument("action", choices=("prepare", "page", "prepare-timed", "timed"))
     parser.add_argument("folder", type=Path)
     parser.add_argument("sizes", type=float, nargs="*")
     args = parser.parse_args()
+    old = kept("peers", DOCS)
     if args.action == "prepare":
         prepare(args.folder, args.sizes)
+    elif args.action == "prepare-timed":
+        prepare_timed(args.folder)
+    elif args.action == "timed":
+        by = made()
+        text = {"made": f"version {by.version} of {by.date} (source {by.source})"}
+        keep("peers", old.numbers | {"speed": speed.numbers(args.folder) | text}, old.made, DOCS)
     else:
-        keep("peers", page.numbers(args.folder), made(), DOCS)
+        keep("peers", page.numbers(args.folder) | {"speed": old.numbers["speed"]}, made(), DOCS)
+    if args.action in ("page", "timed"):
         print(page.draw(DOCS))
 
 

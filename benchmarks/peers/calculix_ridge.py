@@ -56,8 +56,9 @@ CDIS"""
 def deck(case: Case, ridge: Ridge) -> str:
     """Return the input deck."""
     count, block = len(ridge.points), len(ridge.triangles) + 1
+    # CalculiX reads 20 characters of a number: a longer one loses its exponent.
     lines = ["*NODE, NSET=ALL"]
-    lines += [f"{k}, {x:.15g}, {y:.15g}, 0" for k, (x, y) in enumerate(np.vstack([ridge.points, _BLOCK]), start=1)]
+    lines += [f"{k}, {x:.12g}, {y:.12g}, 0" for k, (x, y) in enumerate(np.vstack([ridge.points, _BLOCK]), start=1)]
     lines.append("*ELEMENT, TYPE=CPE6, ELSET=BODY")
     lines += [f"{k}, " + ", ".join(str(node + 1) for node in cell) for k, cell in enumerate(ridge.triangles, start=1)]
     lines += ["*ELEMENT, TYPE=CPE4, ELSET=BLOCK", f"{block}, " + ", ".join(str(count + k) for k in range(1, 5))]
@@ -115,16 +116,19 @@ def on_skin(ridge: Ridge, u: np.ndarray, gaps: Iterable[list[float]], stresses: 
 
 def solve(case: Case, ridge: Ridge) -> Answer:
     """Lead the ridge along the loads."""
+    version = subprocess.run(["ccx", "-v"], capture_output=True, text=True, check=False).stdout.split()[-1]
+    answer = Answer("CalculiX", version, "GPL 2 or later")
     with tempfile.TemporaryDirectory() as folder:
         job = Path(folder) / _JOB
         job.with_suffix(".inp").write_text(deck(case, ridge), encoding="ascii")
+        answer.ready()
         run = subprocess.run(["ccx", "-i", _JOB], cwd=folder, capture_output=True, text=True, check=False)
+        answer.done()
         if "Job finished" not in run.stdout:
             raise RuntimeError("CalculiX: " + "; ".join(run.stdout.split("\n")[-12:]))
         tables = list(blocks(job.with_suffix(".dat").read_text(encoding="ascii")))
         summary = [line.split() for line in job.with_suffix(".sta").read_text(encoding="ascii").splitlines()[2:]]
-    version = subprocess.run(["ccx", "-v"], capture_output=True, text=True, check=False).stdout.split()[-1]
-    answer = Answer("CalculiX", version, "GPL 2 or later", iterations=sum(int(row[3]) for row in summary))
+    answer.iterations = sum(int(row[3]) for row in summary)
     for step, load in enumerate(case.loads, start=1):
         if load.name:
             found = {"".join(heading.split()[:2]): rows for heading, time, rows in tables if round(time) == step}

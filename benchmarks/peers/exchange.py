@@ -7,6 +7,7 @@ programs are used.
 import argparse
 import json
 import os
+import resource
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -28,6 +29,7 @@ VARIANTS = (
     ("friction", "as FElupe", "ngsolve"),
     ("frictionless", "as installed", "felupe"),
 )
+TIMED = ("ours", "plain", *PEERS)
 _PRESS, _STEPS = -0.06, 20  # mm
 _SLIDES = ((0.005, 10), (0.05, 15))  # mm, steps
 
@@ -91,6 +93,12 @@ def cases() -> dict[str, Case]:
         x = end
     frictionless = Case(0.0, (*press, Load(0.0, _PRESS, "pressed without friction")))
     return {"frictionless": frictionless, "friction": Case(0.25, tuple(loads))}
+
+
+def timed() -> Case:
+    """Return the history that is timed: pressed by 25 µm in five steps, moved to full slip in five; all reported."""
+    press = [Load(0.0, -0.005 * k, f"pressed {5 * k} µm") for k in range(1, 6)]
+    return Case(0.25, (*press, *(Load(0.0035 * k, -0.025, f"moved {3.5 * k:g} µm") for k in range(1, 6))))
 
 
 TASKS = [(name, "", peer) for name in cases() for peer in PEERS] + list(VARIANTS)
@@ -180,16 +188,36 @@ class State:
     t_t: list[float]
 
 
+def processor_seconds() -> float:
+    """Return the processor time of this program and of those that it started and that ended."""
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(one.ru_utime + one.ru_stime for one in used)
+
+
 @dataclass
 class Answer:
-    """What a program gives for a case; ``seconds`` of processor time include the start of the program."""
+    """What a program gives for a case, with its factorisations if these are fewer than its iterations.
+
+    ``setup`` are processor seconds to :meth:`ready`, ``seconds`` from there to :meth:`done`; ``load`` is the machine's.
+    """
 
     program: str
     version: str
     licence: str
     states: list[State] = field(default_factory=list)
     iterations: int = 0
+    factorisations: int = 0
+    setup: float = 0.0
     seconds: float = 0.0
+    load: float = 0.0
+
+    def ready(self) -> None:
+        """End the set-up."""
+        self.setup = processor_seconds()
+
+    def done(self) -> None:
+        """End the timed part."""
+        self.seconds, self.load = processor_seconds() - self.setup, os.getloadavg()[0]
 
     def report(self, load: Load, f_n: float, f_t: float, displacement: Array, *points: Array) -> None:
         """Add a state if the load has a name; ``points`` are x, p_n and t_t of :class:`State`, in any order of x."""
@@ -219,6 +247,7 @@ def main(solve: Callable[[Case, Ridge], Answer]) -> None:
         parser.add_argument(name, type=Path)
     args = parser.parse_args()
     answer = solve(Case.read(args.case), Ridge.read(args.mesh))
-    answer.seconds = sum(os.times()[:4])
+    if not answer.seconds:
+        answer.done()
     write(answer, args.answer)
-    print(f"{answer.program} {answer.version}: {answer.iterations} iterations, {answer.seconds:.1f} s", flush=True)
+    print(f"{answer.program} {answer.version}: {answer.iterations} iterations, {answer.seconds:.2f} s", flush=True)

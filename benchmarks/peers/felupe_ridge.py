@@ -66,6 +66,7 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     dof0, dof1 = fem.dof.partition(field, supports)
     how = {"items": [*bodies, *contacts], "dof0": dof0, "dof1": dof1, "tol": _TOLERANCE, "maxiter": _MOST, "verbose": 0}
     answer = Answer("FElupe", fem.__version__, "GPL 3 or later")
+    answer.ready()
     for load in case.loads:
         supports["x"].value, supports["y"].value = load.x, load.y
         found = fem.newtonraphson(ext0=fem.dof.apply(field, supports, dof0), **how)

@@ -74,6 +74,7 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     query = ["dpkg-query", "-W", "-f", "${Version}", "python3-getfem"]
     version = subprocess.run(query, check=True, capture_output=True, text=True).stdout
     answer = Answer("GetFEM", version, "LGPL 3 or later")
+    answer.ready()
     for load in case.loads:
         forces = _newton(model, held, load, answer)
         points = (model.interpolation(text, at_points, _SKIN) for text in ("X(1) + u(1)", "p", "t"))

@@ -86,6 +86,7 @@ def solve(case: Case, ridge: Ridge) -> Answer:
     dofs = np.concatenate([e.dofs for e in places.Elements(ng.BND) if e.mat == "skin"])  # read by number of the point
     before_gap.vec.FV().NumPy()[dofs] = np.ravel(ng.y(points))
     answer = Answer("NGSolve", ng.__version__, "LGPL 2.1")
+    answer.ready()
     for before, load in case.steps():
         now.vec.data += (load.x - before.x) * lifts["x"].vec + (load.y - before.y) * lifts["y"].vec
         answer.iterations += _newton(loaded, now, residual)

@@ -1,12 +1,14 @@
 """The ridge by this package, and its mesh for the others."""
 
 import importlib.metadata
+import sys
+from pathlib import Path
 
 import dolfinx
 import numpy as np
 from mpi4py import MPI
 
-from benchmarks.peers.exchange import Answer, Case, Ridge, left_to_right, plain
+from benchmarks.peers.exchange import Answer, Case, Ridge, left_to_right, main, plain
 from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import TaggedMesh, load
@@ -70,6 +72,7 @@ def solve(case: Case, body: TaggedMesh, skin: np.ndarray) -> Answer:
     places = problem.V.tabulate_dof_coordinates()[:, :2] / _MM
     nodes = [int(np.argmin(np.linalg.norm(places - place, axis=1))) for place in skin]
     answer = Answer("fingerpad", f"{importlib.metadata.version('fenics-dolfinx')} (dolfinx)", "this project")
+    answer.ready()
     for before, now in case.steps():
         h, moved = problem.history, (now.x - before.x) * _MM
         problem.set_history(History(h.anchor - moved, h.pressure, h.x))
@@ -81,5 +84,14 @@ def solve(case: Case, body: TaggedMesh, skin: np.ndarray) -> Answer:
         displacement = problem.displacement()[nodes] / _MM + (now.x, 0.0)
         f_n, f_t = solver.reaction[1] * _MM, observer.ridge_loads(s).f_friction[0] * _MM
         answer.report(now, f_n, f_t, displacement, s.x.ravel() / _MM + now.x, s.p_n.ravel() / 1e6, s.t_t.ravel() / 1e6)
-    answer.iterations = solver.counts.newton
+    answer.iterations, answer.factorisations = solver.counts.newton, solver.counts.factorisations
     return answer
+
+
+def solve_file(case: Case, mesh: Ridge) -> Answer:
+    """Lead the ridge along the loads as the other programs are told to, on a mesh of the size that its file names."""
+    return solve(case, make(float(Path(sys.argv[2]).stem) * _MM), mesh.points[mesh.skin].reshape(-1, 2))
+
+
+if __name__ == "__main__":
+    main(solve_file)

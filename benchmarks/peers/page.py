@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.polynomial import Polynomial
 
 from benchmarks.harness import kept, page, picture, table
-from benchmarks.peers.exchange import TASKS, Answer, Array, Ridge, State, answer_path, cases
+from benchmarks.peers import speed
+from benchmarks.peers.exchange import TASKS, Answer, Array, Ridge, answer_path, cases
+from benchmarks.peers.quantities import differences, values
 from fingerpad.io.style import BLUE, GREEN, ORANGE, VERMILION
 
 FORCE, SHAPE = 5e-4, 1e-2  # bars: relative differences of forces, and of half-width and peak pressure
 _BARS = (FORCE, FORCE, SHAPE, SHAPE)
-_TO_POWERS = np.linalg.inv(np.vander([0.0, 1.0, 0.5], increasing=True))  # of the coordinate along an edge
 _HEAD = ["program", "F_n (N/mm)", "F_t (N/mm)", "half-width (mm)", "peak pressure (MPa)"]
 # Colour, marker, and whether it is filled: a variant that explains a program lies in the middle of its marker.
 _STYLES = {"NGSolve": (BLUE, "o", False), "GetFEM": (GREEN, "x", False), "FElupe": (ORANGE, "s", False),
@@ -33,38 +33,6 @@ is zero by symmetry in the pressed ridge, and its difference there is not judged
 
 
 # -- numbers -------------------------------------------------------------------------------------------------
-def values(state: State, ridge: Ridge) -> list[float]:
-    """Return normal force, friction (N/mm), half-width (mm) and peak pressure (MPa) of a state."""
-    return [state.f_n, state.f_t, half_width(ridge, state), max(state.p_n)]
-
-
-def half_width(ridge: Ridge, state: State) -> float:
-    """Return half the current length (mm) of the skin below the plane, its ends located inside edges."""
-    places = ridge.points[ridge.skin] + np.array(state.displacement).reshape(-1, 3, 2)
-    return sum(_length_below(edge) for edge in places) / 2
-
-
-def _length_below(edge: Array) -> float:
-    """Return the length over which the parabola through an edge's nodes, shape (3, 2), has y < 0."""
-    x, y = (Polynomial(_TO_POWERS @ z) for z in edge.T)
-    roots = y.roots()
-    real = roots[np.abs(np.imag(roots)) < 1e-12].real
-    cuts = [0.0, *np.sort(real[(real > 0) & (real < 1)]), 1.0]
-    gauss, weights = np.polynomial.legendre.leggauss(6)
-    length = 0.0
-    for a, b in zip(cuts, cuts[1:], strict=False):
-        if y((a + b) / 2) < 0:
-            xi = (a + b) / 2 + (b - a) / 2 * gauss
-            length += (b - a) / 2 * float(weights @ np.hypot(x.deriv()(xi), y.deriv()(xi)))
-    return length
-
-
-def differences(found: Sequence[float], reference: Sequence[float]) -> list[float | None]:
-    """Return relative differences; None for friction that vanishes by symmetry."""
-    judged = (True, abs(reference[1]) > 1e-2 * reference[0], True, True)
-    return [a / b - 1 if judge else None for a, b, judge in zip(found, reference, judged, strict=True)]
-
-
 def numbers(folder: Path) -> dict[str, Any]:
     """Return what the page shows of the answers in a folder, ready for JSON."""
     programs, meshes = dict[str, list[str]](), []
@@ -145,6 +113,7 @@ def draw(docs: Path) -> Path:
     finest = told["meshes"][-1]["states"]
     body = [
         table(["program", "version", "licence"], told["programs"]),
+        speed.section(told["speed"]) if "speed" in told else "",
         (Path(__file__).parent / "reasons.md").read_text(encoding="utf-8"),
         picture(docs / "peers.png", (13, 5), lambda figure: paint(figure, finest), caption),
     ]
