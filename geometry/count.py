@@ -6,7 +6,7 @@ junctions, that is at that distance:
 
 - the wavy curves, with the area on either side of each of them shared out until a layer is used up, and below them
   everything else to the bone and the nail;
-- about the crests that can touch, and about the receptor sites, what smaller elements there add to that.
+- about the crests that can touch, and about the tips below the Merkel sites, what smaller elements there add to that.
 
 Curvature and the shape of bone and nail are left out. Against 21 meshes of 2600 to 120 000 triangles it is right within
 a factor of 1.5 (``tests/test_count.py`` has some of them).
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
-from geometry.sizing import touching_ridges
+from geometry.sizing import growth_from_tips, touching_ridges
 
 Array = NDArray[np.float64]
 _EQUILATERAL = 4 / np.sqrt(3)  # triangles with edges of length 1 in an area of 1
@@ -124,17 +124,18 @@ def _crests(profiles: Profiles, size: MeshSize, touching: int) -> float:
 
 
 def _site(profiles: Profiles, size: MeshSize) -> float:
-    """Return what one receptor site adds."""
+    """Return what the tip below one Merkel site adds."""
     f = profiles.finger
-    depth = float(profiles.ve_d(0.0)) - f.merkel_offset - float(profiles.skin(0.0))
+    depth = float(profiles.ve_d(0.0)) - float(profiles.skin(0.0))
     other = float(_without_crests(profiles, size, np.array([f.sc_thickness + f.ve_thickness / 2]))[0])
     other = min(other, float(_graded(size.contact, np.array(depth), size)))
-    far = (other * np.sqrt(1 + _GRADED * size.growth) - size.receptor) / size.growth
+    steep = size.model_copy(update={"growth": growth_from_tips(size)})
+    far = (other * np.sqrt(1 + _GRADED * steep.growth) - size.receptor) / steep.growth
     if far <= 0:
         return 0.0
 
     def more(distance: Array) -> Array:
-        fine = _graded(size.receptor, distance, size)
+        fine = _graded(size.receptor, distance, steep)
         return np.asarray(1 / np.sqrt(np.maximum(fine**-2 - other**-2, 1e-300)))
 
     return _integral(lambda r: 2 * np.pi * r, more, far, size.receptor)

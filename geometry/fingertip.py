@@ -8,7 +8,7 @@ from geometry import tags
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
 from geometry.shape import shape
-from geometry.sizing import check, touching_ridges
+from geometry.sizing import check, growth_from_tips, touching_ridges
 
 _MM = 1e3  # gmsh's tolerances suit models in mm
 _HALF_ARC = 5e-3  # m
@@ -22,7 +22,7 @@ def build(finger: Fingertip, size: MeshSize, receptors: bool = True, half: bool 
     Args:
         finger: what is meshed.
         size: of its elements.
-        receptors: whether elements are small at the receptor sites.
+        receptors: whether elements are small at the tips of the intermediate ridges, just below the Merkel sites.
         half: mesh the half at x >= 0 alone, with half of ridge 0.
 
     Returns:
@@ -46,7 +46,7 @@ def finger(parameters: Fingertip | None = None, receptors: bool = False, **sizes
 
     Args:
         parameters: what is meshed; by default the default fingertip.
-        receptors: whether elements are small at the receptor sites.
+        receptors: whether elements are small at the tips of the intermediate ridges, just below the Merkel sites.
         sizes: of elements, as in :class:`geometry.parameters.MeshSize`; ridges within 5 mm of the centre can touch
             unless ``touching_half_arc`` says otherwise.
     """
@@ -212,24 +212,24 @@ def _sizes(p: Profiles, size: MeshSize, c: _Curves, touching: list[int], recepto
     f = p.finger
     fields = gmsh.model.mesh.field
 
-    def cone(smallest: float, **what: list[int] | list[float]) -> int:
+    def cone(smallest: float, slope: float, **what: list[int] | list[float]) -> int:
         distance = fields.add("Distance")
         for key, value in what.items():
             fields.setNumbers(distance, key, value)
         fields.setNumber(distance, "Sampling", 40)
         growth = fields.add("MathEval")
-        fields.setString(growth, "F", f"{smallest * _MM} + {size.growth} * F{distance}")
+        fields.setString(growth, "F", f"{smallest * _MM} + {slope} * F{distance}")
         return int(growth)
 
     # The tips that can touch, as points half a facet apart.
     across = p.touching_arcs(size.touching_fraction, max(size.contact / 2, 2e-6))
-    s = (np.array(touching)[:, None] * f.ridge_wavelength + across).ravel()
-    tips = _mesh_points(p.point(s, p.skin(s)))
-    cones = [cone(size.contact, PointsList=tips)]
-    if receptors:
-        sites = _mesh_points(p.merkel_sites()[[p.ridges.index(j) for j in touching]])
-        cones.append(cone(size.receptor, PointsList=sites))
-    cones.append(cone(size.interface, CurvesList=c.wavy))
+    middles = np.array(touching) * f.ridge_wavelength
+    s = (middles[:, None] + across).ravel()
+    cones = [cone(size.contact, size.growth, PointsList=_mesh_points(p.point(s, p.skin(s))))]
+    if receptors:  # the shape of the tip decides on the energy density at the site above it
+        tips = _mesh_points(p.point(middles, p.ve_d(middles)))
+        cones.append(cone(size.receptor, growth_from_tips(size), PointsList=tips))
+    cones.append(cone(size.interface, size.growth, CurvesList=c.wavy))
     cap = fields.add("MathEval")
     fields.setString(cap, "F", str(size.coarsest * _MM))
     smallest = fields.add("Min")

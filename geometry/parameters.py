@@ -108,15 +108,16 @@ class MeshSize(BaseModel):
     """Length of surface facets where ridges can touch. Range: below 10 nm skin is no continuum; 10 mm is the finger
     itself."""
     receptor: ElementSize = 5e-6
-    """Element size at the Merkel sites of ridges that can touch. The tips of the intermediate ridges have a radius
-    of 6 µm, and energy densities need an element of that size. Friction and contact length hardly depend on this
-    size."""
+    """Element size at the tips of the intermediate ridges, just below the Merkel sites, of ridges that can touch. These
+    tips have a radius of 6 µm, and energy densities at the sites need an element of that size. Friction and contact
+    length hardly depend on this size."""
     interface: ElementSize = 80e-6
     """Largest element size on wavy junctions and on ridges that cannot touch."""
     coarsest: ElementSize = 1e-3
     """Largest element size."""
     growth: Annotated[Finite, within(1e-4, 1)] = 0.25
-    """Increase of the element size per distance from the finest elements."""
+    """Increase of the element size per distance from the finest elements; twice as much, and 1 at most, from the tips
+    of the intermediate ridges."""
     touching_half_arc: Annotated[Finite, within(1e-6, 0.2, "m")] | None = None
     """Arc length on either side of the centre within which ridges can touch. By default a rule of thumb gives it
     (:mod:`fingerpad.model.touching`). A run that finds contact at the end of this arc starts again with more

@@ -4,6 +4,16 @@ from geometry import refusals
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError, Profiles
 
+_FASTER = 2.0  # growth from a tip over that elsewhere; at 4 the densities of the default finger are 4 % off
+
+
+def growth_from_tips(size: MeshSize) -> float:
+    """Return the increase of the element size per distance from the tips of the intermediate ridges.
+
+    The strain varies over a length that grows with this distance, and so may the elements.
+    """
+    return min(_FASTER * size.growth, 1.0)
+
 
 def touching_ridges(finger: Fingertip, size: MeshSize) -> range:
     """Return the numbers of the ridges that are meshed finely enough to touch the screen.

@@ -8,6 +8,7 @@ import pytest
 import ufl
 from dolfinx import fem
 from dolfinx import geometry as search
+from dolfinx.mesh import entities_to_geometry
 from mpi4py import MPI
 from pydantic import ValidationError
 from scipy.spatial import cKDTree
@@ -166,6 +167,39 @@ def test_cells_at_the_merkel_sites(finger_mesh, profiles):
 def test_cells_at_the_meissner_sites(finger_mesh, profiles):
     """On a mesh of any size they are dermis: each papilla has a node on its top."""
     np.testing.assert_array_equal(layer_at(finger_mesh, profiles.meissner_sites()), tags.DERMIS)
+
+
+RECEPTOR = 5 * UM
+
+
+def at_the_tips(receptors=True, growth=0.25):
+    """Return half a finger, coarse but for the tips below the Merkel sites, where ridges 0 to 2 can touch."""
+    size = MeshSize(contact=40 * UM, receptor=RECEPTOR, growth=growth, touching_half_arc=1 * MM)
+    return load(MPI.COMM_WORLD, partial(fingertip.build, Fingertip(), size, receptors, half=True))
+
+
+@pytest.mark.mpi
+def test_elements_at_the_tips_below_the_merkel_sites(profiles):
+    """Where ridges can touch their edges are as long as asked, elsewhere several times as long.
+
+    Tolerance: an edge has the size asked for at its middle, 4/3 of that at the tip, to an eighth of it.
+    """
+    mesh = at_the_tips().mesh
+    own = np.arange(mesh.topology.index_map(1).size_local, dtype=np.int32)
+    ends = mesh.geometry.x[entities_to_geometry(mesh, 1, own)][:, :, :2]
+    s = np.arange(4) * WAVE
+    means = []
+    for tip in profiles.point(s, profiles.ve_d(s)):
+        here = ends[np.linalg.norm(ends - tip, axis=2).min(axis=1) < 1e-3 * UM]
+        means.append(np.concatenate(mesh.comm.allgather(np.linalg.norm(here[:, 1] - here[:, 0], axis=1))).mean())
+    assert max(means[:3]) < 1.5 * RECEPTOR < 4 * RECEPTOR < means[3]
+
+
+@pytest.mark.mpi
+def test_triangles_of_a_merkel_site():
+    """By default fewer than 200 each, and more than 100; the site on the line of symmetry counts half."""
+    with_sites, without = (at_the_tips(wanted).mesh.topology.index_map(2).size_global for wanted in (True, False))
+    assert 100 < (with_sites - without) / 2.5 < 200
 
 
 @pytest.mark.mpi

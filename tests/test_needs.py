@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -12,10 +11,9 @@ from fingerpad.model import options
 from fingerpad.model.options import plan
 from fingerpad.runs import full as run_module
 from fingerpad.scene import Scene, from_data
-from geometry import fingertip, tags
+from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import load
-from geometry.parameters import Fingertip
 from tests.runs import run
 from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.body import Body
@@ -190,17 +188,6 @@ def test_run_without_receptors(pressed, tmp_path, capsys):
     assert not (tmp_path / "receptors.csv").exists()
     assert (tmp_path / "finger_press.png").exists()
     assert capsys.readouterr().out.count("output.receptors is false") == 1
-
-
-@pytest.mark.long
-def test_unknowns_spared_without_receptors(coarse):
-    """With elements of 20 um at the sites, as by default, they are a twelfth of this coarse mesh and more."""
-    size = coarse.model_copy(update={"receptor": 20e-6})
-    cells = [
-        load(MPI.COMM_WORLD, partial(fingertip.build, Fingertip(), size, wanted)).mesh.topology.index_map(2).size_local
-        for wanted in (True, False)
-    ]
-    assert cells[1] < 11 / 12 * cells[0]
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ mesh parameter at a time gives each its share of the error (:mod:`fingerpad.rich
 
 * ``contact``: size of the facets that can touch,
 * ``bulk``: growth of the elements, their size on the junctions, and the coarsest,
-* ``receptor``: size at the Merkel sites; left out where only other quantities are asked for,
+* ``receptor``: size at the tips below the Merkel sites; left out where only other quantities are asked for,
 * ``steps``: of the loads, which matters where friction keeps a history, to normal contact; from a path with steps
   twice as long, up to there, on the first mesh. Full slip does not depend on the path.
 

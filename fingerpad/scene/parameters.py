@@ -170,7 +170,7 @@ class Output(Part):
 
     receptors: Switch = True
     """Whether strain energy densities at the Merkel and Meissner sites are computed, with elements of size
-    ``mesh.receptor`` there."""
+    ``mesh.receptor`` below the Merkel sites."""
     errors: Switch = True
     """Whether discretisation errors are estimated; see :mod:`fingerpad.accuracy.refinement`. With an accuracy they
     always are."""
