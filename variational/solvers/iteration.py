@@ -17,6 +17,7 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from variational.solvers.anderson import Anderson
 from variational.solvers.equations import OUTSIDE, Equations
 from variational.solvers.tangent import Tangent
 from variational.solvers.timing import Counts
@@ -61,6 +62,7 @@ class Iteration:
         self.equations, self.layout, self.counts = equations, equations.layout, counts
         self.tangent, self.force_scale = Tangent(equations, counts), force_scale
         self.f, self._next_x, self._next_f = (self.layout.create_vector() for _ in range(3))
+        self._anderson = Anderson(self.layout.comm)
         self.floor = 0.0
         self._norms: list[float] = []
         self._shifted = False  # whether the tangent has the shift of pseudo-transient continuation
@@ -95,6 +97,7 @@ class Iteration:
             shifted: by pseudo-transient continuation.
         """
         self._shifted = shifted
+        self._anderson.interrupt()
         self.tangent.start()
         self.tangent.stale |= shifted
         seconds = self.equations.timings.seconds
@@ -176,7 +179,13 @@ class Iteration:
         return float(_ROUNDINGS * np.finfo(float).eps * np.sqrt(total))
 
     def _limit(self, x: PETSc.Vec, step: PETSc.Vec) -> bool:
-        """Shorten a step to where its tangent still holds, or refuse it."""
+        """Accelerate a step, shorten it to where its tangent still holds, or refuse it."""
+        if not self.tangent.kept:
+            self._anderson.forget()
+        if not self._shifted:
+            more = self._anderson.correction(x.array_r, self.f.array_r, step.array_r)
+            if more is not None:
+                step.array_w[:] += more
         if len(self._norms) <= _LIMITED_STEPS:
             step.scale(self._until_deep(x, step))
         norm = self._look_ahead(x, step)
@@ -187,6 +196,7 @@ class Iteration:
             norm = self._look_ahead(x, step)
         self._refused = self.tangent.kept and len(self._norms) > 1 and norm > self._norms[-1]
         if self._refused:
+            self._anderson.interrupt()
             step.set(0.0)
             self._look_ahead(x, step)
         self._ahead = True
