@@ -33,10 +33,14 @@ from variational.contact.formulation import SurfaceState
 from variational.quantities import Observer
 from variational.roughness.closure import Closure, air_gaps, check
 from variational.solvers.failure import NotConverged
+from variational.solvers.iteration import EXACT, Accuracy
 from variational.solvers.newton import Solver
 from variational.solvers.secant import Secants
 
 Array = NDArray[np.float64]
+_FIRST = Accuracy(1e-5)
+_LATER = Accuracy(0.0, 0.03, patience=2)
+_EXACT = 1e-4
 
 
 @dataclass
@@ -101,9 +105,27 @@ class Coupling:
         if self.closure is not None:
             self.solver.problem.set_air_gaps(d_eq)
 
-    def _iterate(self, pseudo_transient: bool) -> tuple[Array, SurfaceState]:
+    def _jump(self, secants: Secants) -> None:
+        """Solve where full Newton steps fail: the ridge that lets go gets the air gap of one without contact."""
+        ridge = secants.leaving()
+        if ridge is not None and ridge not in self._opened:
+            self._open(ridge)
+            if self.solver.attempt(_LATER):
+                return
+        self.solver.solve(pseudo_transient=True, tried=True)
+
+    def _open(self, ridge: int) -> None:
+        d_eq = self.d_eq.copy()
+        d_eq[ridge] = self._free
+        self._opened.add(ridge)
+        self.set_air_gaps(d_eq)
+
+    def _iterate(self, pseudo_transient: bool, enough: Accuracy, secants: Secants | None) -> tuple[Array, SurfaceState]:
         """Solve at the current air gaps; return the air gaps by the closure (m), and the surface."""
-        self.solver.solve(pseudo_transient)
+        if secants is None:
+            self.solver.solve(pseudo_transient, enough)
+        elif not self.solver.attempt(enough):
+            self._jump(secants)
         with self.solver.timings.phase("coupling"):
             state = self.observer.state()
             if self.closure is None:
@@ -126,15 +148,18 @@ class Coupling:
                 ``NOT_A_NUMBER`` with the ridge of which the closure made one.
         """
         self.history = CouplingHistory()
+        self._opened: set[int] = set()
+        self._free = float(air_gaps(self.closure, np.zeros(1))[0]) if self.closure else np.nan
         self.set_air_gaps(self.d_eq)
         problem = self.solver.problem
         formulation = problem.interface.formulation
         charged = self.closure is not None and float(problem.voltage.value) != 0.0
         contact_history = problem.history
         secants, numbers = Secants(self.d_eq, self.gain), self.observer.surface.ridge_numbers
+        enough = _FIRST if charged else EXACT
         for iteration in range(self.cap):
+            found, state = self._iterate(pseudo_transient, enough, secants if iteration else None)
             d = self.d_eq
-            found, state = self._iterate(pseudo_transient or iteration > 0)
             r = found - d if charged else np.zeros_like(d)  # without attraction the air gaps do not act
             error = formulation.error(state, contact_history, problem.interface.friction)
             self.history.errors.append(problem.mesh.comm.allreduce(error, op=MPI.MAX))
@@ -146,7 +171,7 @@ class Coupling:
             self.history.jumped = {numbers[k] for k in np.flatnonzero(secants.jumped())}
             scales = not charged or secants.settled(self.tolerance)
             contact = self.history.errors[-1] <= formulation.tolerance
-            if scales and contact:
+            if scales and contact and enough == EXACT:
                 if charged:
                     self.gain = secants.gain
                 else:
@@ -155,8 +180,14 @@ class Coupling:
             if not contact:
                 contact_history = formulation.corrected(state, contact_history)
                 problem.correct_history(contact_history)
-            if not scales:
-                self.set_air_gaps(secants.step())
+            enough = EXACT if not charged or secants.settled(_EXACT) else _LATER
+            if charged:
+                d_eq = secants.step()
+                for ridge in np.flatnonzero(secants.past_fold()):
+                    if ridge not in self._opened:
+                        d_eq[ridge] = self._free
+                        self._opened.add(ridge)
+                self.set_air_gaps(d_eq)
         ridge, error = self.history.ridges[-1], self.history.errors[-1]
         where = f"a contact error of {error:.2g} m" if scales else f"ridge {ridge}"
         raise NotConverged(f"COUPLING_CAP at {where}", False, cycling=not scales)

@@ -13,6 +13,8 @@ Pseudo-transient continuation (Kelley and Keyes 1998, doi 10.1137/S0036142996304
 falls. Every iteration has a tangent of its own then.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
@@ -34,7 +36,6 @@ DEFAULTS = {
     "pc_type": "lu",
     "pc_factor_mat_solver_type": "mumps",
 }
-_PATIENCE = 4  # iterations in which the least residual must fall
 _CONTRACTS = 0.5  # reduction of the residual an iteration below which a factorisation is kept
 _DEEPEST = 1e-6  # m, how deep open skin may be driven by one of the first steps
 _LIMITED_STEPS = 6
@@ -44,6 +45,21 @@ _ROUNDINGS = 4.0  # units of roundoff of the sum of each node's absolute forces,
 _FLOOR = 1e-6  # if that is less than this part of the force scale
 _SHIFT = 2e9  # Pa/m, eta at the start
 _SHIFT_FALL, _SHIFT_RISE = 0.4, 4.0  # of eta an iteration
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """With which imbalance an iterate is good enough; the tolerance of the solver always is."""
+
+    floor: float = 0.0
+    """Norm of the nodal forces' imbalance over the force scale."""
+    part: float = 0.0
+    """The same over that of the first iterate."""
+    patience: int = 4
+    """Iterations in which the least residual must fall; fewer where a failure has another remedy than smaller steps."""
+
+
+EXACT = Accuracy()
 
 
 class Iteration:
@@ -65,6 +81,7 @@ class Iteration:
         self._anderson = Anderson(self.layout.comm)
         self.floor = 0.0
         self._norms: list[float] = []
+        self._enough = EXACT
         self._shifted = False  # whether the tangent has the shift of pseudo-transient continuation
         self._refused = False  # whether the present iteration stayed where it was
         self._ahead = False  # whether the residual of the next iterate is known
@@ -89,14 +106,15 @@ class Iteration:
         snes.getKSP().setPostSolve(self.tangent.make_relative)
         return snes
 
-    def run(self, x: PETSc.Vec, shifted: bool = False) -> int:
+    def run(self, x: PETSc.Vec, shifted: bool = False, enough: Accuracy = EXACT) -> int:
         """Iterate from ``x`` and leave the last iterate there; return SNES's reason, positive if it converged.
 
         Args:
             x: unknowns.
             shifted: by pseudo-transient continuation.
+            enough: imbalance with which an iterate is good enough.
         """
-        self._shifted = shifted
+        self._shifted, self._enough = shifted, enough
         self._anderson.interrupt()
         self.tangent.start()
         self.tangent.stale |= shifted
@@ -129,13 +147,14 @@ class Iteration:
         _, atol, _, most = snes.getTolerances()
         if iteration == 0:
             self._norms, self._refused = [], False
+            self._atol = max(atol, self._enough.part * norms[2], self._enough.floor * self.force_scale)
             eta.value = _SHIFT if self._shifted else 0.0
         previous = self._norms[-1] if self._norms else np.inf
         norm = norms[2]
         if not self._refused:
             self._norms.append(norm)
         self.floor = 0.0
-        if norm <= atol:
+        if norm <= self._atol:
             return reason.CONVERGED_FNORM_ABS
         if norm >= OUTSIDE / 2:
             return reason.DIVERGED_FUNCTION_DOMAIN
@@ -150,8 +169,9 @@ class Iteration:
         if self._shifted and iteration > 0:
             eta.value *= min(norm / previous, _SHIFT_RISE) if norm > previous else _SHIFT_FALL
         # The first norm is left out: it may hold a prescribed displacement not yet made.
-        late, early = self._norms[1:][-_PATIENCE:], self._norms[1:][-2 * _PATIENCE : -_PATIENCE]
-        if not self._shifted and len(early) == _PATIENCE and min(late) > 0.7 * min(early):
+        few = self._enough.patience
+        late, early = self._norms[1:][-few:], self._norms[1:][-2 * few : -few]
+        if not self._shifted and len(early) == few and min(late) > 0.7 * min(early):
             return reason.DIVERGED_LOCAL_MIN  # cycles
         return reason.ITERATING
 

@@ -19,7 +19,7 @@ from petsc4py import PETSc
 from variational.problem import SLIPS, STICKS
 from variational.solvers.equations import OUTSIDE, Control, Equations
 from variational.solvers.failure import snes_failure
-from variational.solvers.iteration import Iteration
+from variational.solvers.iteration import EXACT, Accuracy, Iteration
 from variational.solvers.timing import Counts
 
 Array = NDArray[np.float64]
@@ -54,6 +54,7 @@ class Solver:
         self.force_scale, self.counts, self.timings = force_scale, Counts(), equations.timings
         self.x = self.layout.create_vector()
         self.iteration = Iteration(equations, self.counts, force_scale, tolerance)
+        self._solved = False  # whether the last solve ended in an equilibrium
         self._on_cone = True  # whether points may be on the friction cone
         self._skin_rows_x = equations.skin_rows([0])
 
@@ -127,24 +128,46 @@ class Solver:
             slipping: points on the friction cone are first taken for slipping on, not for sticking.
             on_cone: whether there are any, as the last accepted state of a path leaves; else no other guess is tried.
         """
+        guess = SLIPS if slipping else STICKS
+        smooth = self._solved and self.control.x != control.x and self.problem.guess.value == guess
+        self.iteration.tangent.stale |= not smooth
         self.control, self.problem.voltage.value = control, voltage
-        self.problem.guess.value = SLIPS if slipping else STICKS
+        self.problem.guess.value = guess
         self._on_cone = on_cone
-        self.iteration.tangent.stale = True
 
-    def solve(self, pseudo_transient: bool = False) -> None:
+    def attempt(self, enough: Accuracy) -> bool:
+        """Iterate from ``x`` by full Newton steps alone; return whether that ends in an equilibrium, else stay at ``x``.
+
+        Args:
+            enough: imbalance with which the iteration may end.
+        """
+        start = self.x.array_r.copy()
+        self._solved = self.iteration.run(self.x, enough=enough) > 0
+        if not self._solved:
+            self.x.array_w[:] = start
+            self.iteration.tangent.stale = True
+        return self._solved
+
+    def solve(self, pseudo_transient: bool = False, enough: Accuracy = EXACT, tried: bool = False) -> None:
         """Find the equilibrium near ``x`` for the current loads and leave it in ``x`` and the problem's u.
 
         Args:
             pseudo_transient: repeat as pseudo-transient continuation what full Newton steps do not manage, instead of
                 with the other guess for the points on the friction cone.
+            enough: imbalance with which full Newton steps may end.
+            tried: whether full Newton steps from ``x`` have just failed, see :meth:`attempt`.
 
         Raises:
             NotConverged: with SNES's reason; ``x`` is then the last iterate.
         """
-        start, run = self.x.array_r.copy(), self.iteration.run
+        start = self.x.array_r.copy()
+        self._solved = False
+
+        def run(x: PETSc.Vec, shifted: bool = False) -> int:
+            return self.iteration.run(x, shifted, EXACT if shifted else enough)
+
         self.equations.inverted, self.equations.not_a_number = False, ""
-        reason = run(self.x)
+        reason = -1 if tried else run(self.x)
         friction = self.problem.anchor is not None
         if reason <= 0 and not pseudo_transient and friction and self._on_cone:  # the other guess, which is then kept
             self.x.array_w[:] = start
@@ -159,6 +182,7 @@ class Solver:
             reason = run(self.x, shifted=True)
         if reason <= 0:
             raise snes_failure(self.iteration.snes, self.equations.inverted, self.equations.not_a_number)
+        self._solved = True
 
     def _ease(self, start: Array) -> int:
         """Solve with softened tangential springs and stiffen them step by step; return SNES's reason.

@@ -25,6 +25,8 @@ _AMPLIFIED = np.array([10.0, 10.0, 100.0, 1e3])  # largest 1 / (1 - gain) after 
 _SEEN = 1e-6  # of d: what a secant is drawn over, far above the error that a solve leaves, and
 _LEADS = 0.1  # of the largest move: else it is the other ridges' air gaps that moved this one's pressure
 _FIRST = 0.01  # of d: how far the first step may go beyond r, whose gain is that of another load
+_OPENED, _OPENS = 1.3, 1.02  # air gap over that of the loop's start of a ridge that lets go, and of one that may
+_NEARLY = 0.9  # gain of a ridge that may
 _JUMP = 0.1  # of d: how far a ridge past its fold goes at least
 
 
@@ -71,6 +73,17 @@ class Secants:
     def jumped(self) -> NDArray[np.bool_]:
         """Return which ridges went past a fold: their gain was above one and their air gap changed by far."""
         return self._past & (np.abs(self._d - self._start) > _JUMP * self._start)
+
+    def past_fold(self) -> NDArray[np.bool_]:
+        """Return which ridges let go: their gain is above one, and their air gap has opened and opens on by far."""
+        return (self.gain >= 1) & (self._r > _JUMP * self._d) & (self._d > _OPENED * self._start)
+
+    def leaving(self) -> int | None:
+        """Return the ridge that lets go if the skin does; None where none does, or another is about to come down."""
+        if (self._d < self._start / _OPENED).any():
+            return None
+        lets_go = (self._r > 0) & ((self._d > _OPENS * self._start) | (np.nan_to_num(self.gain) > _NEARLY))
+        return int(np.argmax(np.where(lets_go, self._d / self._start, 0))) if lets_go.any() else None
 
     def _amplification(self, steep: NDArray[Any] | int) -> Array:
         """Return 1 / (1 - gain), bounded where the gain is near one or above; no gain known counts as none."""
