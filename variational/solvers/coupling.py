@@ -23,7 +23,7 @@ The tangent of the macroscale is that of frozen air gaps. When a later iteration
 fails, it is because a ridge jumps, and pseudo-transient continuation is allowed at once.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from mpi4py import MPI
@@ -38,8 +38,9 @@ from variational.solvers.newton import Solver
 from variational.solvers.secant import Secants
 
 Array = NDArray[np.float64]
-_FIRST = Accuracy(1e-5)
-_LATER = Accuracy(0.0, 0.03, patience=2)
+import os
+_FIRST = Accuracy(float(os.environ.get('FIRST', 1e-5)))
+_LATER = Accuracy(0.0, float(os.environ.get('LATER', 0.03)))
 _EXACT = 1e-4
 
 
@@ -124,7 +125,7 @@ class Coupling:
         """Solve at the current air gaps; return the air gaps by the closure (m), and the surface."""
         if secants is None:
             self.solver.solve(pseudo_transient, enough)
-        elif not self.solver.attempt(enough):
+        elif not self.solver.attempt(replace(enough, patience=4 if secants.leaving() is None else 2)):
             self._jump(secants)
         with self.solver.timings.phase("coupling"):
             state = self.observer.state()
@@ -186,6 +187,14 @@ class Coupling:
                 for ridge in np.flatnonzero(secants.past_fold()):
                     if ridge not in self._opened:
                         d_eq[ridge] = self._free
+                        self._opened.add(ridge)
+                if __import__("os").environ.get("TRACE"):
+                    k = np.argsort(-abs(secants._r / secants._d))[:3]
+                    print("   r/d", [(numbers[i], f"{secants._r[i] / secants._d[i]:+.2e} gain {secants.gain[i]:.2f}") for i in k])
+                for ridge in np.flatnonzero(secants.falling()):
+                    others = found[found < 0.5 * self._free]
+                    if ridge not in self._opened and len(others) and __import__("os").environ.get("FALL"):
+                        d_eq[ridge] = np.median(others)
                         self._opened.add(ridge)
                 self.set_air_gaps(d_eq)
         ridge, error = self.history.ridges[-1], self.history.errors[-1]

@@ -36,15 +36,16 @@ DEFAULTS = {
     "pc_type": "lu",
     "pc_factor_mat_solver_type": "mumps",
 }
-_CONTRACTS = 0.5  # reduction of the residual an iteration below which a factorisation is kept
+import os
+_CONTRACTS = float(os.environ.get('CONTRACTS', 0.5))  # reduction of the residual an iteration below which a factorisation is kept
 _DEEPEST = 1e-6  # m, how deep open skin may be driven by one of the first steps
 _LIMITED_STEPS = 6
 _HALVINGS = 5  # of a step that would turn elements inside out or
 _GROWS = 10.0  # make the residual grow more than this
 _ROUNDINGS = 4.0  # units of roundoff of the sum of each node's absolute forces, within which a residual may stall,
 _FLOOR = 1e-6  # if that is less than this part of the force scale
-_SHIFT = 2e9  # Pa/m, eta at the start
-_SHIFT_FALL, _SHIFT_RISE = 0.4, 4.0  # of eta an iteration
+_SHIFT = float(os.environ.get('SHIFT', 2e9))  # Pa/m, eta at the start
+_SHIFT_FALL, _SHIFT_RISE = float(os.environ.get('PTFALL', 0.4)), 4.0  # of eta an iteration
 
 
 @dataclass(frozen=True)

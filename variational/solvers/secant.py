@@ -68,7 +68,7 @@ class Secants:
         most = np.inf if self._has_stepped else first
         step = np.clip(self._r * self._amplification(self._steep), -most, most)
         self._has_stepped = True
-        return self._d + np.clip(step, -self._d / 3, self._d / 2)
+        return self._d + np.clip(step, -self._d * float(__import__('os').environ.get('CLIP', 1 / 3)), self._d / 2)
 
     def jumped(self) -> NDArray[np.bool_]:
         """Return which ridges went past a fold: their gain was above one and their air gap changed by far."""
@@ -76,7 +76,11 @@ class Secants:
 
     def past_fold(self) -> NDArray[np.bool_]:
         """Return which ridges let go: their gain is above one, and their air gap has opened and opens on by far."""
-        return (self.gain >= 1) & (self._r > _JUMP * self._d) & (self._d > _OPENED * self._start)
+        return (self.gain >= 1) & (self._r > _JUMP / 2 * self._d) & (self._d > _OPENED * self._start)
+
+    def falling(self) -> NDArray[np.bool_]:
+        """Return which ridges come down: their gain is above one, and their air gap has closed and closes on by far."""
+        return (self.gain >= 1) & (self._r < -_JUMP * self._d) & (self._d < self._start / _OPENED)
 
     def leaving(self) -> int | None:
         """Return the ridge that lets go if the skin does; None where none does, or another is about to come down."""
