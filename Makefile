@@ -6,7 +6,7 @@
 # make fuzz   10 000 scenes and command lines, each ready to run or refused in one sentence; some minutes
 # make pages  every generated page and picture of docs/ from the numbers kept there; seconds, no run
 # make verify every number with a known answer, some minutes; docs/verification.md
-# make paper  every figure and table of the paper, beside what it says; docs/paper.md, an hour or two
+# make paper  the statements of the paper beside this model's numbers; docs/paper.md, an hour or two
 # make chart  error over work, one numerical setting after the other; docs/chart.md, hours
 #
 # With SUITE=sid in Debian unstable, that is with a newer dolfinx: make test SUITE=sid

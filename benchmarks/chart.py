@@ -1,10 +1,10 @@
 """Error over work: one numerical setting after the other, around the default scene.
 
-environment/run python3 -m benchmarks.chart [--jobs 2] [--draw]     after benchmarks.errors, accuracy and models; hours
+environment/run python3 -m benchmarks.chart [--jobs 2] [--draw]     after benchmarks.errors; hours
 
-A point is a run of the default scene (press, charge, slide to full slip) with a setting of its own, or an answer
-without a path. Its error is the distance from the limit of benchmarks/errors.py; its cost is factorisations times
-unknowns, or processor time, up to the state of the quantity. Writes docs/chart.json, docs/chart.md and docs/chart.png.
+A point is a run of the default scene (press, charge, slide to full slip) with a setting of its own. Its error is the
+distance from the limit of benchmarks/errors.py; its cost is factorisations times unknowns, or processor time, up to the
+state of the quantity. Writes docs/chart.json, docs/chart.md and docs/chart.png.
 """
 
 import sys
@@ -21,6 +21,7 @@ from benchmarks import errors, harness
 from benchmarks.errors import STATES
 from benchmarks.limits import Limit
 from benchmarks.runs import finished
+from fingerpad.io import style
 from fingerpad.model.touching import by_rule
 from fingerpad.scene import Scene, load
 
@@ -28,7 +29,6 @@ _LIMIT = 10800.0  # s of processor time for one run
 MEASURES = {"work": "factorisations × unknowns", "seconds": "processor time"}
 TARGETS = (5e-2, 1e-2, 2e-3)  # errors whose cost is in the tables
 DEFAULT = "default"
-REQUESTED, AGAIN, REDUCED = NO_PATH = ("accuracy asked for", "solved again", "reduced model")
 OTHER_MODEL = "formulation"
 KINDS = {"f_t": "f_T and µ_app", "contact_length": "contact length", "sed_0": "SED at the central Merkel site"}
 QUANTITIES = [f"{state}_{kind}" for kind in KINDS for state in STATES if kind != "f_t" or state == "slip"]
@@ -85,25 +85,16 @@ class Point:
     label: str
     family: str
     work: Mapping[str, float]
-    seconds: Mapping[str, float]
-    """Processor time, set-up included; empty where it was not kept."""
+    seconds: Mapping[str, float]  # processor time, set-up included; empty where it was not kept
     errors: Mapping[str, float]
 
-    def error(self, quantity: str) -> float | None:
-        """Return the error of a quantity, or the largest of all for :data:`ALL`; None if it is not in the answer."""
-        if quantity == ALL:
-            return max(self.errors.values()) if set(QUANTITIES) <= set(self.errors) else None
-        return self.errors.get(quantity)
+    def error(self, quantity: str) -> float:
+        """Return the error of a quantity, or the largest of all for :data:`ALL`."""
+        return max(self.errors.values()) if quantity == ALL else self.errors[quantity]
 
-    def cost(self, quantity: str, measure: str) -> float | None:
-        """Return the cost up to the state of a quantity; None if it is not known or not in the answer."""
-        spent = getattr(self, measure)
-        return float(spent[quantity.split("_", 1)[0]]) if spent and self.error(quantity) is not None else None
-
-
-def _errors(values: Mapping[str, Any], reference: Reference) -> dict[str, float]:
-    there = (name for name in QUANTITIES if values.get(name) is not None)
-    return {name: abs(values[name] / reference[name].value - 1) for name in there}
+    def cost(self, quantity: str, measure: str = "work") -> float:
+        """Return the cost up to the state of a quantity."""
+        return float(getattr(self, measure)[quantity.split("_", 1)[0]])
 
 
 def runs(out: Path, reference: Reference) -> Iterator[Point]:
@@ -112,95 +103,56 @@ def runs(out: Path, reference: Reference) -> Iterator[Point]:
         if run := finished(scene, out):
             spent = np.cumsum(run.steps["factorisations"]) * run.summary["unknowns"], run.steps["processor_seconds"]
             work, seconds = ({s: float(each[run.row(s)]) for s in STATES} for each in spent)
-            yield Point(label, family, work, seconds, _errors(errors.values(run), reference))
-
-
-def without_path(docs: Path, reference: Reference) -> Iterator[Point]:
-    """Yield the points of answers without a path, from the kept numbers of other studies."""
-
-    def point(label: str, family: str, work: float, seconds: float, values: Mapping[str, Any]) -> Point:
-        costs = [dict.fromkeys(STATES, cost) for cost in (work, seconds)]
-        return Point(label, family, costs[0], costs[1], _errors(values, reference))
-
-    for name, row in harness.kept("accuracy", docs).numbers["runs"].items():
-        if name.startswith("default scene; ") and "values" in row:
-            yield point(name.split("; ")[1], REQUESTED, row["work"], row["seconds"], row["values"])
-    again, work, seconds = harness.kept("errors", docs).numbers["again"], 0.0, 0.0
-    for k, solve in enumerate([again["path"], *again["levels"]]):
-        work, seconds = work + solve["unknowns"] * solve["factorisations"], seconds + solve["processor_seconds"]
-        if k:
-            yield point(f"again at {solve['mesh']['contact'] * 1e6:g} µm", AGAIN, work, seconds, solve["values"])
-    scene = f"{errors.DEFAULT.f_ext:g} N/m, {errors.DEFAULT.voltage:g} V"
-    for model, found in harness.kept("models", docs).numbers["scenes"][scene].items():
-        if model != "full" and "summary" in found:
-            cost = found["cost"]
-            yield point(model, REDUCED, cost["factorisations"] * cost["unknowns"], cost["seconds"], found["summary"])
+            found = errors.values(run)
+            off = {name: abs(found[name] / reference[name].value - 1) for name in QUANTITIES}
+            yield Point(label, family, work, seconds, off)
 
 
 def compute(args: Any) -> None:
     """Run what is missing and keep the numbers."""
     wanted = {label: scene for (_, label), scene in scenes().items()}
     summaries, reference = harness.run(wanted, args, _LIMIT), errors.known(args.docs)
-    found = [*runs(args.out, reference), *without_path(args.docs, reference)]
     ends = {name: vars(reference[name]) for name in QUANTITIES}
-    numbers = {"reference": ends, "points": [asdict(point) for point in found], "lost": lost(summaries)}
+    points = [asdict(point) for point in runs(args.out, reference)]
+    numbers = {"reference": ends, "points": points, "lost": failed(summaries)}
     harness.keep("chart", numbers, harness.made(summaries.values()), args.docs)
 
 
-def lost(summaries: Mapping[str, Mapping[str, Any]]) -> list[str]:
+def failed(summaries: Mapping[str, Mapping[str, Any]]) -> list[str]:
     """Return the runs that did not reach full slip, with the reason."""
     no_slip = "no steady full slip by the end of the slide"
     return [f"{label}: {s.get('failure', no_slip)}" for label, s in summaries.items() if not s.get("full_slip")]
 
 
 # -- comparison ----------------------------------------------------------------------------------------------
-def known(points: Sequence[Point], quantity: str, measure: str = "work") -> list[tuple[float, float, Point]]:
-    """Return the points that answer for a quantity, with cost and error, from cheap to expensive."""
-    found = [(cost, p.error(quantity) or 0.0, p) for p in points if (cost := p.cost(quantity, measure)) is not None]
-    return sorted(found, key=lambda each: each[:2])
-
-
-def judged(points: Sequence[Point]) -> list[Point]:
-    """Return the runs along the whole path with the default's contact model: another may hide the mesh's error."""
-    return [p for p in points if p.family not in (*NO_PATH, OTHER_MODEL)]
+def judged(points: Sequence[Point], quantity: str, measure: str = "work") -> list[Point]:
+    """Return the runs with the default's contact model, since another may hide the mesh's error, cheap ones first."""
+    some = [p for p in points if p.family != OTHER_MODEL and getattr(p, measure)]
+    return sorted(some, key=lambda p: (p.cost(quantity, measure), p.error(quantity)))
 
 
 def front(points: Sequence[Point], quantity: str, measure: str = "work") -> list[Point]:
     """Return Pareto's front from cheap to expensive: no other judged run is both cheaper and more accurate."""
-    some = known(judged(points), quantity, measure)
-    return [p for k, (_, error, p) in enumerate(some) if all(error < other for _, other, _ in some[:k])]
+    some = judged(points, quantity, measure)
+    return [p for k, p in enumerate(some) if all(p.error(quantity) < q.error(quantity) for q in some[:k])]
 
 
 def _default(points: Sequence[Point]) -> Point:
     return next(p for p in points if p.label == DEFAULT)
 
 
-def base(points: Sequence[Point], quantity: str, measure: str = "work") -> float:
-    """Return the cost of the default scene.
-
-    Raises:
-        ValueError: it was not kept.
-    """
-    cost = _default(points).cost(quantity, measure)
-    if cost is None:
-        raise ValueError(f"the {MEASURES[measure]} of the default scene is not known; delete its run, run it again")
-    return cost
-
-
-def cheapest(points: Sequence[Point], some: Sequence[Point], quantity: str, target: float, measure: str) -> str:
-    """Return the cheapest of some points within an error, with its cost over the default's."""
-    own = base(points, quantity, measure)
-    good = (f"{p.label}: {cost / own:.2g}" for cost, error, p in known(some, quantity, measure) if error <= target)
-    return next(good, "none")
+def cheapest(points: Sequence[Point], quantity: str, target: float, measure: str = "work") -> str:
+    """Return the cheapest judged run within an error, with its cost over the default's."""
+    own, some = _default(points).cost(quantity, measure), judged(points, quantity, measure)
+    good = (p for p in some if p.error(quantity) <= target)
+    return next((f"{p.label}: {p.cost(quantity, measure) / own:.2g}" for p in good), "none")
 
 
 # -- page ----------------------------------------------------------------------------------------------------
 _MARKS = {  # kind of setting: its families, colour, marker
-    "mesh sizes": (("contact size", "growth", "size at the sites", "all sizes"), harness.BLUE, "o"),
-    "element": (("element",), harness.PURPLE, "D"),
-    "solver or steps": (("solver", "steps"), harness.GREY, "X"),
-    "without the path": ((REQUESTED, AGAIN), harness.GREEN, "^"),
-    "smooth finger": ((REDUCED,), harness.ORANGE, "s"),
+    "mesh sizes": (("contact size", "growth", "size at the sites", "all sizes"), style.BLUE, "o"),
+    "element": (("element",), style.PURPLE, "D"),
+    "solver or steps": (("solver", "steps"), style.GREY, "X"),
 }
 _PANELS = ("slip_f_t", "normal_contact_length", "slip_sed_0", ALL)
 
@@ -210,32 +162,29 @@ def _words(quantity: str) -> str:
     return "largest error of all quantities" if quantity == ALL else f"{KINDS[kind]}, {STATES[state]}"
 
 
-def _costs(points: Sequence[Point], some: Sequence[Point], reference: Reference, measure: str) -> str:
-    """Return the table of the cheapest of some points for each error; beside runs with a path the default's error."""
+def _costs(points: Sequence[Point], reference: Reference, measure: str) -> str:
+    """Return the table of the cheapest runs for each error, beside the default's error."""
     rows, default = list[list[str]](), _default(points)
-    path = default in some
     for quantity in (*QUANTITIES, ALL):
-        rows.append([_words(quantity), *(cheapest(points, some, quantity, t, measure) for t in TARGETS)])
-        if path:
-            error = f"{100 * (default.error(quantity) or 0):.2g} ± {100 * reference[quantity].relative:.1g} %"
-            rows[-1] += [error, "yes" if default in front(points, quantity, measure) else "no"]
-    head = ["quantity", *(f"{100 * t:g} %" for t in TARGETS)]
-    return harness.table(head + ["error of the default", "on the front"] * path, rows)
+        error = f"{100 * default.error(quantity):.2g} ± {100 * reference[quantity].relative:.1g} %"
+        best = (cheapest(points, quantity, target, measure) for target in TARGETS)
+        rows.append([_words(quantity), *best, error, "yes" if default in front(points, quantity, measure) else "no"])
+    head = ["quantity", *(f"{100 * t:g} %" for t in TARGETS), "error of the default", "on the front"]
+    return harness.table(head, rows)
 
 
 def _panel(ax: Axes, points: Sequence[Point], quantity: str, bar: float) -> None:
     def at(some: Sequence[Point]) -> tuple[list[float], list[float]]:
-        pairs = [(cost / own, error) for cost, error, _ in known(some, quantity) if cost]
-        return [x for x, _ in pairs], [y for _, y in pairs]
+        return [p.cost(quantity) / own for p in some], [p.error(quantity) for p in some]
 
-    own = base(points, quantity)
+    own = _default(points).cost(quantity)
     ax.axhspan(1e-9, bar, color="0.9", lw=0)
     ax.step(*at(front(points, quantity)), "k-", where="post", lw=0.9, label="front")
     for words, (families, colour, marker) in _MARKS.items():
         some = [p for p in points if p.family in families and p.label != DEFAULT]
         ax.plot(*at(some), marker, color=colour, ms=6, label=words)
-    ax.plot(*at([_default(points)]), "*", color=harness.VERMILION, mec="black", mew=0.5, ms=14, label="default")
-    shown = at([p for p in points if p.family != OTHER_MODEL])[1]
+    ax.plot(*at([_default(points)]), "*", color=style.VERMILION, mec="black", mew=0.5, ms=14, label="default")
+    shown = [p.error(quantity) for p in judged(points, quantity)]
     ax.set(yscale="log", title=_words(quantity), ylim=(max(0.5 * min(shown), bar / 5), 2 * max(shown)))
     harness.ticks(ax, (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0))
     ax.set_xlim(0.04, 9)
@@ -253,10 +202,10 @@ def _paint(figure: Figure, points: Sequence[Point], reference: Reference) -> Non
 
 
 def _finding(points: Sequence[Point]) -> str:
-    text, error, everything = harness.prose("chart"), 100 * (_default(points).error(ALL) or 0), [*QUANTITIES, ALL]
+    text, error, everything = harness.prose("chart"), 100 * _default(points).error(ALL), [*QUANTITIES, ALL]
     on = sum(_default(points) in front(points, quantity) for quantity in everything)
     aims = ((ALL, 0.05), ("slip_f_t", 0.01), ("slip_f_t", 0.002))
-    best = [cheapest(points, judged(points), quantity, target, "work") for quantity, target in aims]
+    best = [cheapest(points, *aim) for aim in aims]
     parts = [text["finding"].format(*best, error=error, on=on, n=len(everything))]
     for p in points:
         if p.label == "P1":
@@ -267,7 +216,7 @@ def _finding(points: Sequence[Point]) -> str:
 
 def _other_models(points: Sequence[Point]) -> str:
     names = ("slip_f_t", "normal_contact_length", "slip_contact_length")
-    own, others = base(points, ALL), [p for p in points if p.family == OTHER_MODEL]
+    own, others = _default(points).cost(ALL), [p for p in points if p.family == OTHER_MODEL]
     rows = [[p.label, f"{p.work['slip'] / own:.2g}"] + [f"{100 * p.errors[q]:.2g} %" for q in names] for p in others]
     return harness.table(["formulation or penalty", "work", *map(_words, names)], rows)
 
@@ -275,29 +224,22 @@ def _other_models(points: Sequence[Point]) -> str:
 def draw(docs: Path) -> Path:
     """Draw page and picture from the kept numbers."""
     kept, text = harness.kept("chart", docs), harness.prose("chart")
-    points = [Point(**each) for each in kept.numbers["points"]]
+    points, lost = [Point(**each) for each in kept.numbers["points"]], kept.numbers["lost"]
     reference = {name: Limit(**each) for name, each in kept.numbers["reference"].items()}
     reference[ALL] = Limit(1.0, max(end.relative for end in reference.values()), None)
-    states, lost_ones = [p for p in points if p.family in NO_PATH], kept.numbers["lost"]
-    ran = len(points) - len(states)
     fronts = {quantity: "; ".join(p.label for p in front(points, quantity)) for quantity in (*QUANTITIES, ALL)}
     lists = "\n".join(f"- {_words(quantity)}: {labels}" for quantity, labels in fronts.items())
-
-    def tables(some: Sequence[Point]) -> str:
-        work, time = (_costs(points, some, reference, measure) for measure in MEASURES)
-        return f"{work}\n\n{harness.folded('The same by processor time', time)}"
-
+    work, time = (_costs(points, reference, measure) for measure in MEASURES)
     body = [
         harness.picture(docs / "chart.png", (9, 7), lambda figure: _paint(figure, points, reference), text["caption"]),
         "## Cheapest run for an error\n\nA number is the work over that of the default scene.",
-        tables(judged(points)),
-        text["without"],
-        tables(states),
+        work,
+        harness.folded("The same by processor time", time),
         "## Other formulations and penalties\n\nDifferences from the limit over the default's penalty.",
         _other_models(points),
         harness.folded("Fronts over work, from cheap to expensive", lists),
-        f"## Runs\n\n{ran} of {ran + len(lost_ones)} runs reached full slip.",
-        *(f"Not reached: {words}" for words in lost_ones),
+        f"## Runs\n\n{len(points)} of {len(points) + len(lost)} runs reached full slip.",
+        *(f"Not reached: {words}" for words in lost),
     ]
     path, names = docs / "chart.md", ["chart", "errors"]
     return harness.page(path, "Error over work", _finding(points), text["how"], body, "make chart", kept.made, names)

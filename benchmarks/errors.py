@@ -52,12 +52,8 @@ STUDIES: dict[str, tuple[str, float, str, Sequence[float]]] = {  # heading, unit
 # -- numbers -------------------------------------------------------------------------------------------------
 def study(name: str) -> dict[float, Scene]:
     """Return the scenes of a study by the value of its setting, from coarse to fine."""
-
-    mesh, key = (
-        {"mesh.contact": AT, "mesh.receptor": AT_SITES},
-        "contact.eps_n" if name == "penalty" else f"mesh.{name}",
-    )
-    return {value: by_rule(load(None, mesh | {key: value})) for value in STUDIES[name][3]}
+    key, at = "contact.eps_n" if name == "penalty" else f"mesh.{name}", {"mesh.contact": AT, "mesh.receptor": AT_SITES}
+    return {value: by_rule(load(None, at | {key: value})) for value in STUDIES[name][3]}
 
 
 def values(run: Run) -> dict[str, float]:
@@ -78,11 +74,9 @@ def lengths(run: Run, state: str) -> Array:
 
 
 def reference(again: Mapping[str, Any], whole: Mapping[str, float]) -> dict[str, Limit]:
-    """Return the limits of the default scene's quantities.
+    """Return the limits of the default scene's quantities from its states solved ``again`` and its ``whole`` run.
 
-    Args:
-        again: its states solved again, of :func:`benchmarks.limits.solve_all`.
-        whole: its whole run. What the coarse path changes on the default mesh is added to the error bar.
+    What the coarse path changes on the default mesh is added to the error bar.
     """
     ends, own = limits.limits(again), again["own"]["values"]
     return {n: Limit(ends[n].value, ends[n].bar + abs(own[n] - whole[n]), ends[n].order) for n in QUANTITIES}
@@ -114,10 +108,7 @@ def known(docs: Path = harness.DOCS) -> dict[str, Limit]:
 
 
 def stiffer(docs: Path = harness.DOCS) -> dict[str, tuple[float, float]]:
-    """Return, by state, the change of the contact length (m) over a stiffer screen: predicted, and found.
-
-    The prediction for the stiffest penalty is the law of order :data:`ORDER` through the two softer ones.
-    """
+    """Return by state what the stiffest penalty changes of the contact length (m): by the law's order, and found."""
     rows = harness.kept("errors", docs).numbers["studies"]["penalty"]
     soft, middle, stiff = (row["value"] ** -ORDER for row in rows)
     lengths = {state: [row["quantities"][f"{state}_contact_length"] for row in rows] for state in STATES}
@@ -126,10 +117,6 @@ def stiffer(docs: Path = harness.DOCS) -> dict[str, tuple[float, float]]:
 
 
 # -- page ----------------------------------------------------------------------------------------------------
-def _cells(found: Sequence[float], unit: float) -> list[str]:
-    return [f"{value / unit:.5g}" for value in found]
-
-
 def _end(end: Limit, unit: float) -> list[str]:
     """Return a limit with its bar, and its order."""
     value = plus_minus(end.value / unit, end.bar / unit) if end.bar else f"{end.value / unit:.5g}"
@@ -142,7 +129,7 @@ def _limits(numbers: Mapping[str, Any], ends: Mapping[str, Limit]) -> str:
     rows = []
     for name, (words, unit) in QUANTITIES.items():
         error = f"{100 * (whole[name] / ends[name].value - 1):.2g} ± {100 * ends[name].relative:.1g} %"
-        cells = _cells([whole[name], *(level["values"][name] for level in levels)], unit)
+        cells = [f"{each[name] / unit:.5g}" for each in (whole, *(level["values"] for level in levels))]
         rows.append([words, *cells, *_end(ends[name], unit), error])
     rows += [[name, f"{whole[name]:.0f}", *(level[name] for level in levels), "", "", ""] for name in _COST]
     return harness.table(["quantity", "default mesh", *sizes, "limit", "order", "error of the default mesh"], rows)
@@ -156,7 +143,7 @@ def _study(name: str, rows: Sequence[Mapping[str, Any]]) -> str:
     for quantity, (words, unit) in QUANTITIES.items():
         found = [row["quantities"][quantity] for row in rows]
         last = [f"{100 * (max(found) / min(found) - 1):.2g} %"] if name == "penalty" else _end(limit(found), unit)
-        lines.append([words, *_cells(found, unit), *last])
+        lines.append([words, *(f"{value / unit:.5g}" for value in found), *last])
     return f"### {heading}\n\n{harness.table(head, lines)}"
 
 

@@ -10,10 +10,9 @@ A study has three steps:
 
 import argparse
 import json
-import math
 import re
 import subprocess
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import date
 from functools import cache
@@ -32,20 +31,14 @@ from fingerpad.scene import Scene
 ROOT = Path(__file__).resolve().parents[1]
 DOCS, RESULTS = ROOT / "docs", ROOT / "results"
 PACKAGES = ("geometry", "variational", "fingerpad")
+Compute = Callable[[argparse.Namespace], None]
+Draw = Callable[[Path], Path]
 _LINE = 400  # characters of a record that is kept on one line
-# Names of the palette for the studies.
-BLACK, BLUE, GREEN, GREY = style.BLACK, style.BLUE, style.GREEN, style.GREY
-ORANGE, PURPLE, SKY, VERMILION = style.ORANGE, style.PURPLE, style.SKY, style.VERMILION
 
 
 # -- runs ----------------------------------------------------------------------------------------------------
 def parser(description: str | None, out: str = "traces") -> argparse.ArgumentParser:
-    """Return a parser of ``--out``, ``--docs``, ``--jobs`` and ``--draw``, which every long command has.
-
-    Args:
-        description: docstring of the command.
-        out: folder of its runs below ``results``; scenes of the finger share the default.
-    """
+    """Return a parser of ``--out``, a folder below ``results``, ``--docs``, ``--jobs`` and ``--draw``."""
     found = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     found.add_argument("--out", type=Path, default=RESULTS / out, help="folder of runs")
     found.add_argument("--docs", type=Path, default=DOCS, help="folder of the page, its pictures and its numbers")
@@ -54,24 +47,12 @@ def parser(description: str | None, out: str = "traces") -> argparse.ArgumentPar
     return found
 
 
-def run(scenes: Mapping[str, Scene], args: argparse.Namespace, limit: float, model: str = "full") -> dict[str, Summary]:
-    """Run the scenes that are missing in ``args.out``; return the summaries of all by name.
-
-    Args:
-        scenes: by the name that is printed.
-        args: of :func:`parser`.
-        limit: processor time (s) of one run.
-        model: as for :func:`fingerpad.runs.batch.sweep`.
-    """
-    return sweep(scenes, args.out, args.jobs, limit, model)
+def run(scenes: Mapping[str, Scene], args: argparse.Namespace, limit: float) -> dict[str, Summary]:
+    """Run the scenes that are missing in ``args.out``, each for at most ``limit`` (s); return all summaries by name."""
+    return sweep(scenes, args.out, args.jobs, limit)
 
 
-def main(
-    description: str | None,
-    compute: Callable[[argparse.Namespace], None],
-    draw: Callable[[Path], Path],
-    given: Sequence[str] | None = None,
-) -> int:
+def main(description: str | None, compute: Compute, draw: Draw, given: Sequence[str] | None = None) -> int:
     """Run the command of a study: compute and keep the numbers, unless ``--draw`` is given, then draw the page."""
     args = parser(description).parse_args(given)
     if not args.draw:
@@ -83,20 +64,14 @@ def main(
 # -- numbers -------------------------------------------------------------------------------------------------
 @dataclass(frozen=True)
 class Made:
-    """Which program made numbers, and when.
-
-    Attributes:
-        version: of fingerpad.
-        commit: of the program; empty where the runs are of several states of it.
-        date: on which the numbers were kept, ISO 8601.
-        source: hash of the program's files; empty for numbers older than this record, whose commit is the one that
-            brought them into git.
-    """
+    """Which program made numbers, and when."""
 
     version: str
     commit: str
+    """Empty where the runs are of several states of the program."""
     date: str
     source: str = ""
+    """Hash of the program's files; empty for older numbers, whose commit is the one that brought them into git."""
 
     def __str__(self) -> str:
         """Return the sentence at the end of a page."""
@@ -107,26 +82,14 @@ class Made:
 
 
 def made(summaries: Iterable[Summary] = ()) -> Made:
-    """Return the present program, or several commits if some runs were made by another state of it.
-
-    Args:
-        summaries: of the runs from which the numbers are taken.
-    """
+    """Return the present program, or several commits if some of the runs were made by another state of it."""
     from fingerpad.io.provenance import provenance  # needs dolfinx, which drawing does not
 
-    versions = provenance()["versions"]
-    sources = {s["provenance"]["versions"]["source"] for s in summaries if "provenance" in s} | {versions["source"]}
-    return Made(
-        versions["fingerpad"],
-        _commit() if len(sources) == 1 else "",
-        date.today().isoformat(),
-        ", ".join(sorted(sources)),
-    )
-
-
-def _commit() -> str:
-    commit = _git("log", "-1", "--format=%h")
-    return f"{commit} with changes" if commit and _git("status", "--porcelain", "--", *PACKAGES) else commit
+    now = provenance()["versions"]
+    sources = {s["provenance"]["versions"]["source"] for s in summaries if "provenance" in s} | {now["source"]}
+    commit = _git("log", "-1", "--format=%h") if len(sources) == 1 else ""
+    changed = " with changes" * bool(commit and _git("status", "--porcelain", "--", *PACKAGES))
+    return Made(now["fingerpad"], commit + changed, date.today().isoformat(), ", ".join(sorted(sources)))
 
 
 def _git(*words: str) -> str:
@@ -152,70 +115,26 @@ def keep(name: str, numbers: Any, by: Made, docs: Path = DOCS) -> None:
 
 def _text(data: Any, indent: str = "") -> str:
     line = json.dumps(data, ensure_ascii=False)
-    if not data or not isinstance(data, list | dict) or len(line) <= _LINE:
+    if not isinstance(data, list | dict) or len(line) <= _LINE:
         return line
-    inner = indent + " "
-    if isinstance(data, list):
-        left, right, parts = "[", "]", [_text(value, inner) for value in data]
-    else:
-        left, right, parts = "{", "}", [f'"{key}": {_text(value, inner)}' for key, value in data.items()]
-    return f"{left}\n{inner}" + f",\n{inner}".join(parts) + f"\n{indent}{right}"
+    inner, named = indent + " ", data.items() if isinstance(data, dict) else (("", value) for value in data)
+    parts = [f'"{key}": {_text(value, inner)}' if key else _text(value, inner) for key, value in named]
+    return f"{line[0]}\n{inner}" + f",\n{inner}".join(parts) + f"\n{indent}{line[-1]}"
 
 
 def kept(name: str, docs: Path = DOCS) -> Kept:
-    """Return the numbers of ``docs/NAME.json``.
-
-    Raises:
-        FileNotFoundError: the study has not been computed.
-    """
+    """Return the numbers of ``docs/NAME.json``."""
     data = json.loads((docs / f"{name}.json").read_text(encoding="utf-8"))
     return Kept(data["numbers"], Made(**data["made"]))
-
-
-def moved(before: Any, after: Any, relative: float = 1e-3) -> list[str]:
-    """Return what differs in JSON data by more than a relative difference, as ``place: before, after``.
-
-    Runs of one scene differ by the solver's tolerance and by which steps were cut: a thousandth is neither.
-    """
-    old = dict(_leaves(before))
-    return [
-        f"{place}: was {old[place]}, is {value}"
-        for place, value in _leaves(after)
-        if place in old and not _same(old[place], value, relative)
-    ]
-
-
-def _same(a: Any, b: Any, relative: float) -> bool:
-    if isinstance(a, int | float) and isinstance(b, int | float):
-        return math.isclose(a, b, rel_tol=relative, abs_tol=1e-12)
-    return bool(a == b)
-
-
-def _leaves(data: Any, place: str = "") -> Iterator[tuple[str, Any]]:
-    if isinstance(data, list):
-        data = dict(enumerate(data))
-    if not isinstance(data, Mapping):
-        yield place, data
-        return
-    for key, value in data.items():
-        yield from _leaves(value, f"{place}/{key}")
 
 
 # -- pages ---------------------------------------------------------------------------------------------------
 def page(
     path: Path, title: str, finding: str, how: str, body: Iterable[str], command: str, by: Made, names: Iterable[str]
 ) -> Path:
-    """Write a page that starts with its finding; return its path.
+    """Write a page: finding, how it was found, sections of which empty ones are left out, and origin; return its path.
 
-    Args:
-        path: of the Markdown file.
-        title: heading.
-        finding: what the numbers show, one or a few short paragraphs.
-        how: how it was found: scenes, settings, definitions.
-        body: sections, tables and pictures in Markdown; empty ones are left out.
-        command: computes the numbers anew, for example ``make paper``.
-        by: who made the numbers.
-        names: of the files of numbers, ``docs/NAME.json``.
+    ``command`` computes the numbers anew, ``by`` made them, and they are in the files ``docs/NAME.json`` of ``names``.
     """
     files = ", ".join(f"[{name}.json]({name}.json)" for name in names)
     origin = f"{by} Computed by `{command}` into {files}; drawn from there by `make pages`: do not edit this page."
@@ -228,7 +147,7 @@ def page(
 def prose(name: str) -> dict[str, str]:
     """Return the texts of a page by their headings in ``benchmarks/prose/NAME.md``, with places to fill in braces."""
     text = (ROOT / "benchmarks" / "prose" / f"{name}.md").read_text(encoding="utf-8")
-    parts = re.split(r"^# (\w+)\n", text, flags=re.MULTILINE)
+    parts = re.split(r"^# ([\w-]+)\n", text, flags=re.MULTILINE)
     return {heading: words.strip() for heading, words in zip(parts[1::2], parts[2::2], strict=True)}
 
 
@@ -251,14 +170,7 @@ def folded(summary: str, body: str) -> str:
 
 # -- pictures ------------------------------------------------------------------------------------------------
 def picture(path: Path, size: tuple[float, float], paint: Callable[[Figure], None], caption: str) -> str:
-    """Have a figure painted, keep it as a PNG and return the Markdown that shows it on a page beside it.
-
-    Args:
-        path: of the PNG.
-        size: width and height (inches).
-        paint: draws into the figure; axes are labelled with units.
-        caption: one sentence that says what the picture shows.
-    """
+    """Have a figure of width and height (inches) painted into a PNG; return the Markdown that shows it on a page."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with style.look():
         figure = style.figure(size[1], size[0])
@@ -267,10 +179,9 @@ def picture(path: Path, size: tuple[float, float], paint: Callable[[Figure], Non
     return f"![{caption}]({path.name})\n\n*{caption}*"
 
 
-def ticks(ax: Axes, values: Sequence[float], grid: bool = True) -> None:
-    """Label the given values alone on a horizontal logarithmic axis."""
+def ticks(ax: Axes, values: Sequence[float]) -> None:
+    """Label the given values alone on a horizontal logarithmic axis, with a grid."""
     ax.set_xscale("log")
     ax.set_xticks(values, [f"{value:g}" for value in values])
     ax.minorticks_off()
-    if grid:
-        ax.grid(alpha=0.3)
+    ax.grid(alpha=0.3)

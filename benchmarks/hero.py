@@ -45,8 +45,7 @@ def main(folder: str) -> None:
 
 
 def _rows(values: list[Any]) -> list[list[Any]]:
-    """Return a list in short rows, each a line of the file."""
-    return [values[k : k + 20] for k in range(0, len(values), 20)]
+    return [values[k : k + 20] for k in range(0, len(values), 20)]  # each a line of the file
 
 
 def _loops(edges: Any) -> list[list[int]]:

@@ -13,12 +13,10 @@ that of the change which p = 2 would have left of the one before, :math:`(f_1 - 
 change if the changes alternate and shrink, else three times the larger of the last two: the index's factor for two
 meshes.
 
-The path of a scene is followed on the coarse mesh that an ``[accuracy]`` starts from. Its states are solved again on
-each of :func:`meshes`: by halves, since a state put onto elements a quarter of its own is far from equilibrium. From
-the first of these meshes the states are also solved again on the scene's own mesh. Full slip does not depend on the
-load path, so that it is that of a whole run. Normal contact keeps the friction history of the coarse path; the
-comparison of the own mesh with a whole run on it shows by how much (``docs/errors.md``). Where a state is not found on
-a mesh after the third, the limit is that of the meshes before, with their larger bar.
+A path is followed on the coarse mesh that an ``[accuracy]`` starts from, and its states are solved again on each of
+:func:`meshes`: by halves, since a state put onto elements a quarter of its own is far from equilibrium. They are also
+solved again on the scene's own mesh, for the effect of the coarse path on normal contact (``docs/errors.md``). Where a
+state is not found on a mesh after the third, the limit is that of the meshes before, with their larger bar.
 """
 
 import json
@@ -35,7 +33,7 @@ from fingerpad.accuracy.recompute import Solve, StateRecorder, solve_again
 from fingerpad.io.files import replace
 from fingerpad.io.states import PREFIXES
 from fingerpad.model.finger import Step
-from fingerpad.model.options import plan
+from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.runs.batch import key
 from fingerpad.runs.processes import End, Pool, limit_processor_time, run
@@ -68,11 +66,7 @@ class Limit:
 
 
 def limit(values: Sequence[float]) -> Limit:
-    """Estimate the limit of three or more values on meshes of halved size, from the coarsest to the finest.
-
-    Raises:
-        ValueError: fewer than three.
-    """
+    """Return the limit of values on meshes of halved size, coarsest first; ValueError if they are fewer than three."""
     if len(values) < 3:
         raise ValueError(f"{len(values)} values were given; an order needs three")
     first, middle, finest = (float(value) for value in values[-3:])
@@ -94,9 +88,7 @@ def meshes(mesh: MeshSize, levels: int) -> list[MeshSize]:
 def solve_all(scenes: Mapping[str, Scene], levels: int, folder: Path, jobs: int) -> dict[str, dict[str, Any]]:
     """Solve the scenes that are not kept in ``folder`` yet, each in a process of its own, ``jobs`` at a time.
 
-    Returns:
-        By name: ``path``, ``own`` (the scene's mesh) and ``levels``, each a mesh, its cost and its values; or
-        ``failure``.
+    Return by name ``path``, ``own`` (the scene's mesh) and ``levels``, each a mesh, cost and values; or ``failure``.
     """
     folder.mkdir(parents=True, exist_ok=True)
     files = {name: folder / f"{key(scene)}-{levels}.json" for name, scene in scenes.items()}
@@ -137,7 +129,7 @@ def _path(scene: Scene) -> Solve:
     for contact in _STARTS:
         sizes = start({}) | {"receptor": 2 * _FIRST["receptor"], "contact": contact}
         coarse = scene.model_copy(update={"mesh": scene.mesh.model_copy(update=sizes)})
-        simulation = Simulation(coarse, plan(scene), MPI.COMM_WORLD, on_step, on_load)
+        simulation = Simulation(FingerModel(coarse, plan(scene)), MPI.COMM_WORLD, on_step, on_load)
         recorder = StateRecorder(simulation)
         try:
             restart = simulation.run()
@@ -150,8 +142,10 @@ def _path(scene: Scene) -> Solve:
 
 
 def _solve(scene: Scene, levels: int) -> dict[str, Any]:
+    model = FingerModel(scene, plan(scene))
+
     def again(mesh: MeshSize, before: Solve) -> Solve:
-        return solve_again(scene.model_copy(update={"mesh": mesh}), plan(scene), before.states, MPI.COMM_WORLD)
+        return solve_again(model.changed(mesh=mesh), before.states, MPI.COMM_WORLD)
 
     def summary(solve: Solve) -> dict[str, Any]:
         ridges = {f"{PREFIXES[name]}_ridges_in_contact": s.state.ridges_in_contact for name, s in solve.states.items()}

@@ -15,12 +15,11 @@ from typing import Any
 import numpy as np
 
 from benchmarks import harness
-from benchmarks.runs import FORCES, SITES, VOLTAGES, trace
+from benchmarks.runs import FORCES, VOLTAGES, trace
 from fingerpad.io.states import PREFIXES, WORDS
-from fingerpad.model.touching import by_rule
 from fingerpad.reduced import cylinders
-from fingerpad.runs.batch import Summary
-from fingerpad.scene import Scene, load
+from fingerpad.runs.batch import Summary, sweep
+from fingerpad.scene import Scene
 from variational.state import RESULTS
 
 _LIMIT = 3600.0  # s of processor time for one run
@@ -32,7 +31,6 @@ QUANTITIES = {
     "normal_contact_length": f"contact length, {WORDS['charged']}",
     "normal_f_electrostatic": f"attraction, {WORDS['charged']}",
 }
-_LAYERS = ("subcutis", "dermis", "viable_epidermis", "stratum_corneum")
 _COST = ("seconds", "factorisations", "unknowns")
 
 
@@ -47,19 +45,6 @@ def scenes() -> dict[str, Scene]:
     return {name(f, u): trace(f, u, SIZE) for f in FORCES for u in VOLTAGES}
 
 
-def extremes() -> dict[str, Scene]:
-    """Return scenes at the ends of the range of use."""
-    soft = {layer: {"poisson": 0.499} for layer in _LAYERS}
-    unload = load(harness.ROOT / "demos" / "scenes" / "unload.toml", {"mesh.contact": SIZE, "mesh.receptor": SITES})
-    return {
-        "200 V at 2 N/m": trace(2.0, 200.0, SIZE),
-        "friction coefficient 1": trace(75.0, 200.0, SIZE, friction=1.0),
-        "Poisson's ratio 0.499": trace(75.0, 200.0, SIZE, materials=soft),
-        "400 V at 10 N/m": trace(10.0, 400.0, SIZE),
-        "unloaded at 200 V": by_rule(unload),
-    }
-
-
 def answer(summary: Summary) -> dict[str, Any]:
     """Return the numbers of a run or of a reduced model that docs/models.json has."""
     if "failure" in summary:
@@ -72,17 +57,13 @@ def answer(summary: Summary) -> dict[str, Any]:
 
 def compute(args: argparse.Namespace) -> None:
     """Run what is missing and keep the numbers."""
-    wanted, ends = scenes(), extremes()
-    full = harness.run(wanted | ends, args, _LIMIT)
-    own = argparse.Namespace(**vars(args) | {"out": args.out.parent / "smooth"})
-    smooth = harness.run(wanted, own, _LIMIT, "smooth")
-    found = {}
+    wanted, found = scenes(), {}
+    full = harness.run(wanted, args, _LIMIT)
+    smooth = sweep(wanted, args.out.parent / "smooth", args.jobs, _LIMIT, "smooth")
     for key, scene in wanted.items():
         summaries = {"cylinders": cylinders.solve(scene).to_dict(), "smooth": smooth[key], "full": full[key]}
         found[key] = {model: answer(summary) for model, summary in summaries.items()}
-    last = [(key, full[key].get("slip_mu_app"), full[key].get("failure", "reaches its end")) for key in ends]
-    rows = [dict(zip(("scene", "mu_app", "end"), row, strict=True)) for row in last]
-    harness.keep("models", {"scenes": found, "extremes": rows}, harness.made(full.values()), args.docs)
+    harness.keep("models", {"scenes": found}, harness.made(full.values()), args.docs)
 
 
 def value(found: Mapping[str, Any], model: str, key: str) -> float | None:
@@ -106,7 +87,6 @@ _WHICH = {  # model: finger it is for, its answers
 
 
 def _largest(scenes: Mapping[str, Any], model: str, key: str) -> str:
-    """Return the largest error of a model."""
     found = [abs(e) for each in scenes.values() if (e := error(each, model, key)) is not None]
     return f"{100 * max(found):.1f} %" if found and model != "full" else "–"
 
@@ -119,7 +99,6 @@ def _takes(scenes: Mapping[str, Any], model: str) -> str:
 
 
 def _which(scenes: Mapping[str, Any]) -> str:
-    """Return the table that chooses a model."""
     rows, keys = [], ("slip_mu_app", "slip_contact_length")
     for model, words in _WHICH.items():
         rows.append([f"`{model}`", *words, *(_largest(scenes, model, key) for key in keys), _takes(scenes, model)])
@@ -140,7 +119,6 @@ def _matrix(scenes: Mapping[str, Any], model: str, key: str) -> str:
 
 
 def _section(scenes: Mapping[str, Any], model: str) -> list[str]:
-    """Return the parts of the page on a reduced model."""
     failed = [key for key, each in scenes.items() if "failure" in each.get(model, {})]
     answers = [each[model]["more"] for each in scenes.values() if "more" in each.get(model, {})]
     versions = [more.get("table_version", 0) for more in answers]
@@ -155,16 +133,18 @@ def _section(scenes: Mapping[str, Any], model: str) -> list[str]:
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
     kept, text = harness.kept("models", docs), harness.prose("models")
-    scenes, ends = kept.numbers["scenes"], kept.numbers["extremes"]
+    scenes = kept.numbers["scenes"]
     largest = {model: _largest(scenes, model, "slip_mu_app") for model in MODELS}
     full = [each["full"] for each in scenes.values() if "full" in each]
     slips = sum(bool(each.get("summary", {}).get("full_slip")) for each in full)
     finding = text["finding"].format(**largest, slips=slips, n=len(full), which=_which(scenes))
     forces, voltages = (", ".join(f"{value:g}" for value in each) for each in (FORCES, VOLTAGES))
     body = [part for model in MODELS for part in _section(scenes, model)]
-    body += ["## Full runs", f"**{QUANTITIES['slip_mu_app']}**\n\n{_matrix(scenes, 'full', 'slip_mu_app')}"]
-    table = harness.table(["scene", "µ_app, full slip", "end"], [list(row.values()) for row in ends])
-    body += ["At the ends of the range of use:", table]
+    body += [
+        "## Full runs",
+        f"**{QUANTITIES['slip_mu_app']}**\n\n{_matrix(scenes, 'full', 'slip_mu_app')}",
+        text["beyond"],
+    ]
     path, command = docs / "models.md", "python3 -m benchmarks.models"
     how = text["how"].format(forces=forces, voltages=voltages)
     return harness.page(path, "Which model when", finding, how, body, command, kept.made, ["models"])

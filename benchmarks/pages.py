@@ -20,10 +20,8 @@ PAGES = {
     "models": "benchmarks.models",
     "paper": "benchmarks.paper.page",
     "peers": "benchmarks.peers.page",
-    "sensitivity": "benchmarks.sensitivity",
     "stability": "benchmarks.stability.page",
-    "topography": "benchmarks.topography",
-    "verification": "benchmarks.verification.page",
+    "verification": "benchmarks.verification.case",
 }
 
 

@@ -28,11 +28,7 @@ class Run:
     """A run of ``scene`` in a sweep's folder that reached its end; numbers in SI."""
 
     def __init__(self, scene: Scene, out: Path) -> None:
-        """Open a run.
-
-        Raises:
-            FileNotFoundError: it has not been run, or did not reach its end.
-        """
+        """Open a run; FileNotFoundError if it has not been run or did not reach its end."""
         summary = result(scene, out)
         if summary is None or "failure" in summary:
             raise FileNotFoundError(f"run {key(scene)} is not there or did not reach its end")
@@ -81,11 +77,7 @@ class Run:
         return self.ridges["ridge"][mine], self.ridges[name][mine]
 
     def arrays(self, name: str) -> dict[str, NDArray[Any]]:
-        """Return the arrays of ``surface`` or ``finger_…``.
-
-        Raises:
-            FileNotFoundError: the run was made by a version that did not keep them.
-        """
+        """Return the arrays of ``surface`` or ``finger_…``; FileNotFoundError if the run did not keep them."""
         path = self.folder / f"{name}.npz"
         if not path.exists():
             raise FileNotFoundError(f"run {self.folder.name} has no {path.name}: delete its folder and run it again")

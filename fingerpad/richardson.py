@@ -42,7 +42,7 @@ ONCE, MORE = 2.0, 1.5
 """Factors of safety on the share of a parameter that was halved once, and of one that was halved more often.
 
 With them the estimated error covers the known one in at least 90 % of the known cases, of each kind of quantity, and
-in the default scene in all: ``docs/accuracy.json`` has the cases, ``benchmarks/calibration.py`` counts them for
+in the default scene in all: ``docs/accuracy.json`` has the cases, ``benchmarks/accuracy.py`` counts them for
 ``docs/accuracy.md``, and ``tests/test_calibration.py`` holds the factors to it.
 """
 

@@ -66,6 +66,24 @@ def pytest_collection_modifyitems(config, items):
         items[:] = [item for item in items if item not in for_one]
 
 
+@pytest.fixture(scope="session", autouse=True)
+def meshed_once():
+    """Mesh a finger once for all runs with its sizes: half a second each, and none of them changes the mesh."""
+    load, made = meshing.load, {}
+
+    def once(comm, build, needed=()):
+        if getattr(build, "func", None) is not fingertip.build:
+            return load(comm, build, needed)
+        key = (comm.py2f(), repr((build.args, build.keywords)))
+        if key not in made:
+            made[key] = load(comm, build, needed)
+        return made[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(meshing, "load", once)
+        yield
+
+
 @pytest.fixture(scope="session")
 def square() -> TaggedMesh:
     """A block 1 mm wide and high, 8 x 8 x 2 cells, its bottom on the screen."""

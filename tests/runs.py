@@ -1,5 +1,7 @@
 """A run of the full model as tests look at it: its summary, as it is on disk."""
 
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -7,14 +9,32 @@ from unittest.mock import patch
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
+from fingerpad.io import finger_picture, history_picture, skin_picture
 from fingerpad.runs import full
 from fingerpad.scene import Scene
 
+PICTURES = ((finger_picture, "finger"), (skin_picture, "surface"), (history_picture, "history"))
 
-def run(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> dict[str, Any]:
-    """Return the summary of a run into a folder; its pictures are built, and their files left empty.
 
-    To draw them takes two seconds, more than a small finger does. Commands and demos draw theirs.
+@contextmanager
+def no_pictures() -> Iterator[None]:
+    """Leave the files of a run's pictures empty: to draw them takes two seconds, more than a small finger does."""
+    with ExitStack() as stack:
+        for module, name in PICTURES:
+            stack.enter_context(patch.object(module, name, touch))
+        yield
+
+
+def touch(path: Path, *args: Any, **options: Any) -> None:
+    """Leave a picture's file empty."""
+    Path(path).touch()
+
+
+def run(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, pictures: bool = False) -> dict[str, Any]:
+    """Return the summary of a run into a folder; the files of its pictures are empty.
+
+    Commands and demos draw theirs. With ``pictures`` they are built, and not written.
     """
-    with patch.object(Figure, "savefig", lambda figure, path, **options: Path(path).touch()):
+    built = patch.object(Figure, "savefig", lambda figure, path, **options: touch(path))
+    with built if pictures else no_pictures():
         return full.run(scene, folder, comm).to_dict()

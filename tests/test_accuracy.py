@@ -15,8 +15,9 @@ from fingerpad.accuracy.recompute import Solve, State
 from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.accuracy.rigid_screen import ORDER
 from fingerpad.io.interrupt import Interrupted
-from fingerpad.model.options import plan
+from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
+from fingerpad.model.touching import by_rule
 from fingerpad.richardson import MORE, ONCE, plus_minus
 from fingerpad.runs import attempt
 from fingerpad.runs.batch import key
@@ -50,19 +51,23 @@ def change(solve: Solve, **values) -> None:
     solve.states["full_slip"] = replace(kept, state=replace(kept.state, **values))
 
 
-def known(scene, needed, states, comm, views=False) -> Solve:
-    row = contact(mu_app=mu_app(scene.mesh), f_t=75 * mu_app(scene.mesh))
-    sed = {0: 1e3 * (1 + (scene.mesh.receptor / 60e-6) ** 2), 1: 10.0}
-    return Solve({"full_slip": State(NOTHING, 1, row, np.full(17, 1e-3 / 17), sed)}, scene.mesh, 1000, 10, 1.0)
+def model_of(data) -> FingerModel:
+    """Return the model of a scene as a run makes it."""
+    scene = from_data(data)
+    return FingerModel(by_rule(scene), plan(scene))
+
+
+def known(model, states, comm, views=False) -> Solve:
+    row = contact(mu_app=mu_app(model.mesh), f_t=75 * mu_app(model.mesh))
+    sed = {0: 1e3 * (1 + (model.mesh.receptor / 60e-6) ** 2), 1: 10.0}
+    return Solve({"full_slip": State(NOTHING, 1, row, np.full(17, 1e-3 / 17), sed)}, model.mesh, 1000, 10, 1.0)
 
 
 def search(monkeypatch, asked, solve=known, pause=lambda: None) -> Refinement:
     memory = {"numerics": {"memory": 1e15}}  # of solves that are none
-    scene = from_data(({"accuracy": asked} if asked else {}) | memory)
+    model = model_of(({"accuracy": asked} if asked else {}) | memory)
     monkeypatch.setattr(solves, "solve_again", solve)
-    found = Refinement(
-        scene, plan(scene), known(scene, None, {}, MPI.COMM_SELF), MPI.COMM_SELF, lambda text: None, pause
-    )
+    found = Refinement(model, known(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, lambda text: None, pause)
     found.run()
     return found
 
@@ -106,7 +111,7 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
 
     def with_steps(search, scale: float) -> Solve:
         paths.append(scale)
-        found = stepped(scale / 2, scene.mesh)
+        found = stepped(scale / 2, model.mesh)
         search.found.append(found)
         return found
 
@@ -114,11 +119,11 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
     monkeypatch.setattr(
         solves,
         "solve_again",
-        lambda scene, options, states, comm, views: Solve(dict(states), scene.mesh, 1000, 10, 1.0),
+        lambda model, states, comm, views: Solve(dict(states), model.mesh, 1000, 10, 1.0),
     )
-    scene = from_data({"accuracy": {"contact_length": 0.04}, "numerics": {"step_scale": 2.0}})
-    path = stepped(1.0, scene.mesh)
-    found = Refinement(scene, plan(scene), path, MPI.COMM_SELF, lambda text: None, lambda: None)
+    model = model_of({"accuracy": {"contact_length": 0.04}, "numerics": {"step_scale": 2.0}})
+    path = stepped(1.0, model.mesh)
+    found = Refinement(model, path, MPI.COMM_SELF, lambda text: None, lambda: None)
     found.run()
     assert paths == [4.0, 1.0, 0.5]
     assert found.refinements == {"contact": 1, "bulk": 1, "steps": 2}
@@ -140,12 +145,12 @@ def test_estimate_alone_refines_nothing(monkeypatch):
     """Coarser meshes tell the error: none is finer than the scene's. The last one tells of the penalty."""
     sizes = []
 
-    def noted(scene, needed, states, comm, views=False):
-        sizes.append(scene.mesh)
-        return known(scene, needed, states, comm)
+    def noted(model, states, comm, views=False):
+        sizes.append(model.mesh)
+        return known(model, states, comm)
 
     found = search(monkeypatch, {}, noted)
-    own = found.scene.mesh
+    own = found.model.mesh
     assert found.base.mesh == own
     assert [(m.contact / own.contact, m.growth / own.growth, m.receptor / own.receptor) for m in sizes] == [
         (2, 1, 1),
@@ -159,20 +164,20 @@ def test_estimate_alone_refines_nothing(monkeypatch):
     assert told["error"] == pytest.approx(ONCE * told["estimate"], rel=1e-12)
 
 
-def springs(scene, needed, states, comm, views=False) -> Solve:
+def springs(model, states, comm, views=False) -> Solve:
     """A contact that springs of the screen make longer, by their law."""
-    solve = known(scene, needed, states, comm)
-    if scene.contact.formulation == "penalty":
-        change(solve, contact_length=1e-3 + 1e-5 * (scene.contact.eps_n / 1.5e12) ** -ORDER)
+    solve = known(model, states, comm)
+    if model.contact.formulation == "penalty":
+        change(solve, contact_length=1e-3 + 1e-5 * (model.contact.eps_n / 1.5e12) ** -ORDER)
     return solve
 
 
 def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
     """A rigid screen takes off what the springs put on, and no part of that is in the error of the mesh."""
     monkeypatch.setattr(solves, "solve_again", springs)
-    scene, lines = from_data({}), list[str]()
-    path = springs(scene, None, {}, MPI.COMM_SELF)
-    found = Refinement(scene, plan(scene), path, MPI.COMM_SELF, lines.append, lambda: None)
+    model, lines = model_of({}), list[str]()
+    path = springs(model, {}, MPI.COMM_SELF)
+    found = Refinement(model, path, MPI.COMM_SELF, lines.append, lambda: None)
     found.run()
     state = with_errors(found, {"full_slip": contact()})["full_slip"]
     assert state.penalty.contact_length == pytest.approx(-1e-5, rel=1e-9)
@@ -185,10 +190,8 @@ def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
 @pytest.mark.parametrize("formulation", ["nitsche", "augmented"])
 def test_formulations_without_a_penalty_tell_none(monkeypatch, formulation):
     monkeypatch.setattr(solves, "solve_again", springs)
-    scene = from_data({"contact": {"formulation": formulation}})
-    found = Refinement(
-        scene, plan(scene), springs(scene, None, {}, None), MPI.COMM_SELF, lambda text: None, lambda: None
-    )
+    model = model_of({"contact": {"formulation": formulation}})
+    found = Refinement(model, springs(model, {}, None), MPI.COMM_SELF, lambda text: None, lambda: None)
     found.run()
     assert found.penalty == {}
     assert with_errors(found, {"full_slip": contact()})["full_slip"].penalty.known() == {}
@@ -197,10 +200,10 @@ def test_formulations_without_a_penalty_tell_none(monkeypatch, formulation):
 def test_penalty_that_cannot_be_told_is_noted(monkeypatch):
     """The run and its error stay."""
 
-    def lost(scene, needed, states, comm, views=False):
-        if scene.contact.eps_n > 1.5e12:
+    def lost(model, states, comm, views=False):
+        if model.contact.eps_n > 1.5e12:
             raise StepFailed("full slip found no equilibrium")
-        return known(scene, needed, states, comm)
+        return known(model, states, comm)
 
     found = search(monkeypatch, {}, lost)
     assert not found.failure
@@ -211,7 +214,7 @@ def test_penalty_that_cannot_be_told_is_noted(monkeypatch):
 def test_estimate_alone_that_is_lost_is_no_failure(monkeypatch):
     """The run is what was asked for; that it comes without its error is said."""
 
-    def lost(scene, needed, states, comm, views=False):
+    def lost(model, states, comm, views=False):
         raise StepFailed("full slip found no equilibrium")
 
     found = search(monkeypatch, {}, lost)
@@ -225,9 +228,9 @@ def test_estimate_alone_that_is_lost_is_no_failure(monkeypatch):
 def test_says_when_the_accuracy_is_out_of_reach(monkeypatch):
     """An error that no refinement lowers."""
 
-    def stubborn(scene, needed, states, comm, views=False):
-        solve = known(scene, needed, states, comm)
-        sign = 1 if round(np.log2(20e-6 / scene.mesh.contact)) % 2 else -1
+    def stubborn(model, states, comm, views=False):
+        solve = known(model, states, comm)
+        sign = 1 if round(np.log2(20e-6 / model.mesh.contact)) % 2 else -1
         change(solve, mu_app=EXACT * (1 + 0.1 * sign))
         return solve
 
@@ -237,7 +240,7 @@ def test_says_when_the_accuracy_is_out_of_reach(monkeypatch):
 
 
 def test_says_when_a_state_is_lost(monkeypatch):
-    def lost(scene, needed, states, comm, views=False):
+    def lost(model, states, comm, views=False):
         raise StepFailed("full slip found no equilibrium")
 
     found = search(monkeypatch, {"mu_app": 0.01}, lost)
@@ -256,9 +259,9 @@ def test_stops_when_it_is_asked_to(monkeypatch):
 
 
 def test_says_where_a_ridge_comes_or_goes(monkeypatch):
-    def fewer(scene, needed, states, comm, views=False):
-        solve = known(scene, needed, states, comm)
-        change(solve, ridges_in_contact=16 if scene.mesh.contact < 20e-6 else 17)
+    def fewer(model, states, comm, views=False):
+        solve = known(model, states, comm)
+        change(solve, ridges_in_contact=16 if model.mesh.contact < 20e-6 else 17)
         return solve
 
     notes = search(monkeypatch, {"mu_app": 0.2}, fewer).notes
@@ -266,10 +269,10 @@ def test_says_where_a_ridge_comes_or_goes(monkeypatch):
 
 
 def test_friction_without_full_slip_is_refused():
-    scene = from_data({"accuracy": {"mu_app": 0.01}})
-    path = Solve({"charged": known(scene, None, {}, None).states["full_slip"]}, scene.mesh, 1000, 10, 1.0)
+    model = model_of({"accuracy": {"mu_app": 0.01}})
+    path = Solve({"charged": known(model, {}, None).states["full_slip"]}, model.mesh, 1000, 10, 1.0)
     with pytest.raises(StepFailed, match="accuracy.mu_app is 0.01, which full slip decides"):
-        Refinement(scene, plan(scene), path, MPI.COMM_SELF, lambda text: None, lambda: None)
+        Refinement(model, path, MPI.COMM_SELF, lambda text: None, lambda: None)
 
 
 # -- scenes ------------------------------------------------------------------------------------------------
@@ -323,13 +326,13 @@ def test_plus_minus(value, error, text):
 @pytest.mark.parametrize("asked", [{"mu_app": 0.01}, {}])
 def test_starts_again_finer_where_the_path_is_lost(asked, start, helps, finer):
     """With half the contact size; not where that cannot help, nor below the limit."""
-    scene = from_data(({"accuracy": asked} if asked else {}) | {"mesh": {"contact": start}})
+    model = model_of(({"accuracy": asked} if asked else {}) | {"mesh": {"contact": start}})
     lost: StepFailed = StepFailed("no equilibrium")
     lost.__cause__ = NotConverged("DIVERGED_LOCAL_MIN" if helps else "NOT_A_NUMBER", False)
     if asked and not helps:  # any loss of a mesh to start from may be its coarseness
         lost = Interrupted(signal.SIGTERM, 3)
-    restart = attempt._finer(scene, plan(scene), lost)
-    assert (restart and restart.scene.mesh.contact) == finer
+    restart = attempt._finer(model, lost)
+    assert (restart and restart.model.mesh.contact) == finer
 
 
 # -- a small finger ----------------------------------------------------------------------------------------
@@ -374,7 +377,7 @@ def test_steps_follow_the_scene_s_scale():
     scene = from_data(SMALL | {"numerics": {"step_scale": 0.5}})
     assert scene.parameters()["numerics"]["step_scale"] == 0.5
     assert "step_scale" not in from_data(SMALL).parameters()["numerics"]
-    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
+    simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
     assert simulation.finger.continuation.step_scale == 0.5
 
 
@@ -387,4 +390,4 @@ def test_loads_to_normal_contact(places, kept):
     loads = [{"name": "away", "bone_height": 1e-5}, {"name": "press", "f_ext": 1.0}, {"name": "slide"}]
     moves = [{} if place is None else {"bone_x": place} for place in places]
     scene = from_data({"history": [load | move for load, move in zip(loads, moves, strict=True)]})
-    assert solves.loads_to_normal_contact(scene) == scene.history[:kept]
+    assert solves.loads_to_normal_contact(scene.loads()) == scene.history[:kept]

@@ -2,7 +2,7 @@
 
 import pytest
 
-from benchmarks.calibration import HERTZ, KINDS, WANTED, WHOLE, Case, coverage, kept, table, tally
+from benchmarks.accuracy import HERTZ, KINDS, WANTED, WHOLE, Case, coverage, kept, table
 
 
 @pytest.fixture(scope="module")
@@ -49,14 +49,6 @@ def test_error_below_its_bar_counts_for_nothing():
     ]
     assert coverage(known, "friction") == coverage(known) == (2, 1, 2)
     assert "| (0.50) |" in table(known)
-
-
-def test_tally_of_effectivities():
-    """Two of them are 2, one 0.1, one 9; that of an error below its bar is left out."""
-    known = [
-        Case("", "", "f_T", True, estimate, 1.0, bar) for estimate, bar in ((2, 0), (2, 0), (0.1, 0), (9, 0), (2, 2))
-    ]
-    assert tally(known) == "2 of 4 effectivities are between 0.5 and 3, 1 are below and 1 above."
 
 
 @pytest.mark.parametrize(

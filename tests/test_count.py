@@ -9,12 +9,11 @@ from fingerpad.accuracy.recompute import Solve
 from fingerpad.accuracy.refinement import Refinement
 from fingerpad.model import memory
 from fingerpad.model.check import check
-from fingerpad.model.options import plan
+from fingerpad.model.options import FingerModel, plan
 from fingerpad.scene import Numerics, SceneError, from_data
 from geometry import count, fingertip
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
-from geometry.profiles import GeometryError
 
 FINE = {"contact": 10e-6, "receptor": 10e-6, "touching_half_arc": 1.0e-3}
 COARSE = {"contact": 30e-6, "receptor": 60e-6, "interface": 120e-6, "growth": 0.5, "touching_half_arc": 2.0e-3}
@@ -67,10 +66,10 @@ def test_memory_of_runs(monkeypatch, unknowns, gigabytes):
 
 def test_two_million_unknowns_are_allowed(monkeypatch):
     monkeypatch.setattr(memory.count, "triangles", lambda *arguments: 2e6 / 4)
-    memory.refuse_beyond(from_data({}))
+    check(from_data({}))
     monkeypatch.setattr(memory.count, "triangles", lambda *arguments: 3e6 / 4)
-    with pytest.raises(GeometryError):
-        memory.refuse_beyond(from_data({}))
+    with pytest.raises(SceneError, match="3 000 000 unknowns"):
+        check(from_data({}))
 
 
 @pytest.mark.parametrize(
@@ -104,6 +103,6 @@ def test_refinement_ends_where_memory_does():
     numerics = scene.numerics.model_copy(update={"memory": 3e8})
     scene = scene.model_copy(update={"numerics": numerics})
     path = Solve({"full_slip": None}, scene.mesh, 1, 1, 0.0)
-    search = Refinement(scene, plan(scene), path, MPI.COMM_SELF, lambda line: None, lambda: None)
+    search = Refinement(FingerModel(scene, plan(scene)), path, MPI.COMM_SELF, lambda line: None, lambda: None)
     search.run()
     assert search.failure.startswith("the accuracy asked for could not be established: the mesh would have some ")

@@ -131,9 +131,11 @@ def test_receptor_sites(coarse):
 
 @pytest.mark.mpi
 @pytest.mark.skipif(MPI.COMM_WORLD.size == 1, reason="one rank has no other to agree with")
-def test_ranks_agree_with_one():
+@pytest.mark.parametrize("size", ["small", pytest.param("coarse", marks=pytest.mark.long)])
+def test_ranks_agree_with_one(size):
     """The same numbers to 1e-6: the coupling's tolerance on the air gap, times its contraction."""
-    scene = load(COARSE).replace(output={"errors": False})
+    small = NINE | {"f_ext": 1.0, "voltage": 100.0, "mesh": MESH}
+    scene = from_data(small) if size == "small" else load(COARSE).replace(output={"errors": False})
     found, other = (full.run(scene, None, comm, lines=False).to_dict() for comm in (MPI.COMM_WORLD, MPI.COMM_SELF))
     assert (found["ranks"], other["ranks"]) == (MPI.COMM_WORLD.size, 1)
     for state in ("normal", "slip"):
@@ -171,26 +173,13 @@ def test_failure_keeps_the_accepted_steps(tmp_path):
     assert json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["failure"]
 
 
-@pytest.mark.parametrize("formulation", ["nitsche", "augmented"])
-def test_other_formulations(tmp_path, formulation):
-    """Pressed lightly and charged, a scene with another formulation balances its forces as the penalty's does."""
-    history = [{"name": "press", "f_ext": 0.5}, {"name": "charge", "voltage": 50.0}]
-    scene = from_data(NINE | {"history": history, "mesh": MESH, "contact": {"formulation": formulation}})
-    assert "failure" not in runs.run(scene, tmp_path)
-    end = steps(tmp_path)[-1]
-    force = float(end["f_contact"]) - float(end["f_electrostatic"])
-    assert float(end["f_electrostatic"]) > 0
-    assert force == pytest.approx(0.5, abs=1e-7)  # some hundred nodal imbalances of 1e-9 of the load
-
-
 def test_contact_survives_without_force(tmp_path):
     """Unloaded to no force under voltage, ridges stay on the screen; pulled by displacement, they come off in a jump.
 
-    The bone is raised by 4 um at a time: in a step much longer, what is released is less than the error of the work.
+    Where ridges come off, the bone is raised by 4 um at a time: in a step much longer, what is released is less than
+    the error of the work.
     """
-    heights = [
-        {"name": f"retract to {height} um", "bone_height": height * 1e-6} for height in (-6, -2, 2, 6, 10, 14, 40)
-    ]
+    heights = [{"name": f"retract to {height} um", "bone_height": height * 1e-6} for height in (6, 10, 14, 40)]
     loads = [{"name": "press", "f_ext": 0.3}, {"name": "charge", "voltage": 150.0}, {"name": "unload", "f_ext": 0.0}]
     scene = from_data(NINE | {"history": loads + heights, "mesh": MESH | {"contact": 15e-6}})
     assert "failure" not in runs.run(scene, tmp_path)

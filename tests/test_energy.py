@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from benchmarks.verification.energy import D_EQ, PHASES, VOLTAGE, Walk, cycle
 from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests import spring
+from tests.cycle import D_EQ, PHASES, VOLTAGE, Walk, cycle
 from tests.test_contact import HEIGHT, MU_F, WIDTH, make
 from variational.attraction import electroadhesion
 from variational.attraction.electroadhesion import Attraction

@@ -7,11 +7,11 @@ import pytest
 import ufl
 from mpi4py import MPI
 
-from benchmarks.verification.energy import cycle
 from geometry import tags
 from geometry.bodies import block
 from geometry.mesh import load
 from tests import test_contact, test_problem
+from tests.cycle import cycle
 from variational.body import Body
 from variational.contact import return_mapping
 from variational.contact.augmented import AugmentedLagrangian

@@ -5,6 +5,9 @@ import subprocess
 import sys
 import time
 
+import numpy as np
+import ufl
+from dolfinx import fem, mesh
 from mpi4py import MPI
 
 from variational import jit
@@ -35,3 +38,13 @@ def test_sweep_leaves_what_a_compiler_is_at(tmp_path, monkeypatch):
         compiler.communicate(b"\n")
     jit.delete_unfinished(MPI.COMM_SELF)
     assert not source.exists()
+
+
+def test_compiled_forms_keep_what_is_no_number():
+    """The logarithm of a negative Jacobian determinant is NaN, in each cell that is inside out and in no other."""
+    square = mesh.create_unit_square(MPI.COMM_SELF, 2, 2)
+    cells = fem.functionspace(square, ("Discontinuous Lagrange", 0))
+    J, v = fem.Function(cells), ufl.TestFunction(cells)
+    J.x.array[:] = np.linspace(-1.0, 2.0, len(J.x.array))
+    form = fem.form((ufl.ln(J) - ufl.ln(J) + J / J) * v * ufl.dx, jit_options=jit.OPTIONS)
+    assert np.array_equal(np.isnan(fem.assemble_vector(form).array), J.x.array < 0)

@@ -11,7 +11,7 @@ import ufl
 from mpi4py import MPI
 
 from fingerpad.model import touching
-from fingerpad.model.options import plan
+from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.reduced import cylinders, ridge_cell, smooth
 from fingerpad.scene import Scene, SceneError, from_data, laws
@@ -402,7 +402,7 @@ SMALL = {
 def slid() -> Simulation:
     """A small finger with a closure, a dermis and a friction law of one's own, pressed, charged and slid."""
     scene = from_data(SMALL).with_laws(**OWN)
-    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
+    simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
     simulation.run()
     return simulation
 

@@ -16,8 +16,8 @@ class Path:
 
     tried: list[float]
 
-    def __init__(self, scene, needed, comm, on_step, on_load):
-        self.contact, self.on_load = scene.mesh.contact, on_load
+    def __init__(self, model, comm, on_step, on_load):
+        self.contact, self.on_load = model.mesh.contact, on_load
 
     def run(self):
         Path.tried.append(self.contact)
@@ -93,14 +93,14 @@ def test_limit_is_of_the_meshes_before_one_on_which_a_state_is_lost(monkeypatch,
     """The meshes are numbered from zero; of fewer than three no limit is made."""
     sizes = [mesh.contact for mesh in limits.meshes(Scene().mesh, 4)]
 
-    def solved(scene, needed, states, comm):
-        if sizes[lost:] and scene.mesh.contact == sizes[lost]:
+    def solved(model, states, comm):
+        if sizes[lost:] and model.mesh.contact == sizes[lost]:
             raise StepFailed("lost")
         cost = {"unknowns": 1, "factorisations": 1, "processor_seconds": 0.0}
-        return SimpleNamespace(states={}, mesh=scene.mesh, values=dict, **cost)
+        return SimpleNamespace(states={}, mesh=model.mesh, values=dict, **cost)
 
     monkeypatch.setattr(limits, "solve_again", solved)
-    monkeypatch.setattr(limits, "_path", lambda scene: solved(Scene(), None, {}, None))
+    monkeypatch.setattr(limits, "_path", lambda scene: solved(Scene(), {}, None))
     if levels is None:
         with pytest.raises(StepFailed, match="lost"):
             limits._solve(Scene(), 4)

@@ -244,8 +244,13 @@ def test_half_the_finger_costs_half(fingers):
     assert half["normal_f_t"] == 0.0
 
 
-def test_picture_shows_the_whole_finger(fingers):
-    _, (half, whole) = fingers
-    with np.load(half / "finger_charge.npz") as mine, np.load(whole / "finger_charge.npz") as other:
+def test_picture_shows_the_whole_finger(tmp_path, monkeypatch):
+    """Pressed by its half and as a whole, with elements of 30 um."""
+    half, whole = folders = tmp_path / "half", tmp_path / "whole"
+    data = {"mesh": MESH | {"contact": 30e-6}, "history": HISTORY[:1], "geometry": {"ridge_count": 9}}
+    for folder in folders:
+        run(from_data(data | {"output": {"errors": False}}), folder, MPI.COMM_WORLD)
+        monkeypatch.setattr(run_module, "plan", lambda scene: replace(options.plan(scene), both_halves=True))
+    with np.load(half / "finger_press.npz") as mine, np.load(whole / "finger_press.npz") as other:
         assert np.ptp(mine["x"][:, 0]) == pytest.approx(np.ptp(other["x"][:, 0]), rel=1e-3)
         assert mine["merkel"] == pytest.approx(other["merkel"], abs=5e-6)

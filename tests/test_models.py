@@ -29,9 +29,9 @@ def test_kept_answers_are_those_of_the_program():
 
 
 def test_scenes_differ_and_their_mesh_is_given():
-    """Forty scenes and five extremes; all of one force share their mesh."""
-    scenes = models.scenes() | models.extremes()
-    assert len(scenes) == len({key(scene) for scene in scenes.values()}) == 45
+    """Forty scenes; all of one force share their mesh."""
+    scenes = models.scenes()
+    assert len(scenes) == len({key(scene) for scene in scenes.values()}) == 40
     assert all(scene.mesh.touching_half_arc is not None for scene in scenes.values())
 
 
@@ -56,7 +56,7 @@ def test_failure_is_kept_alone():
 
 
 def test_page(tmp_path):
-    """One scene of two has no smooth answer; the other is by older tables; a run at an extreme failed."""
+    """One scene of two has no smooth answer; the other is by older tables."""
     values = {name: 1.0 for name in models.QUANTITIES}
     smooth = answer(**values) | {"more": {"table_version": 2}}
     scenes = {
@@ -68,12 +68,10 @@ def test_page(tmp_path):
         },
         models.name(5.0, 0.0): {"cylinders": answer(**values), "smooth": smooth, "full": answer(**values)},
     }
-    ends = [{"scene": "400 V at 10 N/m", "mu_app": None, "end": "step 9: stuck"}]
-    harness.keep("models", {"scenes": scenes, "extremes": ends}, BY, tmp_path)
+    harness.keep("models", {"scenes": scenes}, BY, tmp_path)
     text = models.draw(tmp_path).read_text(encoding="utf-8")
     assert "give µ_app within 10.0 %" in text
     assert "full slip in 2 of 3 scenes" in text
     assert "No answer at 75 N/m, 200 V." in text
     assert "1 of the answers are by an older law of one ridge" in text
     assert "| 75 | +0.0 | – | – | – | +10.0 |" in text
-    assert "| 400 V at 10 N/m | – | step 9: stuck |" in text

@@ -46,12 +46,6 @@ def test_numbers_are_kept_as_they_are(tmp_path):
     assert '   {"k": 0, "value": 0.1},\n' in (tmp_path / "study.json").read_text(encoding="utf-8")
 
 
-def test_number_that_moved_is_named():
-    before = {"a": [1.0, 2.0], "word": "x", "gone": 1}
-    assert harness.moved(before, {"a": [1.0005, 2.1], "word": "x", "new": 3}) == ["/a/1: was 2.0, is 2.1"]
-    assert harness.moved(before, {"word": "y"}) == ["/word: was x, is y"]
-
-
 def test_page_names_the_program_that_made_its_numbers(tmp_path):
     def text(by):
         path = harness.page(tmp_path / "x.md", "Title", "It holds.", "So.", ["", "## More"], "make x", by, ["x"])

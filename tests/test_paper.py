@@ -1,4 +1,4 @@
-"""The paper's statements and pictures from runs that are made up, so that their numbers are known."""
+"""The paper's statements and picture from runs that are made up, so that their numbers are known."""
 
 import csv
 import json
@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from benchmarks.harness import DOCS, Made, keep, kept
 from benchmarks.paper import __main__ as command
-from benchmarks.paper import friction, micro, page, scenes, section, sed
+from benchmarks.paper import fields, friction, page, scenes
 from benchmarks.paper.statement import HOLDS, IN_PART, NOT, Statement, statement
 from benchmarks.runs import FORCES, VOLTAGES, Run
 from fingerpad.io import style
@@ -107,7 +107,7 @@ def test_change_of_a_layer_is_weighed_by_area():
     corners = [1e-5 * small, 1e-5 * wide, 1e-5 * small + [5e-3, 0], 1e-5 * small, 1e-5 * small]
     tag = [layers[0], layers[0], layers[0], layers[1], layers[2]]
     run = charged(np.concatenate(corners), tag, [1.0, 1.0, 1.0, 2.0, 4.0], [2.0, 0.8, 9.0, 2.0, 5.0])
-    assert list(sed._changes(run).values()) == pytest.approx([0.4, 0.0, 0.25], rel=1e-12)
+    assert list(fields.changes(run).values()) == pytest.approx([0.4, 0.0, 0.25], rel=1e-12)
 
 
 def sheared():
@@ -132,44 +132,30 @@ def sheared():
 
 def test_section_statements():
     run = sheared()
-    assert [section._scale(run, state) for state in ("normal", "partial", "slip")] == [10.0, 2.5, 2.0]
-    leading = by(section.statements(run), "leading")
+    leading = by(fields.section(run), "leading")
     assert (leading.numbers, leading.verdict) == ({"leading": 1.0, "trailing": 0.0}, HOLDS)
-    assert by(section.statements(run), "tensile").numbers["tension"] == pytest.approx(-0.03)
-    assert by(section.statements(run), "point-symmetric").numbers["even"] == pytest.approx(0, abs=1e-15)
-    assert by(section.statements(run), "1.7 to 3").numbers["share"] == pytest.approx(12 / 18)
-
-
-SITES = {"ridge": [-2, -1, 0], "voltage": [100.0, 200.0, 400.0], "friction": [80.0, 202.0, 400.0]}
+    assert by(fields.section(run), "tensile").numbers["tension"] == pytest.approx(-0.03)
+    assert by(fields.section(run), "point-symmetric").numbers["even"] == pytest.approx(0, abs=1e-15)
+    assert by(fields.section(run), "1.7 to 3").numbers["share"] == pytest.approx(12 / 18)
 
 
 def test_claim_is_judged_site_by_site():
-    found = sed.claim_statement(SITES)
+    """At the three sites of which a ridge is in contact in either run."""
+
+    def run(sed, touching):
+        receptors = {"ridge": np.array([-3, -2, -1, 0]), "merkel_sed": np.array([sed])}
+        return SimpleNamespace(receptors=receptors, slip=0, on_ridges=lambda row, name: (touching, None))
+
+    found = fields.claim(run([9.0, 100.0, 200.0, 400.0], [-2, -1]), run([1.0, 80.0, 202.0, 400.0], [-1, 0]))
     assert found.numbers == pytest.approx({"median": 0.01, "largest": -0.2})
     assert "at ridge -2; 2 of 3 sites" in found.ours
     assert found.verdict == IN_PART
 
 
-def test_section_is_gathered_in_contact():
-    """Points in contact alone, from left to right, over f_ext / L_R."""
-    run = sheared()
-    arrays = run.arrays("surface")
-    extra = {f"{state}_{name}": arrays["normal_x"] for state in section.STATES for name in ("x", "p", "p_el", "t")}
-    run.arrays = lambda _: extra | arrays
-    found = section.gather(run)["normal"]
-    assert found["x"] == pytest.approx(np.linspace(-0.75, 0.75, 7))
-    assert found["p"] == pytest.approx([0.2] * 7)
-
-
-def test_pictures_have_units(grid):
-    run = sheared()
-    arrays = run.arrays("surface")
-    shape = {f"{state}_{name}": arrays["normal_x"] for state in section.STATES for name in ("x", "p", "p_el", "t")}
-    run.arrays = lambda _: shape
-    for paint, numbers in ((friction.paint, grid), (sed.paint, SITES), (section.paint, section.gather(run))):
-        figure = Figure()
-        paint(figure, numbers)
-        assert all(ax.has_data() and "(" in ax.get_ylabel() for ax in figure.axes)
+def test_picture_has_units(grid):
+    figure = Figure()
+    friction.paint(figure, grid)
+    assert all(ax.has_data() and "(" in ax.get_ylabel() for ax in figure.axes)
 
 
 def test_verdicts():
@@ -179,31 +165,9 @@ def test_verdicts():
 
 def test_threshold_statements():
     """155.2 V by Eq. 15, 163.6 V by Eq. 9."""
-    numbers = by(micro.statements(), "155 V").numbers
+    numbers = by(fields.microscale(), "155 V").numbers
     assert numbers["eq_15"] == pytest.approx(155.2, abs=0.06)
     assert numbers["eq_9"] == pytest.approx(163.6, abs=0.05)
-
-
-# -- measurements --------------------------------------------------------------------------------------
-def test_measured_friction_is_read_and_drawn(tmp_path, grid):
-    file = tmp_path / "somebody.csv"
-    file.write_text("force_N,voltage_V,friction_N\n0.5,0,0.14\n0.5,200,0.31\n")
-    measured = friction.Measured.read(file)
-    assert measured.label == "somebody"
-    assert list(measured.friction) == [0.14, 0.31]
-    figure = Figure()
-    friction.paint(figure, grid, measured)
-    labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
-    assert "somebody, 200 V" in labels
-
-
-@pytest.mark.parametrize("text", ["force_N,voltage_V\n1,0\n", "force_N,voltage_V,friction_N\n1,0,much\n", ""])
-@pytest.mark.filterwarnings("ignore:genfromtxt")
-def test_measured_friction_that_is_none(tmp_path, text):
-    file = tmp_path / "bad.csv"
-    file.write_text(text)
-    with pytest.raises(ValueError, match="bad.csv .*force_N"):
-        friction.Measured.read(file)
 
 
 # -- runs ----------------------------------------------------------------------------------------------
@@ -252,7 +216,7 @@ def test_unfinished_run_is_refused(tmp_path, summary):
 
 def test_missing_runs_are_named(tmp_path, capsys):
     """Without a run the statements on the microscale are made all the same, and the page lists what is missing."""
-    numbers = command.collect(tmp_path / "runs", 10e-6)
+    numbers = command.collect(tmp_path / "runs")
     assert [s["figure"] for s in numbers["statements"]] == ["4, Eq. 14", "5, Eq. 15"]
     keep("paper", numbers, MADE, tmp_path)
     assert "**Not run yet:** Fig. 2, Figs. 6 to 8" in page.draw(tmp_path).read_text(encoding="utf-8")
@@ -273,7 +237,7 @@ def test_grid_of_runs_is_collected(monkeypatch, tmp_path):
         return Fields(scene=scene, **vars(found), on_ridges=lambda row, name: ([0], None), loads=["slide"] * 3)
 
     monkeypatch.setattr(command, "Run", run)
-    numbers = command.collect(tmp_path, 10e-6)
+    numbers = command.collect(tmp_path)
     assert np.shape(numbers["grid"]["slip_f_t"]) == (len(FORCES), len(VOLTAGES))
     assert {s["figure"] for s in numbers["statements"]} == {"4, Eq. 14", "5, Eq. 15", "6", "7", "8"}
     wavy = next(s for s in numbers["statements"] if "wavy" in s["paper"])
@@ -284,15 +248,15 @@ def test_grid_of_runs_is_collected(monkeypatch, tmp_path):
 # -- scenes, page - ------------------------------------------------------------------------------
 def test_sine_is_a_valid_scene():
     """From 0 V over the peak and back to 0 V, each reached before the finger slides on to full slip, ever farther."""
-    loads = scenes.sine(10e-6).loads()[1:]
+    loads = scenes.sine().loads()[1:]
     voltages = [load.voltage for load in loads if load.voltage is not None]
     assert voltages == pytest.approx([scenes.PEAK * np.sin(np.pi * k / 12) for k in range(1, 13)], abs=1e-9)
     assert np.all(np.diff([load.bone_x for load in loads]) > 0)
     assert [load.until_full_slip for load in loads] == [True] + [False, True] * 12
 
 
-def numbers_with(*statements, size=10e-6):
-    return {"contact_size": size, "missing": [], "statements": [asdict(s) for s in statements]}
+def numbers_with(*statements):
+    return {"contact_size": scenes.SIZE, "missing": [], "statements": [asdict(s) for s in statements]}
 
 
 def test_page(tmp_path):
@@ -317,18 +281,6 @@ def test_page_in_git_is_of_its_numbers(tmp_path):
     again = friction.statements(grid, {name.removeprefix("rises_"): n for name, n in rises.items()})
     assert [asdict(s) for s in again] == [s for s in numbers["statements"] if s["figure"] in ("6", "7", "8")]
     assert page.draw(tmp_path).read_text(encoding="utf-8").count("| **") == len(numbers["statements"])
-
-
-def test_number_that_moved_is_named():
-    """At the contact size of the page; a statement that is new has not moved."""
-
-    def said(fall, size=1e-5):
-        return numbers_with(Statement("8", "it falls", "so", {"fall": fall, "rise": 0.0}, HOLDS), size=size)
-
-    assert command.changes(said(0.1), said(0.10005)) == []
-    assert command.changes(said(0.1), said(0.102)) == ["/it falls/fall: was 0.1, is 0.102"]
-    assert command.changes(said(0.1), said(0.102, size=5e-6)) == []
-    assert command.changes(said(0.1), numbers_with(Statement("9", "new", "so", {"fall": 3.0}, HOLDS))) == []
 
 
 def test_paper_numbers_its_sites_along_the_arc():

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
-from fingerpad.model.options import plan
+from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import by_rule, left_out
+from fingerpad.model.touching import by_rule
 from fingerpad.scene import Scene, from_data
 from geometry.profiles import GeometryError
 from geometry.sizing import touching_ridges
@@ -17,6 +17,7 @@ from tests.runs import run
 COMM = MPI.COMM_WORLD
 PRESS = {"name": "press", "bone_height": -50e-6}
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8}
+LIGHT = {"mesh": MESH, "history": [PRESS], "output": {"errors": False}}
 RUNS = json.loads((Path(__file__).parent / "reach.json").read_text(encoding="utf-8"))
 """The last ridge, on either side, that is in contact in any step of a full run, by scene."""
 
@@ -86,14 +87,16 @@ def test_number_that_is_given_stands():
 
 def test_undecided_finger_is_refused():
     with pytest.raises(GeometryError, match="touching_half_arc is not given"):
-        Simulation(Scene(), plan(Scene()), COMM, lambda step, done: None, lambda: None)
+        Simulation(FingerModel(Scene(), plan(Scene())), COMM)
 
 
 # -- what is left out ------------------------------------------------------------------------------------------
 @pytest.mark.parametrize(("half_arc", "words"), [(1.3e-3, ["contact of the ridges beyond ±3"]), (0.1, [])])
 def test_ridges_left_out_are_named(half_arc, words):
     scene = from_data({"mesh": {"touching_half_arc": half_arc}})
-    assert [omission.what for omission in left_out(scene)] == words
+    needed = plan(scene)
+    omitted = FingerModel(scene, needed).omitted
+    assert [omission.what for omission in omitted[len(needed.omitted) :]] == words
 
 
 # -- runs ------------------------------------------------------------------------------------------------------
@@ -101,7 +104,7 @@ def test_ridges_left_out_are_named(half_arc, words):
 def lean(tmp_path_factory):
     """A lightly pressed finger whose ridges the rule chose."""
     folder = tmp_path_factory.mktemp("lean")
-    return folder, run(from_data({"mesh": MESH, "history": [PRESS]}), folder, COMM)
+    return folder, run(from_data(LIGHT), folder, COMM)
 
 
 def test_run_reports_what_was_left_out(lean):
@@ -122,7 +125,7 @@ def test_same_answer_with_fewer_unknowns(lean, tmp_path):
     Tolerance: they grow by 0.8 a distance, and the finer skin of the other gives by 1.4e-3 of the force. Facets of
     30 um are few: a twelfth of the unknowns is spared.
     """
-    whole = run(from_data({"mesh": MESH | {"touching_half_arc": 5e-3}, "history": [PRESS]}), tmp_path, COMM)
+    whole = run(from_data(LIGHT | {"mesh": MESH | {"touching_half_arc": 5e-3}}), tmp_path, COMM)
     for name in ("f_contact", "contact_length"):
         assert lean[1][f"normal_{name}"] == pytest.approx(whole[f"normal_{name}"], rel=3e-3), name
     assert lean[1]["unknowns"] < 0.95 * whole["unknowns"]

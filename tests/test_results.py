@@ -16,7 +16,7 @@ from fingerpad.io.states import RESULTS, named
 from fingerpad.io.views import Profile
 from fingerpad.model import full_slip, report
 from fingerpad.model.balance import force_error
-from fingerpad.model.options import plan
+from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data
 from tests.runs import run
@@ -68,7 +68,7 @@ def titles(monkeypatch) -> dict[str, str]:
 def test_charged_while_it_slides(tmp_path, titles):
     """The README's second example, small: the headline is the charged full slip at the end, and titles say so."""
     charge = {"name": "charge while sliding", "f_ext": 1.0, "voltage": 100.0, "bone_x": 0.6e-3}
-    summary = run(from_data(LEAN | {"history": [PRESS, SLIDE, charge]}), tmp_path, MPI.COMM_WORLD)
+    summary = run(from_data(LEAN | {"history": [PRESS, SLIDE, charge]}), tmp_path, MPI.COMM_WORLD, pictures=True)
     rows = rows_of(tmp_path)
     last = rows[-1]
     assert summary["full_slip"] is True
@@ -88,7 +88,7 @@ def test_charged_while_it_slides(tmp_path, titles):
 
 def test_skin_is_drawn_without_sliding(tmp_path, titles):
     """A run that only presses has the skin at the end of its load, and no history of sliding."""
-    run(from_data(LEAN | {"history": [PRESS]}), tmp_path, MPI.COMM_WORLD)
+    run(from_data(LEAN | {"history": [PRESS]}), tmp_path, MPI.COMM_WORLD, pictures=True)
     assert {"surface", "surface_press", "finger_press"} <= set(titles) and "history" not in titles
     assert "$f_{ext}$ = 1 N/m, $U$ = 0 V" in titles["After press"]
     with np.load(tmp_path / "surface_press.npz") as arrays:
@@ -111,7 +111,7 @@ BACK = {"name": "back", "bone_x": 0.0}
 )
 def test_headline_is_the_last_full_slip(tmp_path, history, load, f_ext):
     """Whatever came after the full slip, and whichever of height and force was given."""
-    summary = run(from_data(LEAN | {"history": history}), tmp_path, MPI.COMM_WORLD)
+    summary = run(from_data(LEAN | {"history": history}), tmp_path, MPI.COMM_WORLD, pictures=True)
     assert summary["slip_load"] == load
     assert f_ext is None or summary["slip_f_ext"] == pytest.approx(f_ext, rel=1e-9)
     assert (summary["normal_load"], summary["normal_bone_x"]) == ("press", 0.0)
@@ -129,7 +129,7 @@ TURN = {"name": "turn", "bone_x": 0.258e-3}  # after 0.26 mm: too little for a s
 def test_errors_are_estimated_of_the_headline(more, load):
     """The states kept for it are the last full slip that was held and normal contact, not those of another load."""
     scene = from_data(LEAN | {"history": [PRESS, SLIDE, *more]})
-    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: keeper.record(step), lambda: None)
+    simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD, lambda step, done: keeper.record(step))
     keeper = StateRecorder(simulation)
     simulation.run()
     found, kept = named(simulation.states), keeper.solve().states
@@ -146,7 +146,7 @@ def test_probe_of_full_slip_leaves_no_trace(monkeypatch):
     scene = from_data(LEAN | {"history": [PRESS, CHARGE, *slides]})
     probed, plain = [], []
     for rows in (probed, plain):
-        simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
+        simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
         simulation.run()
         rows += [state.row() for state in simulation.states]
         monkeypatch.setattr(full_slip.FullSlip, "_holds", lambda self: False)
@@ -170,10 +170,15 @@ COARSE_RUNS = {
 def test_force_error_bounds_the_balance(tmp_path, name):
     """Bone, screen and cone of full slip agree within what the solve's tolerance guarantees, on coarse runs."""
     data = LEAN | {"f_ext": 1.0, "voltage": 100.0} | COARSE_RUNS[name]
-    s = run(from_data(data), tmp_path, MPI.COMM_WORLD)
+    s = run(scene := from_data(data), tmp_path, MPI.COMM_WORLD)
+    assert "failure" not in s
     cone = data.get("friction", MU_0) * s["slip_f_contact"]
     assert abs(s["slip_f_contact"] - s["slip_f_electrostatic"] - s["slip_f_ext"]) <= s["force_error"]
     assert abs(s["slip_f_t"] - cone) <= s["force_error"] + CONE_ROUNDOFF * cone
+    # Charged before it slides, in whatever formulation: some hundred nodal imbalances of the tolerance times the load.
+    assert s["normal_f_electrostatic"] > 0
+    force = s["normal_f_contact"] - s["normal_f_electrostatic"]
+    assert force == pytest.approx(s["f_ext"], abs=100 * scene.numerics.tolerance * s["f_ext"])
 
 
 def test_force_error():
@@ -220,7 +225,7 @@ def test_rejected_state_leaves_the_one_before(tmp_path, monkeypatch):
     monkeypatch.setattr(report.Report, "step", noted)
     monkeypatch.setattr(writing.Fields, "write", lambda self, time: written.append(time))
     history = [{"name": "press", "bone_height": -60e-6}, {"name": "charge", "voltage": 50.0}]
-    summary = run(from_data(LEAN | {"history": history}), tmp_path, MPI.COMM_WORLD)
+    summary = run(from_data(LEAN | {"history": history}), tmp_path, MPI.COMM_WORLD, pictures=True)
     assert "step 3 (charge): a force of 0.001 N/m is left at a node" in summary["failure"]
     assert [row["step"] for row in rows_of(tmp_path)] == ["1", "2"]
     assert (summary["normal_step"], summary["normal_voltage"]) == (2, 0.0)
@@ -236,7 +241,7 @@ def refined(tmp_path_factory) -> tuple[Path, dict, dict[str, str]]:
     scene = from_data(SMALL | {"f_ext": 1.0, "voltage": 100.0, "accuracy": {"mu_app": 0.2}})
     with pytest.MonkeyPatch.context() as monkeypatch:
         titles = kept_titles(monkeypatch)
-        run(scene, folder, MPI.COMM_WORLD)
+        run(scene, folder, MPI.COMM_WORLD, pictures=True)
     return folder, json.loads((folder / "summary.json").read_text(encoding="utf-8")), titles
 
 
@@ -311,7 +316,7 @@ def test_way_through_the_air_is_no_sliding(tmp_path, titles):
     place = 0.5e-3
     away = {"name": "away", "bone_height": 20e-6, "bone_x": place}
     loads = [away, PRESS, {"name": "charge", "voltage": 100.0}, SLIDE | {"bone_x": place + 1e-3}]
-    summary = run(from_data(LEAN | {"history": loads}), tmp_path, MPI.COMM_WORLD)
+    summary = run(from_data(LEAN | {"history": loads}), tmp_path, MPI.COMM_WORLD, pictures=True)
     assert (summary["normal_load"], summary["normal_voltage"]) == ("charge", 100.0)
     assert summary["uncharged_load"] == "press"
     assert summary["normal_bone_x"] == pytest.approx(place, rel=1e-12)

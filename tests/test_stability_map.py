@@ -9,11 +9,10 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from benchmarks.harness import DOCS, kept
+from benchmarks.stability import __main__ as keeping
 from benchmarks.stability import page, plan, solve
-from benchmarks.stability import runs as keeping
-from benchmarks.stability.case import Case, Outcome
-from benchmarks.stability.loop import loop
-from benchmarks.stability.runs import Runs, run_all
+from benchmarks.stability.__main__ import Runs, run_all
+from benchmarks.stability.plan import Case, Outcome
 from variational.solvers.coupling import Coupling
 from variational.solvers.equations import Control
 from variational.solvers.failure import NotConverged
@@ -247,18 +246,6 @@ def test_nothing_is_compared_with_a_failed_reference(compared):
     assert compared.error(TINY, "f_t") is None
 
 
-# -- the scalar fixed point ----------------------------------------------------------------------------
-@pytest.mark.parametrize(
-    ("pressure", "voltage", "diverges"),
-    [(2e3, 100.0, True), (5e3, 150.0, True), (20e3, 150.0, False), (2e3, 50.0, False)],
-)
-def test_fixed_point(pressure, voltage, diverges):
-    """Out of phase it diverges just where the gain exceeds one half; keyed on the contact pressure it never does."""
-    found = loop(page.CLOSURE, pressure, voltage)
-    assert (found.by_external is None) == diverges == (found.gain > 0.5)
-    assert found.by_contact is not None
-
-
 # -- picture and page ----------------------------------------------------------------------------------
 def test_map_shows_each_run(tiny, panel):
     """Every cell has its symbol and iterations, every axis its unit."""
@@ -274,7 +261,7 @@ def rows_of(tiny, panel):
 
 def test_tables_hold_each_run(tiny, panel):
     """A run that failed is listed with its reason, and counted; a run that is missing is listed as not run."""
-    named = plan.Named("irrecoverable", "A penalty too high.", {"1.5e20 Pa/m": IRRECOVERABLE, "default": Case()})
+    named = plan.Named({"1.5e20 Pa/m": IRRECOVERABLE, "default": Case()})
     rows = rows_of(tiny, panel)
     text = page.named_table(named, rows)
     assert f"✕ failed: {tiny.outcomes[IRRECOVERABLE].reason}" in text
@@ -288,7 +275,7 @@ def test_page_is_drawn_from_the_kept_numbers(tmp_path):
     text = page.draw(tmp_path).read_text(encoding="utf-8")
     assert imread(tmp_path / "stability.png").std() > 0.05
     blocks = [b.splitlines() for b in text.split("\n\n") if b.startswith("|")]
-    assert len(blocks) == 3 + len(plan.named())  # the default's, the counts' and the fixed point's
+    assert len(blocks) == 2 + len(plan.named())  # the default's and the counts'
     for block in blocks:
         assert len({line.count("|") for line in block}) == 1
     shown = {case for panels in plan.charts().values() for panel in panels for case in panel.cases()}

@@ -6,7 +6,7 @@ from mpi4py import MPI
 
 from fingerpad.accuracy.recompute import StateRecorder
 from fingerpad.model import full_slip
-from fingerpad.model.options import plan
+from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data
 
@@ -21,7 +21,7 @@ SCENE = {
 @pytest.fixture(scope="module")
 def path():
     scene = from_data(SCENE)
-    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: keeper.record(step), lambda: None)
+    simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD, lambda step, done: keeper.record(step))
     keeper = StateRecorder(simulation)
     simulation.run()
     return keeper.solve()
@@ -43,7 +43,7 @@ def test_slip_that_is_never_steady_ends_with_the_slide(monkeypatch):
     monkeypatch.setattr(full_slip, "_STEADY", -1.0)
     scene, places = from_data(SCENE | {"slide_length": 0.9e-3}), []
     simulation = Simulation(
-        scene, plan(scene), MPI.COMM_WORLD, lambda step, done: places.append(step.state.bone_x), lambda: None
+        FingerModel(scene, plan(scene)), MPI.COMM_WORLD, lambda step, done: places.append(step.state.bone_x)
     )
     simulation.run()
     assert not any(state.slip_held for state in simulation.states)
@@ -69,7 +69,7 @@ class Slid:
 def test_force_of_full_slip_is_as_steady_as_its_gaps(formulation, change, steady):
     """5 nm left of an air gap and insulators of some 2 um: 5e-3 of the attraction, 1e-6 where none are left."""
     scene = from_data(SCENE | {"contact": {"formulation": formulation}})
-    finger = Simulation(scene, plan(scene), MPI.COMM_WORLD).finger
+    finger = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD).finger
     finger.coupling.set_air_gaps(np.full(len(finger.ridges), 1.5e-6))
     finger.continuation = Slid(finger.solver, change)
     assert full_slip.FullSlip(finger).slides_on("slide", 1) is steady

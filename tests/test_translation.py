@@ -5,7 +5,7 @@ import pytest
 from dolfinx import fem
 from mpi4py import MPI
 
-from fingerpad.model.options import plan
+from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.scene import from_data
 from variational.solvers import iteration
@@ -29,7 +29,7 @@ def slid(away: float, f_ext: float, voltage: float, tolerance: float) -> Simulat
     scene = from_data(FINGER | data)
     # Below what a scene may ask for, where a test is of the floor.
     scene = scene.model_copy(update={"numerics": scene.numerics.model_copy(update={"tolerance": tolerance})})
-    made = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
+    made = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
     made.run()
     return made
 
@@ -76,7 +76,7 @@ def test_light_press_at_200_v_after_5_mm():
 def test_translated_body_bears_no_force():
     """Off the screen, 10 mm aside: every nodal force is zero to the last bit."""
     scene = from_data(FINGER | {"f_ext": 1.0})
-    made = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
+    made = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
     u = np.tile([10e-3, 3e-3], (len(made.finger.problem.displacement()), 1))
     made.finger.solver.set_displacement(u, np.array([10e-3, 3e-3]))
     np.testing.assert_array_equal(made.finger.problem.displacement(), u)
@@ -108,7 +108,7 @@ def test_points_of_little_friction_come_to_stick():
     finger = {"geometry": {"ridge_count": 5}, "mesh": FINGER["mesh"] | {"contact": 30e-6, "touching_half_arc": 0.6e-3}}
     scene = from_data(finger | {"friction": 0.002, "history": [{"name": "press", "f_ext": 0.2}]})
     needed, rows = plan(scene).with_both_halves(), []
-    made = Simulation(scene, needed, MPI.COMM_WORLD, lambda step, done: rows.append(step.state.row()), lambda: None)
+    made = Simulation(FingerModel(scene, needed), MPI.COMM_WORLD, lambda step, done: rows.append(step.state.row()))
     made.run()
     assert not any(row["jump"] for row in rows)
     assert sum(row["cutbacks"] for row in rows) <= 1

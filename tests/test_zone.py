@@ -9,7 +9,7 @@ from mpi4py import MPI
 
 from fingerpad.model import options
 from fingerpad.model.contact_zone import FingerExceeded, Wider, more
-from fingerpad.model.options import plan
+from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.runs import full as run_module
 from fingerpad.scene import from_data
@@ -77,7 +77,7 @@ def test_how_many_are_added(last, after):
 def brought_near(half_arc: float, clearance: float) -> Simulation:
     """Return a finger that touches nowhere, rolled onto its side so that ridge 6 is lowest, at a height (m)."""
     scene = from_data({"mesh": MESH | {"touching_half_arc": half_arc}, "geometry": {"ridge_count": 15}})
-    simulation = Simulation(scene, plan(scene), MPI.COMM_WORLD, lambda step, done: None, lambda: None)
+    simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
     problem, (tip, before) = (
         simulation.finger.problem,
         simulation.finger.profiles.point(np.array([6.0, 5.99]) * WAVELENGTH, 0.0),

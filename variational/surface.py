@@ -172,11 +172,16 @@ class Surface:
             gap: likewise.
         """
         lengths = np.zeros(len(x))
+        # A polynomial lies between its least and its largest Bernstein coefficient: most facets are found open or
+        # closed as a whole, without roots.
+        bernstein = gap @ self._to_bernstein.T
         near = gap.min(axis=1, initial=np.inf) < 4 * (np.ptp(gap, axis=1) if len(gap) else 0)
-        # A polynomial is above its least Bernstein coefficient: most facets are found open without their roots.
-        near &= (gap @ self._to_bernstein.T).min(axis=1) < 1e-9 * np.abs(gap).max(axis=1)
+        near &= bernstein.min(axis=1) < 1e-9 * np.abs(gap).max(axis=1)
+        closed = bernstein.max(axis=1) < 0
         gauss, weights = np.polynomial.legendre.leggauss(6)
-        for k in np.flatnonzero(near):
+        slopes = [z[closed] @ self._to_powers.T @ _derivative(len(self.weights), (1 + gauss) / 2) for z in (x, y)]
+        lengths[closed] = np.hypot(*slopes) @ weights / 2
+        for k in np.flatnonzero(near & ~closed):
             opening = Polynomial(self._to_powers @ gap[k])
             slope_x, slope_y = (Polynomial(self._to_powers @ z[k]).deriv() for z in (x, y))
             roots = opening.roots()
@@ -195,3 +200,9 @@ class Surface:
         """Bring values at the points, shape (n, facets, points), to rank 0 as (n, all facets, points)."""
         parts = self.mesh.comm.gather(values)
         return None if parts is None else np.concatenate(parts, axis=1)
+
+
+def _derivative(powers: int, xi: Array) -> Array:
+    """Return the derivatives of 1, x, x^2, ... at places, shape (powers, places)."""
+    n = np.arange(powers)[:, None]
+    return np.asarray(n * xi ** np.maximum(n - 1, 0))

@@ -2,13 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from benchmarks.paper.scenes import MAP, TRANSITION, WIDTH
+from benchmarks.paper.scenes import MAP, TRANSITION
 from benchmarks.paper.statement import Statement, statement
 from benchmarks.runs import Run
 from fingerpad.io import style
@@ -18,33 +17,6 @@ Grid = Mapping[str, Array]
 """``f_ext`` (N/m), shape (forces,); ``voltage`` (V), shape (voltages,); the others have shape (forces, voltages)."""
 COLUMNS = ("f_t", "contact_length", "ridges_in_contact")
 _HIGH, _LOW = 200.0, 50.0  # V
-
-
-@dataclass(frozen=True)
-class Measured:
-    """Somebody's friction: forces (N) of a finger ``WIDTH`` wide."""
-
-    label: str
-    force: Array
-    voltage: Array
-    friction: Array
-
-    @classmethod
-    def read(cls, path: Path) -> "Measured":
-        """Read a CSV file with the columns ``force_N``, ``voltage_V`` and ``friction_N``.
-
-        Raises:
-            ValueError: a column is missing or holds no number.
-        """
-        names = ("force_N", "voltage_V", "friction_N")
-        try:
-            table = np.genfromtxt(path, delimiter=",", names=True, dtype=float, encoding="utf-8")
-            columns = [np.atleast_1d(table[name]) for name in names]
-        except (ValueError, TypeError, IndexError) as error:
-            raise ValueError(f"{path} must have the columns {', '.join(names)}: {error}") from None
-        if not np.isfinite(columns).all():
-            raise ValueError(f"{path} has a row without a number in {', '.join(names)}")
-        return cls(path.stem, *columns)
 
 
 def gather(runs: Mapping[tuple[float, float], Run]) -> dict[str, Array]:
@@ -58,16 +30,23 @@ def gather(runs: Mapping[tuple[float, float], Run]) -> dict[str, Array]:
     return found
 
 
+def rises(runs: Mapping[tuple[float, float], Run]) -> dict[str, float]:
+    """Return by voltage in how many steps of the path to full slip at ``TRANSITION`` the contact length rises."""
+    found = {}
+    for (force, voltage), run in runs.items():
+        if force == TRANSITION:
+            lengths = run.steps["contact_length"][run.normal : run.slip + 1]
+            found[f"{voltage:g}"] = float((np.diff(lengths) > 0).sum())
+    return found
+
+
 @dataclass(frozen=True)
 class Reduction:
-    """Share of contact length lost by sliding over the mean shear stress f_T / L_R (Pa), with a fit through the origin.
+    """Share of contact length lost by sliding over the mean shear stress f_T / L_R, with a fit through the origin."""
 
-    ``stress`` and ``lost`` have shape (forces, voltages); ``slope`` (1/Pa) has the determination ``r_squared``.
-    """
-
-    stress: Array
-    lost: Array
-    slope: float
+    stress: Array  # Pa, shape (forces, voltages)
+    lost: Array  # likewise
+    slope: float  # 1/Pa
     r_squared: float
 
 
@@ -81,7 +60,7 @@ def reduction(grid: Grid) -> Reduction:
     return Reduction(stress, lost, slope, 1 - left)
 
 
-def paint(figure: Figure, grid: Grid, measured: Measured | None = None) -> None:
+def paint(figure: Figure, grid: Grid) -> None:
     """Draw apparent friction over force, and the reduction of contact length over the mean shear stress."""
     left, right = figure.subplots(1, 2)
     found = reduction(grid)
@@ -89,12 +68,6 @@ def paint(figure: Figure, grid: Grid, measured: Measured | None = None) -> None:
         look = {"color": style.voltage(voltage), "marker": "o", "ms": 4}
         left.plot(grid["f_ext"], grid["slip_f_t"][:, k] / grid["f_ext"], label=f"{voltage:g} V", **look)
         right.plot(found.stress[:, k] / 1e3, 100 * found.lost[:, k], ls="none", **look)
-    if measured is not None:
-        for voltage in np.unique(measured.voltage):
-            mine = measured.voltage == voltage
-            force, friction = measured.force[mine] / WIDTH, measured.friction[mine] / WIDTH
-            label = f"{measured.label}, {voltage:g} V"
-            left.plot(force, friction / force, "*", ms=9, color=style.voltage(voltage), mec="black", label=label)
     x = np.array([0, found.stress.max()])
     fit = f"fit through the origin, R² = {found.r_squared:.2f}"
     right.plot(x / 1e3, 100 * found.slope * x, color=style.GREY, lw=2, zorder=0, label=fit)
@@ -108,12 +81,7 @@ def paint(figure: Figure, grid: Grid, measured: Measured | None = None) -> None:
 
 # -- statements ----------------------------------------------------------------------------------------
 def statements(grid: Grid, rises: Mapping[str, float]) -> list[Statement]:
-    """Return the statements on friction and contact.
-
-    Args:
-        grid: forces and lengths.
-        rises: steps of the path at ``TRANSITION`` in which contact length rises, by voltage (V).
-    """
+    """Return the statements; ``rises``: steps at ``TRANSITION`` in which contact length rises, by voltage (V)."""
     return [*_friction(grid), *_lengths(grid), *_reductions(grid, rises)]
 
 

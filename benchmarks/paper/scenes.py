@@ -4,12 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.runs import FORCES, SITES, VOLTAGES, trace
+from benchmarks.runs import FORCES, SITES, VOLTAGES, Run, trace
 from fingerpad.model.touching import by_rule
 from fingerpad.scene import Scene, from_data
 
 SIZE = 10e-6  # m, contact size
-WIDTH = 20e-3  # m, out of plane: F = f WIDTH in Fig. 6
 SECTION = (120.0, 150.0)  # N/m, V of Fig. 2
 TRANSITION = 120.0  # N/m of Fig. 8
 MAP = 75.0  # N/m of Fig. 9
@@ -20,17 +19,13 @@ _BETWEEN = 0.8e-3  # m of sliding from one voltage to the next, half of it while
 PHASES = np.linspace(0, np.pi, 13)  # of one half period, of which the square of the voltage is a whole one
 
 
-def grid(size: float) -> dict[tuple[float, float], Scene]:
+def grid() -> dict[tuple[float, float], Scene]:
     """Return the scenes of Figs. 2, 6, 7, 8 and 9A by force (N/m) and voltage (V)."""
-    return {(f, u): trace(f, u, size) for f in FORCES for u in VOLTAGES}
+    return {(f, u): trace(f, u, SIZE) for f in FORCES for u in VOLTAGES}
 
 
-def sine(size: float) -> Scene:
-    """Return Fig. 9B's scene: slid to full slip without voltage, then on while the voltage follows a sine.
-
-    Between its values the voltage changes evenly while the finger slides; at each the finger slides on until every
-    point slips again: the voltage changes slowly.
-    """
+def sine() -> Scene:
+    """Return Fig. 9B's scene: slid to full slip without voltage, then on to full slip again and again on the sine."""
     history: list[dict[str, Any]] = [
         {"name": "press", "f_ext": MAP},
         {"name": "slide", "bone_x": _SLIP, "until_full_slip": True},
@@ -42,9 +37,9 @@ def sine(size: float) -> Scene:
             {"name": f"change {k}", "voltage": voltage, "bone_x": x - _BETWEEN / 2},
             {"name": f"sine {k}", "bone_x": x, "until_full_slip": True},
         ]
-    return by_rule(from_data({"mesh": {"contact": size, "receptor": SITES}, "history": history}))
+    return by_rule(from_data({"mesh": {"contact": SIZE, "receptor": SITES}, "history": history}))
 
 
-def rougher(size: float, mu_app: float) -> Scene:
+def rougher(high: Run) -> Scene:
     """Return the scene of section 5's claim: no voltage, and the friction coefficient that voltage led to."""
-    return trace(MAP, 0.0, size, friction=round(mu_app, 4))
+    return trace(MAP, 0.0, SIZE, friction=round(float(high.steps["mu_app"][high.slip]), 4))

@@ -13,23 +13,14 @@ HOLDS, IN_PART, NOT = "holds", "holds in part", "does not hold"
 
 @dataclass(frozen=True)
 class Statement:
-    """A statement of the paper and what this model computes.
-
-    Attributes:
-        figure: of the paper.
-        paper: the statement.
-        ours: the computed counterpart, in words.
-        numbers: from which the verdict is made, unrounded.
-        verdict: whether the statement holds.
-        why: reason of a verdict that is not a plain yes.
-    """
+    """A statement of the paper and what this model computes."""
 
     figure: str
     paper: str
-    ours: str
-    numbers: dict[str, float]
+    ours: str  # the computed counterpart, in words
+    numbers: dict[str, float]  # from which the verdict is made, unrounded
     verdict: str
-    why: str = ""
+    why: str = ""  # of a verdict that is not a plain yes
 
 
 class _Units(Formatter):
@@ -48,14 +39,9 @@ def _texts() -> dict[str, dict[str, str]]:
 
 
 def statement(key: str, numbers: Mapping[str, Any], whole: object, part: object = False, **words: Any) -> Statement:
-    """Return a statement of ``statements.csv`` with its verdict.
+    """Return the statement ``key`` of ``statements.csv``, which holds as a ``whole``, in ``part`` or not at all.
 
-    Args:
-        key: of the statement.
-        numbers: from which the verdict is made; together with ``words`` what the text shows.
-        whole: whether the statement holds as a whole.
-        part: whether it holds in part.
-        words: other values that the text shows.
+    Its text shows ``numbers``, from which the verdict is made, and other ``words``.
     """
     verdict = HOLDS if whole else IN_PART if part else NOT
     plain, text = {name: float(value) for name, value in numbers.items()}, _texts()[key]

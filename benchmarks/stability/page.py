@@ -11,39 +11,16 @@ from matplotlib.colors import LogNorm, to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from benchmarks.harness import kept, page, picture, table
+from benchmarks.harness import kept, page, picture, prose, table
 from benchmarks.stability import plan
-from benchmarks.stability.case import Case
-from benchmarks.stability.loop import loop
-from benchmarks.stability.plan import DEFAULT, Axis, Named, Panel
+from benchmarks.stability.plan import DEFAULT, Axis, Case, Named, Panel
 from fingerpad.io.style import MAGNITUDE, ORANGE, SKY, VERMILION
-from variational.roughness.bam import BearingArea
 
 Row = Mapping[str, Any]
 Rows = Mapping[Case, Row]
 COLOURS = {"converged": SKY, "continuation": ORANGE, "failed": VERMILION}
 SYMBOLS = {"converged": "●", "continuation": "▲", "failed": "✕"}
 NAMES = {"converged": "converged", "continuation": "through continuation", "failed": "failed"}
-# The floor of the closure is no part of what the fixed points are compared for.
-CLOSURE = BearingArea(h_0=0.514e-6, p_floor=1.0)
-_LOOP_POINTS = [(p, u) for u in (50.0, 100.0, 150.0, 200.0) for p in (500.0, 2e3, 5e3, 20e3)]
-_HOW = """One ridge of the layered finger is pressed by a force, charged and dragged until it slips everywhere; three
-ridges for the snap-off. The lateral faces move sideways with the bone and freely up and down, as if the neighbours
-were equal. A force of 4.4 N/m a ridge then gives the finger's contact length and friction. Errors are relative to a
-run with a contact size of 1.25 µm, P2 elements, the default penalty and the same physical parameters. Each run has a
-process of its own and a limit of processor time. {solves} solves, references included, took {minutes:.0f} minutes of
-one core.
-
-{symbols}. *Through continuation*: a step succeeded only by pseudo-transient continuation. Iterations are Newton's
-over the whole history. *Load* is the one in which a run ended. The other numbers are of the last accepted state."""
-_DEFAULT = """Newton's method alone reaches full slip at the default. The skin penetrates the screen by less than a
-tenth of the air gap (150 nm), and the contact length is right to one per cent. A ten times softer penalty exceeds
-that depth, and its contact length is six per cent too long. A ten times stiffer one costs no more, but its contact
-length is worse on facets of the same size. P1 elements are too stiff. The last row shows what the reference owes to
-its penalty."""
-_LOOP = """The loop over the scales is repeated here for one uniform ridge, started 1 % off its solution. Keyed on the
-external pressure, with pressure and attraction one sweep out of phase, it diverges where its gain exceeds 1/2. Keyed
-on the contact pressure, as the program does, it converges everywhere in contact (here without its secant steps)."""
 
 
 def percent(value: float | None) -> str | None:
@@ -86,16 +63,6 @@ def counts_table(charts: Mapping[str, Iterable[Panel]], rows: Rows) -> str:
         count = Counter(rows[case]["status"] if case in rows else "not run" for case in panel.cases())
         lines.append([title, panel.title, count.total(), *(count[status] for status in (*NAMES, "not run"))])
     return table(["varied", "formulation or element", "runs", *NAMES.values(), "not run"], lines)
-
-
-def loop_table() -> str:
-    """Return the scalar fixed points."""
-    lines = []
-    for p, u in _LOOP_POINTS:
-        found = loop(CLOSURE, p, u)
-        ends = [n or "diverges" for n in (found.by_external, found.by_contact)]
-        lines.append([f"{p / 1e3:g}", f"{u:g}", f"{found.gain:.2f}", *ends])
-    return table(["p_ext (kPa)", "U (V)", "gain", "sweeps, keyed on p_ext", "sweeps, keyed on p_c"], lines)
 
 
 # -- picture -------------------------------------------------------------------------------------------------
@@ -178,22 +145,16 @@ def draw(docs: Path) -> Path:
     rows = {Case(**row["case"]): row for row in numbers["runs"]}
     charts = plan.charts()
     ends = Counter(rows[c]["status"] for c in charts["Voltage and force"][0].cases() if c in rows)
-    finding = (
-        f"With its default settings the solver follows {ends['converged'] + ends['continuation']} of {ends.total()} "
-        "pairs of voltage (0 to 400 V) and force (0.5 to 30 N/m a ridge) to full slip. Pseudo-transient continuation "
-        f"is needed in {ends['continuation']} of them. The penalty method converges over five decades of its "
-        "stiffness. The augmented Lagrangian and Nitsche's methods fail over a part of theirs."
-    )
+    text, followed = prose("stability"), ends["converged"] + ends["continuation"]
+    finding = text["finding"].format(followed=followed, total=ends.total(), continued=ends["continuation"])
     symbols = ", ".join(f"{SYMBOLS[s]} {NAMES[s]}" for s in NAMES)
-    caption = "Outcome (A–E), penetration (F) and error in the contact length (G, H) over pairs of parameters"
     body = [
-        picture(docs / "stability.png", (17, 9), lambda figure: paint(figure, rows), caption),
-        f"## The default and its neighbours\n\n{_DEFAULT}\n\n{named_table(plan.neighbours(), rows)}",
+        picture(docs / "stability.png", (17, 9), lambda figure: paint(figure, rows), text["caption"]),
+        f"## The default and its neighbours\n\n{text['default']}\n\n{named_table(plan.neighbours(), rows)}",
         f"## How many runs ended how\n\n{counts_table(charts, rows)}",
         "## Known failures, reproduced",
-        *(f"### {n.name.capitalize()}\n\n{n.says}\n\n{named_table(n, rows)}" for n in plan.named()),
-        f"### The fixed point near the fold\n\n{_LOOP}\n\n{loop_table()}",
+        *(f"### {n.capitalize()}\n\n{text[n]}\n\n{named_table(each, rows)}" for n, each in plan.named().items()),
     ]
-    how = _HOW.format(solves=numbers["solves"], minutes=numbers["seconds"] / 60, symbols=symbols.capitalize())
+    how = text["how"].format(solves=numbers["solves"], minutes=numbers["seconds"] / 60, symbols=symbols.capitalize())
     title, command = "Where the solver converges", "environment/run python3 -m benchmarks.stability"
     return page(docs / "stability.md", title, finding, how, body, command, found.made, ["stability"])

@@ -1,13 +1,101 @@
-"""What the stability map runs: pairs of parameters around the default, named failures, and their references."""
+"""What the stability map runs: single runs as plain data, pairs of parameters, named failures, and their references."""
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any, Literal
 
-from benchmarks.stability.case import ELEMENTS, FORMULATIONS, Case
+from variational.contact.augmented import AugmentedLagrangian
+from variational.contact.formulation import Formulation
+from variational.contact.nitsche import Nitsche
+from variational.contact.penalty import Penalty
 
-MOST = 400
-"""Solves of the whole map, references included."""
+Status = Literal["converged", "continuation", "failed"]
+REFERENCE_SIZE = 1.25e-6  # m, contact size of the run with which others are compared
+
+
+@dataclass(frozen=True)
+class Treatment:
+    """A formulation of the contact, with its one numerical parameter: five decades of it are on the map."""
+
+    label: str
+    default: float
+    values: tuple[float, ...]
+    law: Callable[[float], Formulation]
+    everywhere: bool = True  # on every chart, not on that of its parameter alone
+
+
+_EPS_N = (1.5e10, 1.5e11, 1.5e12, 1.5e13, 1.5e14, 1.5e15)
+_GAMMA_0 = (0.1, 1.0, 10.0, 100.0, 1e3, 1e4)
+_STIFFNESS, _OVER_SKIN = r"$\epsilon_n$ (Pa/m)", r"$\gamma_0$ (–)"
+# One line to add a formulation: all maps and tables follow.
+FORMULATIONS = {
+    "penalty": Treatment(_STIFFNESS, 1.5e12, _EPS_N, lambda eps_n: Penalty(eps_n, 5e10)),
+    "augmented": Treatment(_STIFFNESS, 1.5e13, _EPS_N, lambda eps_n: AugmentedLagrangian(eps_n, eps_n / 30, 5e-9)),
+    "Nitsche, θ = 0": Treatment(_OVER_SKIN, 10.0, _GAMMA_0, lambda gamma_0: Nitsche(gamma_0, 0)),
+    "Nitsche, θ = 1": Treatment(_OVER_SKIN, 100.0, _GAMMA_0, lambda gamma_0: Nitsche(gamma_0, 1), everywhere=False),
+    "Nitsche, θ = -1": Treatment(_OVER_SKIN, 10.0, _GAMMA_0, lambda gamma_0: Nitsche(gamma_0, -1), everywhere=False),
+}
+ELEMENTS = ("P1", "P2", "P2 reduced", "P2-P1")
+"""Names in :mod:`variational.element`."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A strip pressed, charged and dragged to full slip; SI units, forces per ridge and out-of-plane length."""
+
+    formulation: str = "penalty"
+    parameter: float = 1.5e12
+    element: str = "P2"
+    contact_size: float = 5e-6
+    force: float = 4.4  # the finger's 75 N/m over its 17 ridges in contact
+    indentation: float = 0.0  # if not zero, the bone is lowered by so much instead of being pressed by the force
+    voltage: float = 200.0
+    detour: float = 0.0  # if not zero, a voltage reached between the press and the final voltage
+    nu: float = 0.48  # Poisson's ratio of all layers
+    mu_f: float = 0.25
+    step_scale: float = 1.0  # factor on the largest steps of force, voltage and sliding
+    slide: float = 1e-3  # farthest the bone slides towards full slip; zero for no sliding
+    ridges: int = 1
+    height: float = 1.5e-3
+    sides: Literal["carried", "free"] = "carried"  # lateral faces: moved sideways with the bone, free up and down
+    pseudo_transient: bool = True  # whether pseudo-transient continuation is allowed
+
+    @property
+    def changed(self) -> dict[str, Any]:
+        """Fields that are not the default's: the case as it is kept."""
+        return {name: value for name, value in asdict(self).items() if value != getattr(Case(), name)}
+
+    @property
+    def reference(self) -> "Case":
+        """The run on the finest mesh with the same physical parameters and default numerical ones."""
+        numerical = ("formulation", "parameter", "element", "step_scale", "pseudo_transient", "detour")
+        return replace(self, contact_size=REFERENCE_SIZE, **{name: getattr(Case(), name) for name in numerical})
+
+
+@dataclass
+class Outcome:
+    """What became of a case; lengths in m, forces per out-of-plane length in N/m, of the last accepted state."""
+
+    status: Status  # reached by Newton's method, with the help of pseudo-transient continuation, or not at all
+    reason: str = ""  # name of the failure, for example that of SNES
+    message: str = ""
+    load: str = ""  # in which the run ended
+    full_slip: bool = False
+    seconds: float = 0.0
+    steps: int = 0
+    newton: int = 0
+    factorisations: int = 0
+    cutbacks: int = 0
+    jumps: int = 0  # solves that needed pseudo-transient continuation
+    # Failed solves in which steps led to J <= 0, by the layer with the least J in the end.
+    inverted: dict[str, int] = field(default_factory=dict)
+    penetration: float = 0.0
+    f_ext: float = 0.0
+    f_t: float = 0.0
+    contact_length: float = 0.0
+
+
+MOST = 400  # solves of the whole map, references included
 DEFAULT = Case()
 
 
@@ -47,10 +135,8 @@ class Panel:
 
 @dataclass(frozen=True)
 class Named:
-    """A known failure: what the runs show, the runs by name, and whether it takes references to show it."""
+    """Runs by name, and whether it takes references to show what they are for."""
 
-    name: str
-    says: str
     cases: Mapping[str, Case]
     referenced: bool = False
 
@@ -84,8 +170,8 @@ def charts() -> dict[str, list[Panel]]:
     return found | {BY_ELEMENT: [Panel(e, replace(DEFAULT, element=e), nu, FEW_SIZES) for e, nu in ratios.items()]}
 
 
-def named() -> list[Named]:
-    """Return the known failures with the runs that reproduce them."""
+def named() -> dict[str, Named]:
+    """Return the known failures by name, with the runs that reproduce them."""
     coarse = replace(DEFAULT, contact_size=10e-6)
     free = replace(coarse, sides="free")
     squeezed = replace(free, indentation=30e-6, voltage=0.0, slide=0.0)
@@ -93,53 +179,27 @@ def named() -> list[Named]:
     trailing = replace(free, ridges=3, force=1.0)
     ways = {"up to 200 V": 0.0, "up to 400 V, down to 200 V": 400.0}
     edges = [(5e-6, "P2"), (20e-6, "P2"), (40e-6, "P2"), (20e-6, "P1")]
-    return [
-        Named(
-            "locking",
-            "Locking of first-order elements near ν = 0.5: force at a given indentation of 30 µm, free sides, 10 µm.",
-            {f"{e}, ν = {nu}": replace(squeezed, element=e, nu=nu) for nu in (0.48, 0.4999) for e in ELEMENTS},
-            referenced=True,
-        ),
-        Named(
-            "penalty",
-            "Ill-conditioning at high penalty, 10 µm.",
-            {f"ε_n = {e:g} Pa/m": replace(coarse, parameter=e) for e in (1.5e12, 1.5e14, 1.5e16, 1.5e18)},
-        ),
-        Named(
-            "coercivity",
-            "Nitsche's method below its coercivity limit, 10 µm: θ = 0 loses its equilibria, θ = -1 is stable for any "
-            "γ_0 in the linear problem.",
-            {
-                f"{theta}, γ_0 = {gamma_0:g}": replace(coarse, formulation=f"Nitsche, {theta}", parameter=gamma_0)
-                for theta in ("θ = 0", "θ = -1")
-                for gamma_0 in (0.01, 0.1, 10.0)
-            },
-        ),
-        Named(
-            "edge",
-            "The contact's edge trapped between the nodes of coarse surfaces when voltage should move it: pressed by "
-            "1 N/m and charged, without friction and sliding. The way to 200 V should not matter.",
-            {
-                f"{h * 1e6:g} µm, {e}, {way}": replace(smooth, contact_size=h, element=e, detour=ways[way])
-                for h, e in edges
-                for way in ways
-            },
-            referenced=True,
-        ),
-        Named(
-            "snap-off",
-            "Newton's method cycling when a trailing ridge snaps off: three ridges with free sides, 1 N/m each, 10 µm.",
-            {
-                "with pseudo-transient continuation": trailing,
-                "Newton alone, with cutback": replace(trailing, pseudo_transient=False),
-            },
-        ),
-        Named(
-            "inversion",
-            "J <= 0 in the dermis under a large force: three ridges with free sides under 20 N/m each, 0 V, 10 µm.",
-            {"20 N/m a ridge": replace(trailing, force=20.0, voltage=0.0)},
-        ),
-    ]
+    locking = {f"{e}, ν = {nu}": replace(squeezed, element=e, nu=nu) for nu in (0.48, 0.4999) for e in ELEMENTS}
+    penalty = {f"ε_n = {e:g} Pa/m": replace(coarse, parameter=e) for e in (1.5e12, 1.5e14, 1.5e16, 1.5e18)}
+    coercivity = {
+        f"{theta}, γ_0 = {gamma_0:g}": replace(coarse, formulation=f"Nitsche, {theta}", parameter=gamma_0)
+        for theta in ("θ = 0", "θ = -1")
+        for gamma_0 in (0.01, 0.1, 10.0)
+    }
+    edge = {
+        f"{h * 1e6:g} µm, {e}, {way}": replace(smooth, contact_size=h, element=e, detour=detour)
+        for h, e in edges
+        for way, detour in ways.items()
+    }
+    alone = replace(trailing, pseudo_transient=False)
+    return {
+        "locking": Named(locking, referenced=True),
+        "penalty": Named(penalty),
+        "coercivity": Named(coercivity),
+        "edge": Named(edge, referenced=True),
+        "snap-off": Named({"with pseudo-transient continuation": trailing, "Newton alone, with cutback": alone}),
+        "inversion": Named({"20 N/m a ridge": replace(trailing, force=20.0, voltage=0.0)}),
+    }
 
 
 def neighbours() -> Named:
@@ -155,18 +215,15 @@ def neighbours() -> Named:
         "steps × 2": replace(DEFAULT, step_scale=2.0),
         "1.25 µm, ε_n × 10": replace(DEFAULT.reference, parameter=DEFAULT.parameter * 10),
     }
-    return Named("default", "", runs, referenced=True)
+    return Named(runs, referenced=True)
 
 
 def cases() -> list[Case]:
-    """Return everything to be run, each once: named runs first, then references, without which others say less.
-
-    Raises:
-        ValueError: more than MOST.
-    """
+    """Return all runs, each once: named ones first, then references; ValueError if they are more than MOST."""
+    groups = [neighbours(), *named().values()]
     shown = [case for panels in charts().values() for panel in panels for case in panel.cases()]
-    runs = [case for group in [neighbours(), *named()] for case in group.cases.values()]
-    compared = [case for group in named() if group.referenced for case in group.cases.values()] + shown
+    runs = [case for group in groups for case in group.cases.values()]
+    compared = [case for group in groups[1:] if group.referenced for case in group.cases.values()] + shown
     unique = list(dict.fromkeys([*runs, *(case.reference for case in compared), *shown]))
     if len(unique) > MOST:
         raise ValueError(f"the map has {len(unique)} solves; at most {MOST}: make the axes shorter")

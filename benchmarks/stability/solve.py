@@ -4,10 +4,9 @@ python3 -m benchmarks.stability.solve CASE LIMIT
 
 CASE is JSON, and so is the outcome, the last line printed; after LIMIT seconds of processor time the process ends.
 
-The bone's rim is the strip's flat top. The lateral faces are carried by the neighbours: they move sideways with the
-bone and freely up and down. A free stump of soft dermis under a stiff epidermis tips over before it slips. Faces glued
-to the bone would hold the epidermis up, which is 24 times stiffer than the dermis that should. Carried ridges
-behave like one of many equal ones. Faces are free only where a trailing ridge is to snap off, or dermis to bulge.
+The bone's rim is the strip's flat top. The lateral faces move sideways with the bone and freely up and down, as those
+of one of many equal ridges: a free stump of soft dermis under a stiff epidermis tips over before it slips, and faces
+glued to the bone would hold the epidermis up. They are free only where a ridge is to snap off, or dermis to bulge.
 """
 
 import json
@@ -23,7 +22,7 @@ import ufl
 from dolfinx import fem
 from mpi4py import MPI
 
-from benchmarks.stability.case import FORMULATIONS, Case, Outcome
+from benchmarks.stability.plan import FORMULATIONS, Case, Outcome
 from fingerpad.runs.processes import limit_processor_time
 from geometry import strip, tags
 from geometry.mesh import load
@@ -48,7 +47,6 @@ class NewtonAlone(Solver):
     """Never turns to pseudo-transient continuation, whoever asks for it."""
 
     def solve(self, pseudo_transient: bool = False) -> None:
-        """Find the equilibrium by Newton's method."""
         super().solve(pseudo_transient=False)
 
 
@@ -68,7 +66,6 @@ class Recorder(Coupling):
         return float(compat.evaluate_on_cells(self._jacobian, problem.mesh, cells).min())
 
     def solve(self, pseudo_transient: bool = False) -> None:
-        """Solve at the present loads; count the failure where there is one."""
         try:
             super().solve(pseudo_transient)
         except NotConverged as failure:

@@ -1,9 +1,4 @@
-r"""Attraction: its resultant on a round body, its potential, pull-in of a plate, and adhesive contact of a cylinder.
-
-A parabola :math:`y = g + x^2 / 2R` of half-width L is attracted by (with :math:`s = h_0 + g`, :math:`k^2 = 2 R s`)
-
-.. math:: \frac{\varepsilon_0 U^2}{2} \int_{-L}^L \frac{dx}{(s + x^2 / 2R)^2}
-          = \frac{\varepsilon_0 U^2}{2 s^2} \left( \frac{L}{1 + L^2 / k^2} + k \arctan \frac Lk \right).
+r"""Attraction: pull-in of a plate, and adhesive contact of a cylinder.
 
 A flat block is a spring of stiffness E / H per area, a plate over the screen: at rest at :math:`s_0 = h_0 + g_0` it is
 pulled in by :math:`U^2 = 8 E s_0^3 / (27 \varepsilon_0 H)`, after a travel of s_0 / 3 (Nathanson, Newell, Wickstrom and
@@ -26,88 +21,21 @@ from functools import partial
 
 import numpy as np
 import ufl
-from dolfinx import fem
 from scipy.optimize import brentq, minimize_scalar
 
 from benchmarks.verification.bodies import Smooth, formulations, over_screen
-from benchmarks.verification.case import Case, Row, order, order_row
+from benchmarks.verification.case import Case, Row
 from geometry.bodies import block, pad
-from variational.attraction.electroadhesion import ELECTROSTATIC, Attraction
+from variational.attraction.electroadhesion import Attraction
 from variational.attraction.insulator import VACUUM_PERMITTIVITY
 from variational.contact.penalty import Penalty
 from variational.materials.saint_venant import SaintVenant
 from variational.problem import Interface
-from variational.solvers.continuation import Continuation, Target
+from variational.solvers.continuation import Target
 from variational.solvers.stability import StabilityCheck
 
 _H_0 = 0.514e-6
 _CONTACT = Penalty(1e12, 1e11)
-
-
-def total_attraction(small: bool) -> list[Row]:
-    """A cylinder too stiff to deform, at several heights, on three meshes."""
-    radius, span, voltage = 10e-3, 2e-3, 1.0
-    parts = (2, 4, 8) if small else (5, 10, 20)
-    tolerance, mesh = 0.5 / parts[-1] ** 2, f"P2, facets of sqrt(2 R (h_0 + g)) / {parts[-1]}"
-    why = "(h / k)^2 / 2: chords of facets of length h are too high by h^2 / 12 R; the outermost quarter is coarser"
-    rows = []
-    for gap in (1e-6, 3e-6, 10e-6):
-        s, end = _H_0 + gap, span / 2
-        k = np.sqrt(2 * radius * s)
-        extent = end / (1 + (end / k) ** 2) + k * np.arctan(end / k)
-        exact = float(VACUUM_PERMITTIVITY * voltage**2 / (2 * s**2) * extent)
-        found = []
-        for part in parts:
-            build, interface = pad(k / part, int(0.75 * end / k * part), radius, span), Interface(_CONTACT, 0.0, _H_0)
-            run = over_screen(build, SaintVenant(1e7, 0.3), interface, 0.1, closure=Smooth(1e-7))
-            run.run(Target("lift", bone_height=gap))
-            run.run(Target("charge", voltage=voltage))
-            found.append(float(run.observer.ridge_loads(run.surface_state).f_attraction[0]))
-        quantity, observed = f"attraction at g = {gap * 1e6:g} um (N/m)", order(np.array(found) - exact, parts)
-        rows.append(Row(quantity, found[-1], exact, tolerance, why, mesh, observed))
-    return rows
-
-
-def _added(run: Continuation, form):
-    """Return what 200 V add to a form of a body, a number or a vector."""
-    values = []
-    for voltage in (200.0, 0.0):
-        run.problem.voltage.value = voltage
-        scalar = form is run.problem.energy
-        values.append(fem.assemble_scalar(form) if scalar else fem.assemble_vector(form).array.copy())
-    return values[0] - values[1]
-
-
-def potential(small: bool) -> list[Row]:
-    """A wavy skin at heights on both sides of d_eq; the residual against differences of the energy."""
-    steps, mesh = 1e-7 * 0.5 ** np.arange(5), "64 P2 triangles"
-    bent = "a second-order remainder; points that cross an edge of the law bend it"
-    why = "central difference over 2 nm of laws that change over 1 um, and the energy's roundoff"
-    rows = []
-    for name, law, h_0 in (("Eq. 3", ELECTROSTATIC, _H_0), ("constant", constant_attraction(0.2), 3e-6)):
-        build, interface = block(1e-3, 0.5e-3, 0.125e-3), Interface(_CONTACT, 0.0, h_0, law)
-        run = over_screen(build, SaintVenant(1e6, 0.3), interface, 1.0)
-        problem, u = run.problem, run.problem.w.x.array
-        problem.set_air_gaps(np.array([2e-6]))
-        problem.w.interpolate(lambda x: np.stack([1e-2 * x[0], 3.3e-6 + 3e-6 * np.sin(7e3 * x[0] + 0.4) - 1e-3 * x[1]]))
-        start, problem.voltage.value = u.copy(), 200.0
-        pull = float(run.observer.ridge_loads().f_attraction[0])
-        x, y = problem.V.tabulate_dof_coordinates()[:, :2].T / 1e-3
-        way = np.stack([np.sin(9.1 * x + 4.3 * y + 0.2), np.cos(6.7 * x - 5.9 * y + 1.1)], axis=1).ravel()
-        slope = float(_added(run, problem.residual) @ way)
-
-        def energy(step, field, run=run, u=u, start=start):
-            u[:] = start + step * field
-            return float(_added(run, run.problem.energy))
-
-        observed = order([energy(step, way) - energy(0.0, way) - step * slope for step in steps], 1 / steps)
-        along, lift = ((energy(1e-9, v) - energy(-1e-9, v)) / 2e-9 for v in (way, np.tile([0.0, 1.0], len(x))))
-        rows += [
-            order_row(f"order of Taylor's remainder, {name}", observed, 2.0, 0.05, bent, mesh),
-            Row(f"slope of the energy along a wavy displacement, {name} (N/m)", slope, along, 1e-5, why, mesh),
-            Row(f"resultant of the traction against lifting, {name} (N/m)", pull, lift, 1e-5, why, mesh),
-        ]
-    return rows
 
 
 def actuator(small: bool) -> list[Row]:
@@ -193,9 +121,8 @@ def maugis(small: bool) -> list[Row]:
     run.run(Target("press", bone_height=-0.5e-6))
     run.run(Target("charge", voltage=float(np.sqrt(2 * sigma_0 * h_0**2 / VACUUM_PERMITTIVITY))))
     mesh = f"P2, facets of {unit / part * 1e6:g} um"
-    tolerance, why = 0.01, "asked for; the edge of the contact settles in facets of up to 1 % of it"
-    if small:
-        tolerance, why = 0.04, "a quarter of a facet, of up to 13 %, in which the edge of the contact settles"
+    asked = 0.01, "asked for; the edge of the contact settles in facets of up to 1 % of it"
+    tolerance, why = (0.04, "a quarter of a facet, of up to 13 %, in which the edge settles") if small else asked
     rows, forces = [], []
     for height in (0.0, 1e-6, 2e-6) if small else (0.0, 0.5e-6, 1e-6, 1.5e-6, 2e-6, 2.3e-6, 2.5e-6):
         run.run(Target("lift", bone_height=height))
@@ -212,8 +139,6 @@ def maugis(small: bool) -> list[Row]:
 
 _LINE = "Johnson and Greenwood 2008, doi 10.1088/0022-3727/41/15/155315, closed form"
 CASES = (
-    Case("Attraction of a round body", "closed form, the integral of Eq. 3 over a parabola", total_attraction),
-    Case("Potential of the attraction", "differences of the energy at frozen d_eq", potential),
     Case("Parallel-plate actuator", "Nathanson et al. 1967, doi 10.1109/T-ED.1967.15912", actuator),
     Case("Maugis-Dugdale line contact", _LINE, maugis),
 )

@@ -44,7 +44,6 @@ class Smooth(Closure):
     d_eq: float
 
     def __call__(self, p_c: ArrayLike) -> AirGap:
-        """Return the air gap, which does not follow the pressure."""
         return AirGap(self.d_eq + 0 * np.asarray(p_c, dtype=np.float64))
 
 
@@ -58,16 +57,9 @@ def over_screen(
     closure: Closure = Smooth(1e-6),  # noqa: B008, frozen
     **options: Any,
 ) -> Continuation:
-    """Return a body over the screen, unloaded.
+    """Return a body over the screen, unloaded; residuals are measured in ``force`` (N/m).
 
-    Args:
-        build: makes the mesh.
-        solid: material of the body.
-        interface: laws of the contact.
-        force: force per length (N/m) in which residuals are measured.
-        sides_held: whether the sides may not move sideways.
-        closure: the microscale.
-        options: further arguments of :class:`variational.body.Body`.
+    ``sides_held`` keeps its sides from moving sideways; ``options`` are further arguments of :class:`Body`.
     """
     body = load(MPI.COMM_SELF, build)
     held = body.facets(tags.SIDES) if sides_held else None
@@ -76,12 +68,7 @@ def over_screen(
 
 
 def formulations(stiffness: float, depth: float) -> dict[str, Formulation]:
-    """Return each contact formulation by name.
-
-    Args:
-        stiffness: of the skin over a facet's length (Pa/m).
-        depth: penetration (m) that the augmented Lagrangian leaves.
-    """
+    """Return the formulations by name, for a stiffness of the skin over a facet (Pa/m) and a depth left over (m)."""
     return {
         "penalty": Penalty(100 * stiffness, 10 * stiffness),
         "Nitsche 1": Nitsche(100.0, 1),
@@ -117,7 +104,7 @@ class FreeEquations(Equations):
     """Those of a body that need not have a bone."""
 
     def assemble_tangent(self, A: PETSc.Mat) -> None:
-        """Give the bone a diagonal, which nothing else does where no facet is glued to it."""
+        """Give the bone a diagonal, which it lacks where no facet is glued to it."""
         for row in self.layout.rigid_rows:
             A.setValue(row, row, 0.0, PETSc.InsertMode.ADD_VALUES)
         super().assemble_tangent(A)
@@ -129,7 +116,6 @@ class FreeSolver(Solver):
     def __init__(
         self, problem: Problem, rim: Dofs, force_scale: float, tolerance: float = 1e-9, fixed: Sequence[Held] = ()
     ) -> None:
-        """Set the solver up; the arguments are those of :class:`Equations` and :class:`Solver`."""
         super().__init__(FreeEquations(problem, rim, fixed), force_scale, tolerance)
 
     def set_load(self, form) -> None:
@@ -157,10 +143,7 @@ def norm(domain: dolfinx.mesh.Mesh, value: Any) -> float:
 
 
 def relative_errors(u: fem.Function, exact: Callable[[Array], Array]) -> Errors:
-    """Return the errors of a displacement and of its gradient over the norms of the exact ones.
-
-    The exact one is interpolated by polynomials of degree 6, cell by cell.
-    """
+    """Return the errors of a displacement and of its gradient over the norms of the exact ones, of degree 6 by cell."""
     domain = u.function_space.mesh
     e = fem.Function(fem.functionspace(domain, ("Discontinuous Lagrange", 6, (2,))))
     e.interpolate(exact)

@@ -1,35 +1,32 @@
-"""What a verification case is and what it reports."""
+"""What a verification case is and what it reports, and the page: a table of each area."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from benchmarks.harness import kept, page, prose, table
+
 
 @dataclass(frozen=True)
 class Row:
-    """One computed number beside the known answer.
-
-    Attributes:
-        quantity: with its unit in parentheses where it has one.
-        computed: by the program.
-        reference: the known answer.
-        tolerance: largest error that passes.
-        why: where the tolerance comes from, in one sentence.
-        mesh: elements and their size, or what else the number was computed with.
-        order: observed order of convergence, where several meshes were run.
-        absolute: whether error and tolerance are in the quantity's unit; relative otherwise.
-    """
+    """One computed number beside the known answer."""
 
     quantity: str
+    """With its unit in parentheses where it has one."""
     computed: float
     reference: float
     tolerance: float
+    """Largest error that passes; ``why`` says in one sentence where it comes from."""
     why: str
     mesh: str = "–"
     order: float | None = None
+    """Observed order of convergence, where several meshes were run."""
     absolute: bool = False
+    """Whether error and tolerance are in the quantity's unit; relative otherwise."""
 
     @property
     def error(self) -> float:
@@ -45,16 +42,11 @@ class Row:
 
 @dataclass(frozen=True)
 class Case:
-    """A problem with a known answer.
-
-    Attributes:
-        name: of the case.
-        reference: where the answer comes from, with its DOI or equation number.
-        run: computes its rows; the argument selects the small form, of seconds and coarse meshes, that the tests run.
-    """
+    """A problem with a known answer; ``run(small)`` computes its rows, small on the coarse meshes of the tests."""
 
     name: str
     reference: str
+    """Where the answer comes from, with its DOI or equation number."""
     run: Callable[[bool], Sequence[Row]]
 
 
@@ -72,3 +64,52 @@ def order(errors: ArrayLike, parts: ArrayLike) -> float:
 def order_row(quantity: str, observed: float, expected: float, tolerance: float, why: str, mesh: str) -> Row:
     """Return the row of an observed order of convergence."""
     return Row(quantity, observed, expected, tolerance, why, mesh, observed, absolute=True)
+
+
+# -- page ----------------------------------------------------------------------------------------------------
+Results = Mapping[str, Sequence[tuple[Case, Sequence[Row]]]]
+_HEAD = ["case and source of the answer", "quantity", "known answer", "computed", "error", "tolerance", "mesh", "order"]
+
+
+def numbers(results: Results) -> dict[str, Any]:
+    """Return the rows of all cases, ready for JSON."""
+
+    def record(case: Case, rows: Sequence[Row]) -> dict[str, Any]:
+        return {"name": case.name, "reference": case.reference, "rows": [asdict(row) for row in rows]}
+
+    return {area: [record(*found) for found in cases] for area, cases in results.items()}
+
+
+def _lines(name: str, reference: str, rows: Sequence[Row]) -> list[list[str]]:
+    return [
+        [
+            f"{name}; {reference}" if k == 0 else "",
+            row.quantity,
+            f"{row.reference:.6g}",
+            f"{row.computed:.6g}",
+            f"{'' if row.holds else '**!** '}{row.error:.2g}{'' if row.absolute else ' (rel.)'}",
+            f"{row.tolerance:.2g}: {row.why}",
+            row.mesh,
+            "–" if row.order is None else f"{row.order:.2f}",
+        ]
+        for k, row in enumerate(rows)
+    ]
+
+
+def draw(docs: Path) -> Path:
+    """Write docs/verification.md from docs/verification.json."""
+    found = kept("verification", docs)
+    areas = {
+        area: [(case["name"], case["reference"], [Row(**row) for row in case["rows"]]) for case in cases]
+        for area, cases in found.numbers.items()
+    }
+    rows = [row for cases in areas.values() for *_, some in cases for row in some]
+    held, count = sum(row.holds for row in rows), sum(map(len, areas.values()))
+    text = prose("verification")
+    finding = text["finding"].format(held=held, n=len(rows), count=count)
+    body = [
+        f"## {area}\n\n{table(_HEAD, [line for case in cases for line in _lines(*case)])}"
+        for area, cases in areas.items()
+    ]
+    path, names = docs / "verification.md", ["verification"]
+    return page(path, "Verification", finding, text["how"], body, "make verify", found.made, names)

@@ -17,16 +17,8 @@ import numpy as np
 import ufl
 from dolfinx import fem
 
-from benchmarks.verification.bodies import (
-    DEGREES,
-    Array,
-    FreeSolver,
-    body,
-    field_orders,
-    free_problem,
-    norm,
-    relative_errors,
-)
+from benchmarks.verification import bodies
+from benchmarks.verification.bodies import Array, FreeSolver, body, free_problem, norm
 from benchmarks.verification.case import Case, Row, order, order_row
 from geometry import tags
 from geometry.bodies import block
@@ -107,15 +99,15 @@ def manufactured(small: bool) -> list[Row]:
     """Orders of the displacement with all elements, and of the mixed one's pressure."""
     meshes = (8, 16, 32) if small else (4, 8, 16, 32, 64)
     found, pressures = {}, []
-    for element in ("P1", "P2") if small else DEGREES:
+    for element in ("P1", "P2") if small else bodies.DEGREES:
         problems = [solve(element, n) for n in meshes]
-        found[element] = [relative_errors(problem.w, exact) for problem in problems]
+        found[element] = [bodies.relative_errors(problem.w, exact) for problem in problems]
         for problem in problems:
             if problem.pressure:
                 p = exact_pressure(problem)
                 pressures.append(norm(problem.mesh, problem.pressure.p - p) / norm(problem.mesh, p))
     why = "not yet asymptotic: the orders of P2, P2-P1 and P3 come down to it, that of P1 up"
-    rows = field_orders(found, meshes, 0.3, why)
+    rows = bodies.field_orders(found, meshes, 0.3, why)
     if pressures:
         observed = order(pressures[-2:], meshes[-2:])
         mesh = f"up to {meshes[-1]} divisions, last error {pressures[-1]:.1e}"

@@ -8,7 +8,9 @@ length L is the block's width. With f = p_ext L prescribed the mean contact pres
 which is solved by bracketing in the mean separation.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -39,24 +41,21 @@ CLOSURE = {  # p_ext (kPa): d_eq (um) / mu_app at VOLTAGES
 EXTERNAL = {0.0: (4.37, 2.348, 1.565), 100.0: (3.508, 2.135, 1.546), 200.0: (1.981, 1.742, 1.509)}  # at 5, 20, 100 kPa
 
 
-def _printed(
-    quantity: str, ours: float, reference: float, unit: float = 1.0, digits: float | None = None, mesh: str = "–"
-) -> Row:
+def _printed(quantity: str, ours: Any, reference: float, digits: float | None = None, mesh: str = "–") -> Row:
     """Return a row within half a unit of the last digit written, and a thousandth more for its binary form."""
     if digits is None:
         digits = 0.5005 * 10.0 ** -len(repr(reference).partition(".")[2])
-    return Row(quantity, ours / unit, reference, digits, "half of the last digit printed", mesh, absolute=True)
+    return Row(quantity, float(ours), reference, digits, "half of the last digit printed", mesh, absolute=True)
 
 
 def separations(small: bool) -> list[Row]:
     """Air gap over mean separation, Eqs. 11 and 13, its least value, Eq. 14, and where it is."""
-    bam = BearingArea(H_0)
-    u = np.linspace(0, 10 * _UM, 20001)
+    bam, u = BearingArea(H_0), np.linspace(0, 10 * _UM, 20001)
     gaps = bam.air_gap(u)
-    rows = [_printed(f"d_eq at u_bar = {k} um (um)", float(bam.air_gap(k * _UM)), d, _UM) for k, d in AIR_GAPS.items()]
+    of_table = [_printed(f"d_eq at u_bar = {k} um (um)", bam.air_gap(k * _UM) / _UM, d) for k, d in AIR_GAPS.items()]
     return [
-        worst(rows),
-        _printed("least d_eq (um)", float(gaps.min()), 1.486, _UM),
+        worst(of_table),
+        _printed("least d_eq (um)", gaps.min() / _UM, 1.486),
         Row("u_bar of the least d_eq over h_0", float(u[gaps.argmin()]) / H_0, 0.5, 1e-3, "sampling of 0.5 nm"),
     ]
 
@@ -68,35 +67,32 @@ def thresholds(small: bool) -> list[Row]:
         _printed("Eq. 15 (V)", bam.threshold(approximate=True), 155.2),
         _printed("least p_ext = 0, beta = 1 (V)", bam.threshold(), 163.6),
         _printed("least p_ext = 0, beta = 3/4 (V)", BearingArea(H_0, beta=0.75).threshold(), 141.7),
-        _printed("p_c at u_bar = 0 (kPa)", bam.full_pressure, 259.7, _KPA),
+        _printed("p_c at u_bar = 0 (kPa)", bam.full_pressure / _KPA, 259.7),
     ]
 
 
 def folds(small: bool) -> list[Row]:
     """Pull-off and pull-in at 200 V, where p_ext(u_bar) of Eq. 9 turns."""
-    bam, voltage = BearingArea(H_0), 200.0
-    off = bam.pull_off_fold(voltage) or np.nan
-    u = np.linspace(0, 16 * _UM, 160001)
-    p = bam.external_pressure(u, voltage)
+    bam, u = BearingArea(H_0), np.linspace(0, 16 * _UM, 160001)
+    off, p = bam.pull_off_fold(200.0) or np.nan, bam.external_pressure(u, 200.0)
     beyond = u > off
     return [
-        _printed("pull-off: u_bar (um)", off, 4.95, _UM),
-        _printed("pull-off: d_eq (um)", float(bam.air_gap(off)), 3.03, _UM),
-        _printed("pull-off: p_ext (kPa)", float(bam.external_pressure(off, voltage)), -3.46, _KPA),
-        _printed("pull-off: p_c (kPa)", float(bam.contact_pressure(off)), 10.7, _KPA),
-        _printed("pull-in: u_bar (um)", float(u[beyond][p[beyond].argmax()]), 10.7, _UM),
-        _printed("pull-in: p_ext (kPa)", float(p[beyond].max()), 0.107, _KPA),
+        _printed("pull-off: u_bar (um)", off / _UM, 4.95),
+        _printed("pull-off: d_eq (um)", bam.air_gap(off) / _UM, 3.03),
+        _printed("pull-off: p_ext (kPa)", bam.external_pressure(off, 200.0) / _KPA, -3.46),
+        _printed("pull-off: p_c (kPa)", bam.contact_pressure(off) / _KPA, 10.7),
+        _printed("pull-in: u_bar (um)", u[beyond][p[beyond].argmax()] / _UM, 10.7),
+        _printed("pull-in: p_ext (kPa)", p[beyond].max() / _KPA, 0.107),
     ]
 
 
 def external_pressures(small: bool) -> list[Row]:
     """d_eq on the branch in contact at an external pressure."""
-    bam = BearingArea(H_0)
-    rows = [
-        _printed(f"d_eq at {kpa} kPa, {voltage:g} V (um)", bam.air_gap_at_external(kpa * _KPA, voltage), d_eq, _UM)
-        for voltage, printed in EXTERNAL.items()
-        for kpa, d_eq in zip((5, 20, 100), printed, strict=True)
-    ]
+    bam, rows = BearingArea(H_0), []
+    for voltage, printed in EXTERNAL.items():
+        for kpa, d_eq in zip((5, 20, 100), printed, strict=True):
+            ours = bam.air_gap_at_external(kpa * _KPA, voltage) / _UM
+            rows.append(_printed(f"d_eq at {kpa} kPa, {voltage:g} V (um)", ours, d_eq))
     return [worst(rows)]
 
 
@@ -123,19 +119,17 @@ def charged(p_ext: float, voltage: float) -> tuple[float, float, float]:
     return d_eq, p_c, -float(run.solver.reaction[0]) / force
 
 
-def _table(
-    solve: Callable[[float, float], tuple[float, float, float]], mesh: str, only: Sequence[tuple[int, float]] = ()
-) -> list[Row]:
-    """Return the closure of one uniform ridge by either model against the printed table, or some of its entries."""
+def _table(solve: Callable[[float, float], tuple[float, ...]], mesh: str, small: bool) -> list[Row]:
+    """Return the closure of one uniform ridge by either model against the printed table, or a few of its entries."""
     gaps, frictions = [], []
     for kpa, printed in CLOSURE.items():
         for voltage, (d_eq, mu_app) in zip(VOLTAGES, printed, strict=True):
-            if only and (kpa, voltage) not in only:
+            if small and (kpa, voltage) not in ((10, 200.0), (50, 50.0)):
                 continue
             (d, _, mu), where = solve(kpa * _KPA, voltage), f"at {kpa} kPa, {voltage:g} V"
-            gaps.append(_printed(f"d_eq {where} (um)", d, d_eq, _UM, 0.5005e-2, mesh))
+            gaps.append(_printed(f"d_eq {where} (um)", d / _UM, d_eq, 0.5005e-2, mesh))
             # Three digits are printed, four of those below one.
-            frictions.append(_printed(f"mu_app {where}", mu, mu_app, 1.0, 0.5005e-2 if mu_app > 1 else 0.5005e-3, mesh))
+            frictions.append(_printed(f"mu_app {where}", mu, mu_app, 0.5005e-2 if mu_app > 1 else 0.5005e-3, mesh))
     return [worst(gaps), worst(frictions)]
 
 
@@ -148,24 +142,14 @@ def flat_ridge(small: bool) -> list[Row]:
     return [Row(f"{name} at 20 kPa, 200 V", ours, exact, 1e-6, why, _MESH) for name, ours, exact in pairs]
 
 
-def uniform_ridge(small: bool) -> list[Row]:
-    """The scalar equation against the printed table."""
-    return _table(scalar, "–")
-
-
-def closure_table(small: bool) -> list[Row]:
-    """The coupled model against the printed table."""
-    return _table(charged, _MESH, ((10, 200.0), (50, 50.0)) if small else ())
-
-
 CASES = (
     Case("Air gap over separation", f"{_PAPER}, Eqs. 11, 13, 14, evaluated anew", separations),
     Case("Thresholds of stickiness", f"{_PAPER}, Eqs. 9 and 15", thresholds),
     Case("Folds at 200 V", f"{_PAPER}, Eq. 9, evaluated anew", folds),
-    Case("Uniform ridge", f"{_PAPER}, Eqs. 3, 9, 13, evaluated anew", uniform_ridge),
+    Case("Uniform ridge", f"{_PAPER}, Eqs. 3, 9, 13, evaluated anew", partial(_table, scalar, "–")),
     Case("Air gap at an external pressure", f"{_PAPER}, Eqs. 9 and 13, evaluated anew", external_pressures),
 )
 TWO_SCALES = (
     Case("Flat ridge", "scalar equation of the closure, Forsbach et al. 2023, Eqs. 3, 4, 9, 13", flat_ridge),
-    Case("Closure table", "the same equation's root as printed, evaluated independently", closure_table),
+    Case("Closure table", "the same equation's root as printed", partial(_table, charged, _MESH)),
 )

@@ -15,7 +15,7 @@ recess keeps off the screen for |x| > a: :math:`p_n = f / (\pi \sqrt{a^2 - x^2})
 surface sinks, 2 f / (pi E*) arcosh(x / a), and low against the facet that it takes: at f = 3e-5 E* a both can be had.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cache, partial
 from typing import Any
 
@@ -91,22 +91,17 @@ def _hertz(name: str, facets: int) -> tuple[float, float, float]:
     return length / 2, float(run.surface_state.p_n.max()), error
 
 
-def _order(errors: Sequence[float], facets: Sequence[int]) -> float:
-    return order(errors, np.array(facets) + 0.5)
-
-
 def hertz(small: bool) -> list[Row]:
     """Half-width and largest pressure by the finger's formulation and by Nitsche's method."""
     meshes = (4, 8, 16) if small else (40, 80, 160)
-    tolerance, why = 0.005, "what is asked of these facets"
-    if small:
-        tolerance, why = 0.05, "of first order: 0.5 % at facets a tenth as long"
+    asked = 0.005, "what is asked of these facets"
+    tolerance, why = (0.05, "of first order: 0.5 % at facets a tenth as long") if small else asked
     rows = []
     for name in ("penalty", "Nitsche 0"):
         runs = [_hertz(name, facets) for facets in meshes]
         mesh = f"P2, facets of a / {meshes[-1] + 0.5:g}"
         for k, (quantity, reference) in enumerate((("half-width (m)", HALF_WIDTH), ("largest pressure (Pa)", P_0))):
-            observed = _order([run[k] - reference for run in runs], meshes)
+            observed = order([run[k] - reference for run in runs], np.array(meshes) + 0.5)
             rows.append(Row(f"{quantity}, {name}", runs[-1][k], reference, tolerance, why, mesh, observed))
     return rows
 
@@ -121,12 +116,10 @@ def convergence(small: bool) -> list[Row]:
         near, most, why = 0.15, 1.5, "1.5 h / a: corners of the straight facets, h / a, and the edge"
         if name == "augmented Lagrangian":
             near, most = 0.6, 3.0
-            why = (
-                "3 h / a: the facet at the edge has four multipliers for one free node, which leaves them undetermined"
-            )
+            why = "3 h / a: the facet at the edge has four multipliers for one free node: they are undetermined"
         fit, last = f"a fit through {len(meshes)} coarse meshes; {why}", most / (meshes[-1] + 0.5)
         rows += [
-            order_row(f"order of the error, {name}", _order(errors, meshes), 1.0, near, fit, mesh),
+            order_row(f"order of the error, {name}", order(errors, np.array(meshes) + 0.5), 1.0, near, fit, mesh),
             Row(f"L2 error on the last mesh, {name}", errors[-1], 0.0, last, why, mesh, absolute=True),
         ]
     return rows

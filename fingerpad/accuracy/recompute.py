@@ -11,10 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from fingerpad.io.states import PREFIXES, WORDS, before_sliding
 from fingerpad.io.views import View
 from fingerpad.model.finger import Step
-from fingerpad.model.options import ModelOptions
+from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import Simulation
 from fingerpad.model.viewer import Viewer
-from fingerpad.scene import Scene
 from geometry.parameters import MeshSize
 from variational.receptors import Receptors
 from variational.solvers.transfer import StateSnapshot, take_snapshot
@@ -119,17 +118,14 @@ class StateRecorder:
     def solve(self) -> Solve:
         """Return what was kept."""
         f, seconds = self._simulation.finger, time.process_time() - self._start
-        return Solve(self.states, f.scene.mesh, f.unknowns, f.solver.counts.factorisations, seconds, self.views)
+        return Solve(self.states, f.size, f.unknowns, f.solver.counts.factorisations, seconds, self.views)
 
 
-def solve_again(
-    scene: Scene, options: ModelOptions, states: Mapping[str, State], comm: MPI.Comm, views: bool = False
-) -> Solve:
-    """Solve for states of a scene's finger on the scene's mesh; collective.
+def solve_again(model: FingerModel, states: Mapping[str, State], comm: MPI.Comm, views: bool = False) -> Solve:
+    """Solve for states of a finger on a model's mesh; collective.
 
     Args:
-        scene: with the mesh.
-        options: the parts of the model that the states have.
+        model: with the mesh, and the parts that the states have.
         states: as they were found on another mesh.
         comm: communicator of the mesh.
         views: whether tables and pictures are to show the states (:attr:`Solve.views`).
@@ -137,7 +133,7 @@ def solve_again(
     Raises:
         StepFailed: see :meth:`fingerpad.model.simulation.Simulation.re_equilibrate`.
     """
-    simulation = Simulation(scene, options, comm)
+    simulation = Simulation(model, comm)
     recorder, finger = StateRecorder(simulation), simulation.finger
     for name, state in states.items():
         simulation.re_equilibrate(state.snapshot, words(name), state.direction)

@@ -35,10 +35,9 @@ from fingerpad.accuracy.solves import Solves
 from fingerpad.io.interrupt import Interrupted
 from fingerpad.io.quantities import in_words, scaled
 from fingerpad.io.states import PREFIXES
-from fingerpad.model.options import ModelOptions
+from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import RestartRequired
 from fingerpad.richardson import MeshParameter, errors, plus_minus, to_refine
-from fingerpad.scene import Scene
 from geometry.profiles import GeometryError
 from variational.solvers.continuation import StepFailed
 from variational.state import RESULTS, ContactState, Errors
@@ -48,9 +47,10 @@ _ROUNDS = 6  # of refinement
 
 
 class Refinement:
-    """Estimates errors of a path's states, and lowers them where a scene asks for that.
+    """Estimates errors of a path's states, and lowers them where an accuracy is asked for.
 
     Attributes:
+        model: with the mesh of the path.
         base: the states in use.
         refinements: how often each mesh parameter was halved.
         solves: all that was solved.
@@ -61,8 +61,7 @@ class Refinement:
 
     def __init__(
         self,
-        scene: Scene,
-        options: ModelOptions,
+        model: FingerModel,
         path: Solve,
         comm: MPI.Comm,
         show: Callable[[str], None],
@@ -71,8 +70,7 @@ class Refinement:
         """Choose the mesh parameters.
 
         Args:
-            scene: with the mesh of the path.
-            options: the parts of the model that the path has.
+            model: of the path.
             path: its states.
             comm: communicator of the meshes.
             show: prints a line.
@@ -81,26 +79,20 @@ class Refinement:
         Raises:
             StepFailed: the path has no state in which a quantity asked for is known.
         """
-        self.scene = scene
-        self._show = show
-        self.asked = {} if scene.accuracy is None else scene.accuracy.tolerances()
+        self.model, self.asked, self._show = model, model.asked, show
         for name in {"mu_app", "f_t"} & set(self.asked) if "full_slip" not in path.states else ():
             raise StepFailed(
                 f"accuracy.{name} is {self.asked[name]:g}, which full slip decides, and that was not reached"
             )
         if self.asked and not path.states:
             raise StepFailed("accuracy is given and the history has neither normal contact nor full slip")
-        self.solves = Solves(scene, options, path, comm, show, pause)
+        self.solves = Solves(model, path, comm, show, pause)
         self.base = self._stepped = path
         self.failure, self.notes = "", list[str]()
         self.penalty: dict[str, float] = {}
-        receptors = "sed" in self.asked or (not self.asked and scene.output.receptors)
+        receptors = "sed" in self.asked or (not self.asked and model.options.receptors)
         keys = [key for key in _SIZES if key != "receptor" or receptors]
-        if (
-            scene.friction_law() is not None
-            and "charged" in path.states
-            and {"contact_length", "sed"} & set(self.asked)
-        ):
+        if model.options.friction and "charged" in path.states and {"contact_length", "sed"} & set(self.asked):
             keys.append("steps")
         self.parameters = {key: MeshParameter() for key in keys}
         self.refinements = dict.fromkeys(keys, 0)
@@ -128,7 +120,7 @@ class Refinement:
                 self.failure = f"the accuracy asked for could not be established: {error}"
             else:
                 self._note(f"discretisation errors could not be estimated: {error}")
-        if self.solves.restart is None and self.scene.contact.formulation == "penalty" and self.base.states:
+        if self.solves.restart is None and self.model.contact.formulation == "penalty" and self.base.states:
             self._stiffen()
         return self.solves.restart
 
@@ -202,12 +194,12 @@ class Refinement:
 
     def _on_mesh(self, refinements: Mapping[str, int]) -> Solve:
         """Return the states in use on the scene's mesh with sizes halved so often."""
-        first = self.scene.mesh
+        first = self.model.mesh
         sizes = {size: getattr(first, size) / 2**n for key, n in refinements.items() for size in _SIZES.get(key, ())}
         return self.solves.on_mesh(first.model_copy(update=sizes), self.base.states)
 
     def _step_scale(self, refinements: int) -> float:
-        return self.scene.numerics.step_scale * 0.5**refinements
+        return self.model.numerics.step_scale * 0.5**refinements
 
     def _report(self) -> None:
         values, found, allowed = self.base.values(), self.estimates(), self.allowed()

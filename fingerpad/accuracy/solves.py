@@ -11,15 +11,15 @@ from fingerpad.accuracy.recompute import Solve, State, StateRecorder, solve_agai
 from fingerpad.accuracy.rigid_screen import over_stiffer, stiffened
 from fingerpad.model.finger import Step
 from fingerpad.model.memory import refuse_beyond
-from fingerpad.model.options import ModelOptions
+from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import RestartRequired, Simulation
-from fingerpad.scene import Load, Scene
+from fingerpad.scene import Load
 from geometry.parameters import MeshSize
 from variational.solvers.continuation import StepFailed
 
 
 class Solves:
-    """All solves of a scene's states, the path's first.
+    """All solves of a path's states, the path's first.
 
     Attributes:
         found: the solves, in order.
@@ -28,16 +28,15 @@ class Solves:
 
     def __init__(
         self,
-        scene: Scene,
-        options: ModelOptions,
+        model: FingerModel,
         path: Solve,
         comm: MPI.Comm,
         show: Callable[[str], None],
         pause: Callable[[], None],
     ) -> None:
         """Start with the path's states; arguments as of :class:`fingerpad.accuracy.refinement.Refinement`."""
-        self._scene = scene
-        self._options, self._comm, self._show, self._pause = options, comm, show, pause
+        self._model = model
+        self._comm, self._show, self._pause = comm, show, pause
         self.found = [path]
         self.restart: RestartRequired | None = None
 
@@ -52,19 +51,19 @@ class Solves:
             GeometryError: the mesh would need too much memory.
             StepFailed: a state was not found.
         """
-        scene = self._scene.model_copy(update={"mesh": mesh})
-        refuse_beyond(scene, self._options)
-        return self._again(scene, states)
+        model = self._model
+        refuse_beyond(model.geometry, mesh, model.numerics, model.options)
+        return self._again(model.changed(mesh=mesh), states)
 
     def over_stiffer_screen(self, base: Solve) -> Solve:
         """Return states over a screen of twice the stiffness; collective; raises as :meth:`on_mesh`."""
-        scene = self._scene.model_copy(update={"mesh": base.mesh, "contact": stiffened(self._scene.contact)})
+        model = self._model.changed(mesh=base.mesh, contact=stiffened(self._model.contact))
         states = {name: replace(s, snapshot=over_stiffer(s.snapshot)) for name, s in base.states.items()}
-        return self._again(scene, states)
+        return self._again(model, states)
 
-    def _again(self, scene: Scene, states: Mapping[str, State]) -> Solve:
+    def _again(self, model: FingerModel, states: Mapping[str, State]) -> Solve:
         self._pause()
-        return self._keep(solve_again(scene, self._options, states, self._comm, self._scene.accuracy is not None))
+        return self._keep(solve_again(model, states, self._comm, bool(model.asked)))
 
     def with_steps(self, step_scale: float) -> Solve:
         """Return normal contact on the first mesh from a path with other steps; collective.
@@ -75,9 +74,9 @@ class Solves:
         Raises:
             StepFailed: the path was lost, or needs more of the model (:attr:`restart`).
         """
-        numerics = self._scene.numerics.model_copy(update={"step_scale": step_scale})
-        loads = loads_to_normal_contact(self._scene)
-        changes: dict[str, Any] = {"history": loads, "mesh": self.found[0].mesh, "numerics": numerics}
+        numerics = self._model.numerics.model_copy(update={"step_scale": step_scale})
+        loads = loads_to_normal_contact(self._model.loads)
+        model = self._model.changed(mesh=self.found[0].mesh, loads=loads, numerics=numerics)
         self._pause()
         recorder: StateRecorder | None = None
 
@@ -85,11 +84,12 @@ class Solves:
             assert recorder is not None
             recorder.record(step)
 
-        simulation = Simulation(self._scene.model_copy(update=changes), self._options, self._comm, on_step)
+        simulation = Simulation(model, self._comm, on_step)
         recorder = StateRecorder(simulation)
         restart = simulation.run()
         if restart is not None:
-            self.restart = replace(restart, scene=self._scene.model_copy(update={"mesh": restart.scene.mesh}))
+            more = self._model.changed(mesh=restart.model.mesh, options=restart.model.options)
+            self.restart = replace(restart, model=more)
             raise StepFailed(restart.reason)
         return self._keep(recorder.solve())
 
@@ -122,9 +122,9 @@ class Solves:
         }
 
 
-def loads_to_normal_contact(scene: Scene) -> tuple[Load, ...]:
+def loads_to_normal_contact(loads: tuple[Load, ...]) -> tuple[Load, ...]:
     """Return the loads before the bone first moves sideways with the finger pressed."""
-    loads, pressed, place = scene.loads(), False, 0.0
+    pressed, place = False, 0.0
     for k, load in enumerate(loads):
         x = place if load.bone_x is None else load.bone_x
         pressed |= (load.f_ext or 0.0) > 0 or (load.bone_height or 0.0) < 0

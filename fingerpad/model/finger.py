@@ -1,4 +1,4 @@
-"""A scene's finger, meshed and set up, and its present state in numbers of the whole finger."""
+"""A finger, meshed and set up, and its present state in numbers of the whole finger."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,9 +9,8 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from fingerpad.model import balance, symmetry
-from fingerpad.model.options import ModelOptions
+from fingerpad.model.options import FingerModel
 from fingerpad.model.state import contact_state
-from fingerpad.scene import Scene
 from geometry import fingertip, mesh, meshfile, tags
 from geometry.profiles import Profiles
 from variational.attraction.electroadhesion import ELECTROSTATIC
@@ -42,53 +41,51 @@ class Finger:
     Attributes:
         ridges: numbers of the ridges that can touch, of the whole finger.
         options: the parts of the model.
+        size: element sizes of its mesh.
         unknowns: number of unknowns.
         contact_size: size of the facets that can touch (m).
     """
 
-    def __init__(
-        self, scene: Scene, options: ModelOptions, comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool]
-    ) -> None:
+    def __init__(self, model: FingerModel, comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool]) -> None:
         """Mesh the finger and set the solver up; collective.
 
         Args:
-            scene: a checked scene.
-            options: the parts of the model that it needs.
+            model: shape, sizes, laws and numbers.
             comm: communicator of the mesh.
             on_accept: see :class:`variational.solvers.continuation.Continuation`.
         """
-        self.scene = scene
-        self.options, self.profiles = options, Profiles(scene.geometry)
-        contact, numerics, half = scene.contact, scene.numerics, not options.both_halves
-        if scene.laws.mesh is not None:
-            self.mesh = mesh.load(comm, meshfile.file(scene.laws.mesh))
+        self.options, self.size, self.profiles = model.options, model.mesh, Profiles(model.geometry)
+        numerics, half = model.numerics, not model.options.both_halves
+        if model.mesh_file is not None:
+            self.mesh = mesh.load(comm, meshfile.file(model.mesh_file))
         else:
-            build = partial(fingertip.build, scene.geometry, scene.mesh, options.receptors, half)
+            build = partial(fingertip.build, model.geometry, model.mesh, model.options.receptors, half)
             self.mesh = mesh.load(comm, build, tags.LAYERS.values())
         layers = self.mesh.layers().values()
-        self.closure = scene.closure() if options.voltage else None
-        attraction = ELECTROSTATIC if options.voltage else None
+        self.closure = model.closure
+        attraction = ELECTROSTATIC if model.options.voltage else None
         made = Body(
             self.mesh,
-            {tag: solid for tag, solid in scene.solids().items() if tag in layers},
-            Interface(contact.law(), scene.friction_law(), scene.h_0, attraction),
+            {tag: solid for tag, solid in model.solids.items() if tag in layers},
+            Interface(model.contact.law(), model.friction, model.h_0, attraction),
             self.closure,
             element=numerics.element,
             points=numerics.quadrature_points,
-            force_scale=max((load.f_ext for load in scene.loads() if load.f_ext), default=1.0),
+            force_scale=max((load.f_ext for load in model.loads if load.f_ext), default=1.0),
             tolerance=numerics.tolerance,
             mirror=self.mesh.facets(tags.SYMMETRY) if half else None,
             coupling_tolerance=numerics.coupling_tolerance,
             coupling_cap=numerics.coupling_cap,
-            by_gap=contact.length == "gap",
+            by_gap=model.contact.length == "gap",
             on_accept=on_accept,
             step_scale=numerics.step_scale,
         )
+        self._tolerance = numerics.tolerance
         self.problem, self.solver, self.observer = made.problem, made.solver, made.observer
         self.coupling, self.continuation = made.coupling, made.continuation
         self.ridges = symmetry.names(made.surface.ridge_numbers) if half else made.surface.ridge_numbers
         shortest = float(np.min(comm.allgather(made.surface.length.min(initial=np.inf))))
-        self.contact_size = scene.mesh.contact if scene.laws.mesh is None else shortest
+        self.contact_size = model.mesh.contact if model.mesh_file is None else shortest
         self.unknowns = self.solver.layout.global_size
 
     @property
@@ -99,7 +96,7 @@ class Finger:
     @property
     def force_error(self) -> float:
         """What the solves' tolerance leaves of a sum of nodal forces (N/m), see :func:`balance.force_error`."""
-        left = max(self.scene.numerics.tolerance, self.solver.floor)
+        left = max(self._tolerance, self.solver.floor)
         return balance.force_error(self.unknowns, left, self.solver.force_scale)
 
     def book(self) -> EnergyBook:
@@ -127,7 +124,7 @@ class Finger:
         """
         left, scale = self.solver.imbalance(), self.solver.force_scale
         where = f"step {self.continuation.steps} ({load})"
-        balance.refuse_unbalanced(where, left, loads, self.solver.reaction, scale, self.scene.numerics.tolerance)
+        balance.refuse_unbalanced(where, left, loads, self.solver.reaction, scale, self._tolerance)
         return left
 
     def present(self, loads: RidgeLoads, load: str, number: int, attempt: Attempt | None = None) -> Step:

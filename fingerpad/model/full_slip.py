@@ -62,6 +62,7 @@ class FullSlip:
         goes with the inverse square of the air gap and the insulator behind it.
         """
         finger = self._finger
-        left = finger.scene.contact.law().tolerance
-        gap = float(finger.coupling.d_eq.min()) + finger.scene.h_0 if finger.options.voltage else np.inf
+        laws = finger.problem.interface
+        left = laws.formulation.tolerance
+        gap = float(finger.coupling.d_eq.min()) + laws.h_0 if finger.options.voltage else np.inf
         return _STEADY + float(2 * left / gap)

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 
 from fingerpad.model.options import ModelOptions, plan
 from fingerpad.model.touching import by_rule
-from fingerpad.scene import Scene
+from fingerpad.scene import Numerics, Scene
 from geometry import count
+from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
 
 _UNKNOWNS = {"P1": 1.0, "P2": 4.0, "P2 reduced": 4.0, "P2-P1": 4.5, "P3": 9.0}  # of a triangle, on large meshes
@@ -36,25 +37,34 @@ def estimate(scene: Scene, needed: ModelOptions | None = None) -> Budget:
         scene: one whose geometry was checked.
         needed: the parts of the model; those that the scene needs if None.
     """
-    needed, scene = needed or plan(scene), by_rule(scene)
-    triangles = count.triangles(scene.geometry, scene.mesh, needed.receptors, not needed.both_halves)
-    unknowns = _UNKNOWNS[scene.numerics.element] * triangles
-    return Budget(triangles, unknowns, _AT_LEAST + _FIRST * unknowns**_POWER)
+    return _budget(scene.geometry, by_rule(scene).mesh, scene.numerics.element, needed or plan(scene))
 
 
-def refuse_beyond(scene: Scene, needed: ModelOptions | None = None) -> None:
-    """Refuse a scene that would need more memory than it allows; arguments as above.
+def refuse_beyond(finger: Fingertip, size: MeshSize, numerics: Numerics, needed: ModelOptions) -> None:
+    """Refuse a mesh that would need more memory than is allowed.
+
+    Args:
+        finger: its shape, which was checked.
+        size: element sizes, with a ``touching_half_arc``.
+        numerics: the element and the memory allowed.
+        needed: the parts of the model.
 
     Raises:
         GeometryError: how much, and what to change.
     """
-    found = estimate(scene, needed)
-    if found.memory > scene.numerics.memory:
+    found = _budget(finger, size, numerics.element, needed)
+    if found.memory > numerics.memory:
         raise GeometryError(
             f"the mesh would have some {_about(found.triangles)} triangles and {_about(found.unknowns)} unknowns, and "
-            f"need about {_about(found.memory / 1e9)} GB; numerics.memory allows {scene.numerics.memory / 1e9:.3g} GB: "
-            f"raise it, or make {_finest(scene)} larger"
+            f"need about {_about(found.memory / 1e9)} GB; numerics.memory allows {numerics.memory / 1e9:.3g} GB: "
+            f"raise it, or make {_finest(finger, size, needed.receptors)} larger"
         )
+
+
+def _budget(finger: Fingertip, size: MeshSize, element: str, needed: ModelOptions) -> Budget:
+    triangles = count.triangles(finger, size, needed.receptors, not needed.both_halves)
+    unknowns = _UNKNOWNS[element] * triangles
+    return Budget(triangles, unknowns, _AT_LEAST + _FIRST * unknowns**_POWER)
 
 
 def _about(value: float) -> str:
@@ -62,13 +72,11 @@ def _about(value: float) -> str:
     return f"{float(f'{value:.2g}'):,.0f}".replace(",", " ")
 
 
-def _finest(scene: Scene) -> str:
+def _finest(finger: Fingertip, size: MeshSize, receptors: bool) -> str:
     """Return the key of the size that would save most triangles if it were doubled."""
-    present = by_rule(scene)
-    keys = ["contact", "interface", "coarsest", *(["receptor"] if scene.output.receptors else []), "growth"]
+    keys = ["contact", "interface", "coarsest", *(["receptor"] if receptors else []), "growth"]
 
     def doubled(key: str) -> float:
-        mesh = present.mesh.model_copy(update={key: 2 * getattr(present.mesh, key)})
-        return count.triangles(present.geometry, mesh, scene.output.receptors)
+        return count.triangles(finger, size.model_copy(update={key: 2 * getattr(size, key)}), receptors)
 
     return f"mesh.{min(keys, key=doubled)}"

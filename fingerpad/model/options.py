@@ -1,13 +1,19 @@
-"""What a scene needs of the model, decided from the scene alone.
+"""What a scene needs of the model, decided from the scene alone, and the model as plain values.
+
+A :class:`FingerModel` reads the scene once. What meshes, solves, records and refines takes the model and no scene.
 
 What cannot change any number asked for is left out, and each omission comes with its reason. Nothing here is an
 approximation but what the finite elements make of it: the numbers stay those of the whole model. Ridges that are not
 expected to touch are another matter (:mod:`fingerpad.model.touching`).
 """
 
+from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass, replace
 
-from fingerpad.scene import Scene
+from fingerpad.scene import Contact, Load, Numerics, Scene
+from geometry.parameters import Fingertip, MeshSize
+from geometry.sizing import touching_ridges
 
 
 @dataclass(frozen=True)
@@ -78,3 +84,76 @@ def plan(scene: Scene) -> ModelOptions:
     if not both_halves:
         omitted.append(_HALF)
     return ModelOptions(voltage, friction, receptors, both_halves, errors, tuple(omitted))
+
+
+class FingerModel:
+    """A finger as it is meshed and solved: shape, sizes, laws, loads and numbers.
+
+    Attributes:
+        options: the parts of the model.
+        geometry: shape of the finger.
+        mesh: element sizes, and how many ridges can touch.
+        mesh_file: file of a mesh, in the place of one with these sizes.
+        solids: material of each layer's tag.
+        contact: formulation of the contact.
+        friction: law of friction; None without friction.
+        closure: the microscale; None where there is never a voltage.
+        h_0: effective insulator thickness (m).
+        loads: to reach one after the other.
+        numerics: element, tolerances and memory.
+        asked: largest relative errors allowed, by quantity; empty where no accuracy is asked for.
+    """
+
+    def __init__(self, scene: Scene, options: ModelOptions) -> None:
+        """Read a scene.
+
+        Args:
+            scene: a checked scene with a ``mesh.touching_half_arc``, see :func:`fingerpad.model.touching.by_rule`.
+            options: the parts of the model, see :func:`plan`.
+        """
+        self.options = options
+        self.geometry: Fingertip = scene.geometry
+        self.mesh: MeshSize = scene.mesh
+        self.mesh_file = scene.laws.mesh
+        self.solids = scene.solids()
+        self.contact: Contact = scene.contact
+        self.friction = scene.friction_law()
+        self.closure = scene.closure() if options.voltage else None
+        self.h_0 = scene.h_0
+        self.loads = scene.loads()
+        self.numerics: Numerics = scene.numerics
+        self.asked: Mapping[str, float] = {} if scene.accuracy is None else scene.accuracy.tolerances()
+
+    def changed(
+        self,
+        *,
+        options: ModelOptions | None = None,
+        mesh: MeshSize | None = None,
+        contact: Contact | None = None,
+        loads: tuple[Load, ...] | None = None,
+        numerics: Numerics | None = None,
+    ) -> "FingerModel":
+        """Return a copy with some values changed, as the attributes are described; those left out stay."""
+        found = copy(self)
+        found.options = self.options if options is None else options
+        found.mesh = self.mesh if mesh is None else mesh
+        found.contact = self.contact if contact is None else contact
+        found.loads = self.loads if loads is None else loads
+        found.numerics = self.numerics if numerics is None else numerics
+        return found
+
+    def with_ridges(self, last: int) -> "FingerModel":
+        """Return the model with ridges -last to last meshed to touch."""
+        half_arc = last * self.geometry.ridge_wavelength
+        return self.changed(mesh=self.mesh.model_copy(update={"touching_half_arc": half_arc}))
+
+    @property
+    def omitted(self) -> tuple[Omission, ...]:
+        """All omissions, also that of the ridges that are not meshed to touch."""
+        if self.mesh_file is not None:
+            return self.options.omitted
+        last = touching_ridges(self.geometry, self.mesh)[-1]
+        if last == (self.geometry.ridge_count - 1) // 2:
+            return self.options.omitted
+        reason = "they are not expected to touch, which each accepted step is checked for"
+        return (*self.options.omitted, Omission(f"contact of the ridges beyond ±{last}", reason))

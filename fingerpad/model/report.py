@@ -2,7 +2,7 @@
 
 import json
 import logging
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from fingerpad.io import states
@@ -12,9 +12,9 @@ from fingerpad.io.views import View
 from fingerpad.io.writing import Writer
 from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Step
+from fingerpad.model.options import Omission
 from fingerpad.model.path_record import PathRecord
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import left_out
 from fingerpad.model.viewer import Viewer
 from variational.state import ContactState
 
@@ -26,11 +26,14 @@ class Report:
         record: the states.
     """
 
-    def __init__(self, simulation: Simulation, writer: Writer, console: Console, clock: Clock) -> None:
+    def __init__(
+        self, simulation: Simulation, omitted: Sequence[Omission], writer: Writer, console: Console, clock: Clock
+    ) -> None:
         """Print the model; nothing is written before there is a step.
 
         Args:
             simulation: set up, at its start.
+            omitted: parts that its model leaves out.
             writer: writes into the folder.
             console: prints.
             clock: of the run.
@@ -40,8 +43,7 @@ class Report:
         self.record = PathRecord(finger.problem.mesh.comm, checks)
         self._viewer = Viewer(finger)
         self._written = self._logged = 0
-        self.omitted = (*finger.options.omitted, *left_out(finger.scene))
-        for omission in self.omitted:
+        for omission in omitted:
             console.show(f"{omission}")
             writer.log.info("%s", omission)
         console.show(f"{finger.unknowns} unknowns, {len(finger.ridges)} ridges that can touch")

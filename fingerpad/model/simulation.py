@@ -1,4 +1,4 @@
-"""The path of a scene's loads: from one load to the next, every accepted state checked and reported."""
+"""The path of a finger's loads: from one load to the next, every accepted state checked and reported."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -10,11 +10,10 @@ from fingerpad.io.states import SLIDE_ON
 from fingerpad.model.contact_zone import ContactZone, FingerExceeded
 from fingerpad.model.finger import Finger, Step
 from fingerpad.model.full_slip import FullSlip
-from fingerpad.model.options import ModelOptions
+from fingerpad.model.options import FingerModel
 from fingerpad.model.stability import StabilityChecks
 from fingerpad.model.state import step_record
-from fingerpad.model.touching import with_ridges
-from fingerpad.scene import Load, Scene
+from fingerpad.scene import Load
 from variational.quantities import RidgeLoads
 from variational.solvers.continuation import Attempt, StepFailed, Target
 from variational.solvers.transfer import StateSnapshot, restore
@@ -26,14 +25,12 @@ class RestartRequired:
     """The loads must be gone through again, since an omitted part of the model turned out to matter."""
 
     reason: str
-    scene: Scene
-    """With more ridges that can touch, or a finer mesh."""
-    options: ModelOptions
-    """With more parts of the model."""
+    model: FingerModel
+    """With more ridges that can touch, a finer mesh, or more parts."""
 
 
 class Simulation:
-    """A scene's finger led along the loads.
+    """A finger led along its loads.
 
     Attributes:
         finger: the finger.
@@ -43,8 +40,7 @@ class Simulation:
 
     def __init__(
         self,
-        scene: Scene,
-        options: ModelOptions,
+        model: FingerModel,
         comm: MPI.Comm,
         on_step: Callable[[Step, float], None] = lambda step, done: None,
         on_load: Callable[[], None] = lambda: None,
@@ -52,25 +48,25 @@ class Simulation:
         """Mesh the finger and set the solver up; collective.
 
         Args:
-            scene: a checked scene.
-            options: the parts of the model that it needs.
+            model: the finger and its loads.
             comm: communicator of the mesh.
             on_step: called on every rank after each accepted step with the part of the whole history that is done.
             on_load: called on every rank when a load has been reached.
         """
+        self._model = model
         self.on_step, self.on_load = on_step, on_load
-        self.finger = finger = Finger(scene, options, comm, self._accepted)
+        self.finger = finger = Finger(model, comm, self._accepted)
         self.energy = finger.book()
         self.states: list[ContactState] = []
         self.checks = StabilityChecks(finger)
-        self._loads, self._load, self._loads_done = scene.loads(), "", 0
+        self._load, self._loads_done = "", 0
         self._slip = FullSlip(finger)
-        count, file = scene.geometry.ridge_count, scene.laws.mesh
+        count, file = model.geometry.ridge_count, model.mesh_file
         self._zone = ContactZone(finger.mesh, finger.observer, finger.ridges, count, file)
         self._restart: RestartRequired | None = None
 
     def run(self) -> RestartRequired | None:
-        """Reach every load of the scene; collective.
+        """Reach every load; collective.
 
         Returns:
             What must be added to the model and why, where an omitted part turns out to matter; the loads are not
@@ -80,7 +76,7 @@ class Simulation:
             StepFailed: a load that could not be reached; everything accepted before was reported.
         """
         path = self.finger.continuation
-        for k, load in enumerate(self._loads):
+        for k, load in enumerate(self._model.loads):
             self._load, self._loads_done = load.name, k
             self._reach(load)
             while load.until_full_slip and path.slip[1] and self._restart is None:
@@ -147,18 +143,16 @@ class Simulation:
     def _symmetry_lost(self) -> RestartRequired | None:
         """Check the stability of the present state; return that the whole finger is needed where a half is unstable."""
         stable = self.checks.check(self._load).frozen.stable
-        options = self.finger.options
+        options = self._model.options
         if options.both_halves or stable:
             return None
         reason = "the half of the finger is not stable, so that the whole may not be symmetric"
-        return RestartRequired(reason, self.finger.scene, options.with_both_halves())
+        return RestartRequired(reason, self._model.changed(options=options.with_both_halves()))
 
     def _zone_exceeded(self, loads: RidgeLoads) -> RestartRequired | None:
         """Return that more ridges must be able to touch, where they must; collective."""
-        wider, finger = self._zone.check(loads), self.finger
-        if wider is None:
-            return None
-        return RestartRequired(wider.reason, with_ridges(finger.scene, wider.last), finger.options)
+        wider = self._zone.check(loads)
+        return None if wider is None else RestartRequired(wider.reason, self._model.with_ridges(wider.last))
 
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> bool:
         """Check and report an accepted state; return whether the path must stop here."""
@@ -175,7 +169,7 @@ class Simulation:
         record = step_record(finger.continuation, energy, imbalance, attempt)
         state = replace(state, record=record)
         self.states.append(state)
-        done = min((self._loads_done + (0.0 if touches else part)) / len(self._loads), 1.0)
+        done = min((self._loads_done + (0.0 if touches else part)) / len(self._model.loads), 1.0)
         self.on_step(replace(step, state=state), done)
         try:
             self._restart = self._zone_exceeded(loads)

@@ -12,10 +12,8 @@ fingers costs a restart: :mod:`fingerpad.model.contact_zone` checks each accepte
 
 import math
 
-from fingerpad.model.options import Omission
 from fingerpad.scene import Scene
 from geometry.parameters import Fingertip
-from geometry.sizing import touching_ridges
 
 _RIDGES, _FORCE, _FRICTION = 10, 75.0, 0.25  # on either side, at a force (N/m) and a friction coefficient
 _WIDENS, _ROLLS = 0.27, 0.3  # powers of the force and of a larger friction coefficient
@@ -35,19 +33,5 @@ def by_rule(scene: Scene) -> Scene:
     lowered = math.sqrt(2 * radius * max(depth, 0.0)) / finger.ridge_wavelength
     friction = 0.0 if law is None else law.coefficient(_PRESSURE)
     last = math.ceil(max(ridges, lowered, _LEAST) * max(friction / _FRICTION, 1.0) ** _ROLLS)
-    return with_ridges(scene, min(last, max(finger.ridge_count // 2, 1)))
-
-
-def with_ridges(scene: Scene, last: int) -> Scene:
-    """Return the scene with ridges -last to last meshed to touch."""
-    half_arc = last * scene.geometry.ridge_wavelength
+    half_arc = min(last, max(finger.ridge_count // 2, 1)) * finger.ridge_wavelength
     return scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"touching_half_arc": half_arc})})
-
-
-def left_out(scene: Scene) -> tuple[Omission, ...]:
-    """Return the omission of the ridges that are not meshed to touch, if there are any; of a scene with a half arc."""
-    last = touching_ridges(scene.geometry, scene.mesh)[-1]
-    if scene.laws.mesh is not None or last == (scene.geometry.ridge_count - 1) // 2:
-        return ()
-    reason = "they are not expected to touch, which each accepted step is checked for"
-    return (Omission(f"contact of the ridges beyond ±{last}", reason),)

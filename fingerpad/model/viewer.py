@@ -31,7 +31,7 @@ class Viewer:
     def view(self, step: Step) -> View:
         """Return all that is shown of the present state, that of the step; collective."""
         profile, (snapshot, merkel) = self.profile(step), self.picture()
-        mesh, receptors = self._finger.scene.mesh, list(self.receptors(step))
+        mesh, receptors = self._finger.size, list(self.receptors(step))
         return View(step.state, mesh, profile, snapshot, merkel, list(self.ridges(step)), receptors)
 
     def profile(self, step: Step) -> Profile | None:

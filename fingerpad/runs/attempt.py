@@ -1,4 +1,4 @@
-"""One attempt to run a scene: the path of its loads on one mesh, and the errors of its states."""
+"""One attempt at a run: the path of its loads on one mesh, and the errors of its states."""
 
 from functools import partial
 from typing import Any
@@ -16,7 +16,7 @@ from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Step
 from fingerpad.model.hints import finer_mesh_may_help, hint
 from fingerpad.model.memory import refuse_beyond
-from fingerpad.model.options import ModelOptions
+from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Report
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.runs.restarts import Restarts
@@ -31,7 +31,7 @@ FINEST = 5e-6
 
 
 class Attempt:
-    """A scene's path and the errors of its states.
+    """A model's path and the errors of its states.
 
     Attributes:
         simulation: the path.
@@ -40,8 +40,7 @@ class Attempt:
 
     def __init__(
         self,
-        scene: Scene,
-        options: ModelOptions,
+        model: FingerModel,
         comm: MPI.Comm,
         writer: Writer,
         console: Console,
@@ -49,13 +48,13 @@ class Attempt:
         interrupt: Interrupt,
     ) -> None:
         """Mesh the finger; collective."""
-        self._scene = scene
-        self._options, self._comm, self._interrupt = options, comm, interrupt
+        self._model = model
+        self._comm, self._interrupt = comm, interrupt
         self._writer, self._console, self._clock = writer, console, clock
         with clock.phase("setup"):
-            self.simulation = Simulation(scene, options, comm, self._on_step, self._on_load)
-        self.report = Report(self.simulation, writer, console, clock)
-        self._recorder = StateRecorder(self.simulation) if options.errors else None
+            self.simulation = Simulation(model, comm, self._on_step, self._on_load)
+        self.report = Report(self.simulation, model.omitted, writer, console, clock)
+        self._recorder = StateRecorder(self.simulation) if model.options.errors else None
         self._refinement: Refinement | None = None
         self._ended: dict[str, str] = {}
 
@@ -79,21 +78,21 @@ class Attempt:
                 return self._affordable(restart)
             pause = partial(self._interrupt.stop_if_asked, self.simulation.finger.continuation.steps)
             path, show = self._recorder.solve(), self._console.show
-            self._refinement = Refinement(self._scene, self._options, path, self._comm, show, pause)
+            self._refinement = Refinement(self._model, path, self._comm, show, pause)
             return self._affordable(self._refinement.run())
         except StepFailed as error:
-            tip = hint(error) if self._scene.laws.mesh is None else ""
+            tip = hint(error) if self._model.mesh_file is None else ""
             self._ended["failure"] = "; ".join(filter(None, (str(error), tip)))
             if isinstance(error, Interrupted):
                 self._ended["interrupted"] = error.signal.name
-            return None if reached else _finer(self._scene, self._options, error)
+            return None if reached else _finer(self._model, error)
 
     def _affordable(self, restart: RestartRequired | None) -> RestartRequired | None:
         """Return a restart within the memory allowed; None, with a failure, for another one."""
         if restart is None:
             return None
         try:
-            refuse_beyond(restart.scene, restart.options)
+            _refuse_beyond(restart.model)
         except GeometryError as error:
             self._ended["failure"] = f"{restart.reason}; all loads again would need more memory: {error}"
             return None
@@ -120,12 +119,12 @@ class Attempt:
         failure = self._ended.get("failure", "" if refinement is None else refinement.failure)
         mu_0 = coefficient(scene)
         with self._clock.phase("output"):
-            size = None if scene.accuracy is None else finger.scene.mesh.contact
+            size = self._model.mesh.contact if self._model.asked else None
             drawing = record.drawing(mu_0, final, size, named)
             if drawing is not None and self._writer.folder is not None:
                 drawing.write(self._writer.folder)
         totals = record.totals()
-        left = max(scene.numerics.tolerance, totals["floor"])
+        left = max(self._model.numerics.tolerance, totals["floor"])
         error = force_error(unknowns, left, finger.solver.force_scale)
         more |= self._comm.bcast(self._path() | totals | {"force_error": error})
         more |= {"restarts": restarts.table, "laws": used(scene), "provenance": provenance()}
@@ -152,30 +151,34 @@ class Attempt:
 
     def _path(self) -> dict[str, Any]:
         """Return what the summary holds of the mesh, the options and the times of the path, ready for JSON."""
-        finger = self.simulation.finger
+        finger, model = self.simulation.finger, self._model
         seconds = finger.solver.timings.seconds | self._clock.seconds
         return {
             "unknowns_path": finger.unknowns,
-            "path_mesh": None if finger.scene.laws.mesh else finger.scene.mesh.model_dump(),
-            "omitted": [omission.to_dict() for omission in self.report.omitted],
+            "path_mesh": None if model.mesh_file else model.mesh.model_dump(),
+            "omitted": [omission.to_dict() for omission in model.omitted],
             **{f"seconds_{phase}": value for phase, value in seconds.items()},
         }
 
 
-def _finer(scene: Scene, options: ModelOptions, error: StepFailed) -> RestartRequired | None:
+def _finer(model: FingerModel, error: StepFailed) -> RestartRequired | None:
     """Return a restart with half the contact size, where that may help and is possible.
 
     Args:
-        scene: whose loads were not reached.
-        options: of its model.
+        model: whose loads were not reached.
         error: why not.
     """
-    helps = scene.laws.mesh is None and finer_mesh_may_help(error, scene.accuracy is not None)
-    if not helps or scene.mesh.contact / 2 < FINEST:
+    helps = model.mesh_file is None and finer_mesh_may_help(error, bool(model.asked))
+    contact = model.mesh.contact / 2
+    if not helps or contact < FINEST:
         return None
-    finer = scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"contact": scene.mesh.contact / 2})})
+    finer = model.changed(mesh=model.mesh.model_copy(update={"contact": contact}))
     try:
-        refuse_beyond(finer, options)
+        _refuse_beyond(finer)
     except GeometryError:  # more than the memory allowed
         return None
-    return RestartRequired(str(error), finer, options)
+    return RestartRequired(str(error), finer)
+
+
+def _refuse_beyond(model: FingerModel) -> None:
+    refuse_beyond(model.geometry, model.mesh, model.numerics, model.options)

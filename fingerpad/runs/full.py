@@ -14,7 +14,7 @@ from fingerpad.io.place import Place
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
 from fingerpad.model.cost import Clock
-from fingerpad.model.options import plan
+from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.touching import by_rule
 from fingerpad.runs.attempt import Attempt
 from fingerpad.runs.restarts import Restarts
@@ -67,17 +67,17 @@ def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console) -> Resu
     jit.delete_unfinished(comm)
     writer.log.info("scene %s", json.dumps(scene.parameters()))
     clock, restarts = Clock(comm), Restarts(writer.log, console)
-    present, options = by_rule(scene), plan(scene)
+    model = FingerModel(by_rule(scene), plan(scene))
     try:
         with Interrupt(comm) as interrupt:
             while True:
-                attempt = Attempt(present, options, comm, writer, console, clock, interrupt)
+                attempt = Attempt(model, comm, writer, console, clock, interrupt)
                 restart = attempt.follow()
                 if restart is None:
                     break
                 restarts.record(restart, attempt.report.record.states, attempt.simulation.finger, clock)
                 writer.restart()
-                present, options = restart.scene, restart.options
+                model = restart.model
             result = attempt.result(scene, restarts)
             console.show(f"\n{result}\n{_work(result)}")
             writer.close()

@@ -35,14 +35,14 @@ class Restarts:
             finger: with the model until here.
             clock: of the run.
         """
-        mesh = restart.scene.mesh
+        mesh = restart.model.mesh
         step, load = (states[-1].step, states[-1].load) if states else (0, "start")
-        whole, seconds = restart.options.both_halves, clock.processor_seconds()
+        whole, seconds = restart.model.options.both_halves, clock.processor_seconds()
         halves = " and both halves of the finger" if whole and not finger.options.both_halves else ""
         added = f"mesh.touching_half_arc {mesh.touching_half_arc:g} m{halves}"
-        if mesh.contact < finger.scene.mesh.contact:
+        if mesh.contact < finger.size.contact:
             added = f"mesh.contact {mesh.contact:g} m"
-            size = finger.scene.mesh.contact * 1e6
+            size = finger.size.contact * 1e6
             self.notes.append(
                 f"No equilibrium was found with a contact size of {size:g} µm; the run started again with half of it."
             )

@@ -7,7 +7,8 @@ doi:10.3389/fmech.2022.1074393). Of what is left, with <.> the mean over the map
 .. math:: h_{rms}^2 = \langle h^2 \rangle, \quad
           S_{sk} = \langle h^3 \rangle / h_{rms}^3, \quad S_{ku} = \langle h^4 \rangle / h_{rms}^4
 
-(ISO 25178-2; 0 and 3 for a Gaussian). Removing a trend removes roughness too: docs/topography.md has the amount.
+(ISO 25178-2; 0 and 3 for a Gaussian). Removing a trend removes roughness too: of 3.1 um rms
+a map of 100 um x 100 um keeps 2.2 um without its curvature (tests/test_topography.py).
 """
 
 from dataclasses import dataclass
