@@ -42,7 +42,7 @@ class Target:
 
 
 # How far one step may go: parts of sqrt(f_ext) and of U^2, and metres of the bone.
-_FORCE, _VOLTAGE, _SINK, _SLIDE = float(__import__('os').environ.get('FORCE', 0.134)), float(__import__('os').environ.get('VOLT', 0.5)), 40e-6, 120e-6
+_FORCE, _VOLTAGE, _SINK, _SLIDE = 0.134, 0.5, 40e-6, 120e-6
 _SMALLEST = 1e-3  # step below which a load is given up, over the largest
 _MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on when the bone moves
 _STEP_OVER = 1.5  # step tried where the loop over the scales cycles, over the one that led there

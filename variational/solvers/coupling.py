@@ -33,15 +33,15 @@ from variational.contact.formulation import SurfaceState
 from variational.quantities import Observer
 from variational.roughness.closure import Closure, air_gaps, check
 from variational.solvers.failure import NotConverged
-from variational.solvers.iteration import EXACT, Accuracy
+from variational.solvers.iteration import EXACT, StopRule
 from variational.solvers.newton import Solver
 from variational.solvers.secant import Secants
 
 Array = NDArray[np.float64]
-import os
-_FIRST = Accuracy(float(os.environ.get('FIRST', 1e-5)))
-_LATER = Accuracy(0.0, float(os.environ.get('LATER', 0.03)))
-_EXACT = 1e-4
+# Solves at air gaps that change again are not exact: what the first leaves out of balance over the force scale, and the
+_FIRST, _LATER = StopRule(floor=1e-5), StopRule(part=0.03)  # later ones, over what the air gaps' change brought,
+_NEARLY = 1e-3  # until the air gaps' relative error is below this.
+_HASTE = 2  # iterations in which the residual must fall where a ridge lets go, as there is a remedy then
 
 
 @dataclass
@@ -99,6 +99,7 @@ class Coupling:
         ridges = len(observer.surface.ridge_numbers)
         self.d_eq = np.full(ridges, np.nan) if closure is None else air_gaps(closure, np.zeros(ridges))
         self.gain = np.full_like(self.d_eq, np.nan)
+        self._free = np.nan if closure is None else float(air_gaps(closure, np.zeros(1))[0])
 
     def set_air_gaps(self, d_eq: Array) -> None:
         """Impose air gaps (m), shape (ridges,)."""
@@ -106,27 +107,12 @@ class Coupling:
         if self.closure is not None:
             self.solver.problem.set_air_gaps(d_eq)
 
-    def _jump(self, secants: Secants) -> None:
-        """Solve where full Newton steps fail: the ridge that lets go gets the air gap of one without contact."""
-        ridge = secants.leaving()
-        if ridge is not None and ridge not in self._opened:
-            self._open(ridge)
-            if self.solver.attempt(_LATER):
-                return
-        self.solver.solve(pseudo_transient=True, tried=True)
-
-    def _open(self, ridge: int) -> None:
-        d_eq = self.d_eq.copy()
-        d_eq[ridge] = self._free
-        self._opened.add(ridge)
-        self.set_air_gaps(d_eq)
-
-    def _iterate(self, pseudo_transient: bool, enough: Accuracy, secants: Secants | None) -> tuple[Array, SurfaceState]:
+    def _iterate(self, pseudo_transient: bool, stop: StopRule, secants: Secants | None) -> tuple[Array, SurfaceState]:
         """Solve at the current air gaps; return the air gaps by the closure (m), and the surface."""
         if secants is None:
-            self.solver.solve(pseudo_transient, enough)
-        elif not self.solver.attempt(replace(enough, patience=4 if secants.leaving() is None else 2)):
-            self._jump(secants)
+            self.solver.solve(pseudo_transient, stop)
+        else:
+            self._solve_again(stop, secants)
         with self.solver.timings.phase("coupling"):
             state = self.observer.state()
             if self.closure is None:
@@ -136,6 +122,21 @@ class Coupling:
             ridge = self.observer.surface.ridge_numbers[int(np.argmin(np.isfinite(d_eq)))]
             raise NotConverged(f"NOT_A_NUMBER in the air gap of ridge {ridge}", False)
         return d_eq, state
+
+    def _solve_again(self, stop: StopRule, secants: Secants) -> None:
+        """Solve from the state at other air gaps, or from where a ridge jumps to.
+
+        Without attraction the skin of a ridge that lets go springs back, to a state that full Newton steps find. On the
+        way there at its present air gap the tangent is not positive.
+        """
+        leaving = bool(secants.leaving().any())
+        if self.solver.attempt(replace(stop, patience=_HASTE) if leaving else stop):
+            return
+        if leaving:
+            self.set_air_gaps(secants.without_leaving(self.d_eq))
+            if self.solver.attempt(_LATER):
+                return
+        self.solver.solve(pseudo_transient=True, tried=True)
 
     def solve(self, pseudo_transient: bool = False) -> None:
         """Find the state in which air gaps and pressures agree, and the contact's conditions hold.
@@ -149,17 +150,15 @@ class Coupling:
                 ``NOT_A_NUMBER`` with the ridge of which the closure made one.
         """
         self.history = CouplingHistory()
-        self._opened: set[int] = set()
-        self._free = float(air_gaps(self.closure, np.zeros(1))[0]) if self.closure else np.nan
         self.set_air_gaps(self.d_eq)
         problem = self.solver.problem
         formulation = problem.interface.formulation
         charged = self.closure is not None and float(problem.voltage.value) != 0.0
         contact_history = problem.history
-        secants, numbers = Secants(self.d_eq, self.gain), self.observer.surface.ridge_numbers
-        enough = _FIRST if charged else EXACT
+        secants, numbers = Secants(self.d_eq, self.gain, self._free), self.observer.surface.ridge_numbers
+        stop = _FIRST if charged else EXACT
         for iteration in range(self.cap):
-            found, state = self._iterate(pseudo_transient, enough, secants if iteration else None)
+            found, state = self._iterate(pseudo_transient, stop, secants if iteration else None)
             d = self.d_eq
             r = found - d if charged else np.zeros_like(d)  # without attraction the air gaps do not act
             error = formulation.error(state, contact_history, problem.interface.friction)
@@ -172,7 +171,7 @@ class Coupling:
             self.history.jumped = {numbers[k] for k in np.flatnonzero(secants.jumped())}
             scales = not charged or secants.settled(self.tolerance)
             contact = self.history.errors[-1] <= formulation.tolerance
-            if scales and contact and enough == EXACT:
+            if scales and contact and stop == EXACT:
                 if charged:
                     self.gain = secants.gain
                 else:
@@ -181,22 +180,9 @@ class Coupling:
             if not contact:
                 contact_history = formulation.corrected(state, contact_history)
                 problem.correct_history(contact_history)
-            enough = EXACT if not charged or secants.settled(_EXACT) else _LATER
             if charged:
-                d_eq = secants.step()
-                for ridge in np.flatnonzero(secants.past_fold()):
-                    if ridge not in self._opened:
-                        d_eq[ridge] = self._free
-                        self._opened.add(ridge)
-                if __import__("os").environ.get("TRACE"):
-                    k = np.argsort(-abs(secants._r / secants._d))[:3]
-                    print("   r/d", [(numbers[i], f"{secants._r[i] / secants._d[i]:+.2e} gain {secants.gain[i]:.2f}") for i in k])
-                for ridge in np.flatnonzero(secants.falling()):
-                    others = found[found < 0.5 * self._free]
-                    if ridge not in self._opened and len(others) and __import__("os").environ.get("FALL"):
-                        d_eq[ridge] = np.median(others)
-                        self._opened.add(ridge)
-                self.set_air_gaps(d_eq)
+                stop = EXACT if secants.settled(_NEARLY) else _LATER
+                self.set_air_gaps(secants.step())
         ridge, error = self.history.ridges[-1], self.history.errors[-1]
         where = f"a contact error of {error:.2g} m" if scales else f"ridge {ridge}"
         raise NotConverged(f"COUPLING_CAP at {where}", False, cycling=not scales)

@@ -37,31 +37,30 @@ DEFAULTS = {
     "pc_factor_mat_solver_type": "mumps",
     "mat_mumps_icntl_8": "0",  # no scaling, which takes a sixth of a factorisation: all rows are forces over lengths
 }
-import os
-_CONTRACTS = float(os.environ.get('CONTRACTS', 0.5))  # reduction of the residual an iteration below which a factorisation is kept
+_CONTRACTS = 0.5  # reduction of the residual an iteration below which a factorisation is kept
 _DEEPEST = 1e-6  # m, how deep open skin may be driven by one of the first steps
 _LIMITED_STEPS = 6
 _HALVINGS = 5  # of a step that would turn elements inside out or
 _GROWS = 10.0  # make the residual grow more than this
 _ROUNDINGS = 4.0  # units of roundoff of the sum of each node's absolute forces, within which a residual may stall,
 _FLOOR = 1e-6  # if that is less than this part of the force scale
-_SHIFT = float(os.environ.get('SHIFT', 2e9))  # Pa/m, eta at the start
-_SHIFT_FALL, _SHIFT_RISE = float(os.environ.get('PTFALL', 0.4)), 4.0  # of eta an iteration
+_SHIFT = 2e9  # Pa/m, eta at the start
+_SHIFT_FALL, _SHIFT_RISE = 0.4, 4.0  # of eta an iteration
 
 
 @dataclass(frozen=True)
-class Accuracy:
-    """With which imbalance an iterate is good enough; the tolerance of the solver always is."""
+class StopRule:
+    """When an iteration by full Newton steps ends: as converged within the solver's tolerance or this, or in vain."""
 
     floor: float = 0.0
-    """Norm of the nodal forces' imbalance over the force scale."""
+    """Norm of the nodal forces' imbalance over the force scale that is small enough."""
     part: float = 0.0
     """The same over that of the first iterate."""
     patience: int = 4
-    """Iterations in which the least residual must fall; fewer where a failure has another remedy than smaller steps."""
+    """Iterations in which the least residual must fall."""
 
 
-EXACT = Accuracy()
+EXACT = StopRule()
 
 
 class Iteration:
@@ -83,7 +82,7 @@ class Iteration:
         self._anderson = Anderson(self.layout.comm)
         self.floor = 0.0
         self._norms: list[float] = []
-        self._enough = EXACT
+        self._stop, self._atol = EXACT, 0.0
         self._shifted = False  # whether the tangent has the shift of pseudo-transient continuation
         self._refused = False  # whether the present iteration stayed where it was
         self._ahead = False  # whether the residual of the next iterate is known
@@ -108,15 +107,15 @@ class Iteration:
         snes.getKSP().setPostSolve(self.tangent.make_relative)
         return snes
 
-    def run(self, x: PETSc.Vec, shifted: bool = False, enough: Accuracy = EXACT) -> int:
+    def run(self, x: PETSc.Vec, shifted: bool = False, stop: StopRule = EXACT) -> int:
         """Iterate from ``x`` and leave the last iterate there; return SNES's reason, positive if it converged.
 
         Args:
             x: unknowns.
             shifted: by pseudo-transient continuation.
-            enough: imbalance with which an iterate is good enough.
+            stop: when the iteration ends.
         """
-        self._shifted, self._enough = shifted, enough
+        self._shifted, self._stop = shifted, stop
         self._anderson.interrupt()
         self.tangent.start()
         self.tangent.stale |= shifted
@@ -149,7 +148,7 @@ class Iteration:
         _, atol, _, most = snes.getTolerances()
         if iteration == 0:
             self._norms, self._refused = [], False
-            self._atol = max(atol, self._enough.part * norms[2], self._enough.floor * self.force_scale)
+            self._atol = max(atol, self._stop.part * norms[2], self._stop.floor * self.force_scale)
             eta.value = _SHIFT if self._shifted else 0.0
         previous = self._norms[-1] if self._norms else np.inf
         norm = norms[2]
@@ -171,7 +170,7 @@ class Iteration:
         if self._shifted and iteration > 0:
             eta.value *= min(norm / previous, _SHIFT_RISE) if norm > previous else _SHIFT_FALL
         # The first norm is left out: it may hold a prescribed displacement not yet made.
-        few = self._enough.patience
+        few = self._stop.patience
         late, early = self._norms[1:][-few:], self._norms[1:][-2 * few : -few]
         if not self._shifted and len(early) == few and min(late) > 0.7 * min(early):
             return reason.DIVERGED_LOCAL_MIN  # cycles
