@@ -19,7 +19,7 @@ def sliding():
 
     def slide(first, last, cycling=False, times=1000, each=0, but_pseudo_transient=False):
         run = over(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), MU_F, 1e11, 1e10, held=False).continuation
-        solver = run.solver
+        solver, run.step_scale = run.solver, 0.5  # of 60 um
         run.run(Target("press", bone_height=-2e-6))
         solve, reached = run.coupling.solve, []
 

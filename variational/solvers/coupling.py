@@ -99,7 +99,6 @@ class Coupling:
         ridges = len(observer.surface.ridge_numbers)
         self.d_eq = np.full(ridges, np.nan) if closure is None else air_gaps(closure, np.zeros(ridges))
         self.gain = np.full_like(self.d_eq, np.nan)
-        self._free = np.nan if closure is None else float(air_gaps(closure, np.zeros(1))[0])
 
     def set_air_gaps(self, d_eq: Array) -> None:
         """Impose air gaps (m), shape (ridges,)."""
@@ -155,7 +154,8 @@ class Coupling:
         formulation = problem.interface.formulation
         charged = self.closure is not None and float(problem.voltage.value) != 0.0
         contact_history = problem.history
-        secants, numbers = Secants(self.d_eq, self.gain, self._free), self.observer.surface.ridge_numbers
+        free = np.inf if self.closure is None else float(air_gaps(self.closure, np.zeros(1))[0])
+        secants, numbers = Secants(self.d_eq, self.gain, free), self.observer.surface.ridge_numbers
         stop = _FIRST if charged else EXACT
         for iteration in range(self.cap):
             found, state = self._iterate(pseudo_transient, stop, secants if iteration else None)

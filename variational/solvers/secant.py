@@ -90,15 +90,15 @@ class Secants:
         near = (opened > _OPENS) | (np.nan_to_num(self.gain) > _NEARLY) & (self._r > 0)
         alone = bool((self._d > self._start / _OPENED).all()) and bool(near.any())
         most = np.arange(len(opened)) == int(np.argmax(np.where(near, opened, 0.0)))
-        return most & alone & ~self._opened
+        return most & alone & ~self._opened & (self._d < self._free)
 
     def without_leaving(self, d: Array) -> Array:
         """Return air gaps (m) with that of one without contact for the ridge that is :meth:`leaving`."""
         return self._open(d, self.leaving())
 
     def _open(self, d: Array, ridges: NDArray[np.bool_]) -> Array:
-        """Return air gaps (m) with that of a ridge without contact for some ridges, once a loop each."""
-        ridges = ridges & ~self._opened
+        """Return air gaps (m) with that of a ridge without contact, where it is wider, for some; once a loop each."""
+        ridges = ridges & ~self._opened & (d < self._free)
         self._opened |= ridges
         return np.where(ridges, self._free, d)
 
