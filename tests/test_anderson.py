@@ -58,7 +58,7 @@ def test_differences_of_another_factorisation_are_forgotten(linear):
 
 def test_no_difference_is_drawn_between_other_equations(linear):
     """An interruption leaves out the difference that would mix two loads, and keeps the ones before."""
-    anderson, (matrix, right, kept) = Anderson(MPI.COMM_WORLD), linear
+    anderson, (_, right, kept) = Anderson(MPI.COMM_WORLD), linear
     first, second = right[ROWS], (kept @ right)[ROWS]
     assert anderson.correction(first, first, first) is None
     anderson.interrupt()
