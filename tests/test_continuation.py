@@ -29,12 +29,13 @@ def sliding():
                 times -= 1
                 raise NotConverged("TEST", False, cycling=cycling)
             solve(pseudo_transient)
-            solver.counts.factorisations += each
+            solver.counts.factorisations += each if solver.control.x > 1e-9 else 0
 
         run.coupling.solve = failing
+        run.run(Target("back", bone_x=-30e-6))
         run.on_accept = lambda target, part, attempt: reached.append((solver.control.x, attempt))
         run.run(Target("slide", bone_x=0.6e-3))
-        return reached
+        return reached[1:]  # without the shorter step with which a slide begins
 
     return slide
 

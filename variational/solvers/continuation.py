@@ -200,7 +200,9 @@ class Continuation:
         """Reach a target; return False where ``on_accept`` stopped the path before."""
         way = _Way(self._now, target)
         largest = way.largest_step(self.step_scale)
-        part, step, uncut, cut = 0.0, largest, 0, 0
+        # A slide begins with a shorter step: under a light load it may be over within one.
+        slides = target.bone_x not in (None, self._now.control.x)
+        part, step, uncut, cut = 0.0, largest / 2 if slides else largest, 0, 0
         first, most = self.steps, _FEW_STEPS + int(np.ceil(_MANY_STEPS / largest))
         while part < 1:
             if self.steps - first >= most:

@@ -128,7 +128,7 @@ class Coupling:
         Without attraction the skin of a ridge that lets go springs back, to a state that full Newton steps find. On the
         way there at its present air gap the tangent is not positive.
         """
-        leaving = bool(secants.leaving().any())
+        leaving = bool(secants.leaving(self.d_eq).any())
         if self.solver.attempt(replace(stop, patience=_HASTE) if leaving else stop):
             return
         if leaving:

@@ -81,20 +81,20 @@ class Secants:
         lets_go = (self.gain >= 1) & (self._r > _OPENING * self._d) & (self._d > _OPENED * self._start)
         return self._open(self._d + np.clip(step, -self._d / 3, self._d / 2), lets_go)
 
-    def leaving(self) -> NDArray[np.bool_]:
-        """Return the ridge, if any, that lets go of the screen when the skin does not find an equilibrium.
+    def leaving(self, d: Array) -> NDArray[np.bool_]:
+        """Return the ridge, if any, that lets go of the screen when the skin finds no equilibrium at air gaps ``d`` (m).
 
         It is the one whose air gap opened most in this loop. There is none while another ridge comes down.
         """
-        opened = np.where(self._r > 0, self._d / self._start, 0.0)
+        opened = np.where(self._r > 0, d / self._start, 0.0)
         near = (opened > _OPENS) | (np.nan_to_num(self.gain) > _NEARLY) & (self._r > 0)
-        alone = bool((self._d > self._start / _OPENED).all()) and bool(near.any())
+        alone = bool((d > self._start / _OPENED).all()) and bool(near.any())
         most = np.arange(len(opened)) == int(np.argmax(np.where(near, opened, 0.0)))
-        return most & alone & ~self._opened & (self._d < self._free)
+        return most & alone & ~self._opened & (d < self._free)
 
     def without_leaving(self, d: Array) -> Array:
         """Return air gaps (m) with that of one without contact for the ridge that is :meth:`leaving`."""
-        return self._open(d, self.leaving())
+        return self._open(d, self.leaving(d))
 
     def _open(self, d: Array, ridges: NDArray[np.bool_]) -> Array:
         """Return air gaps (m) with that of a ridge without contact, where it is wider, for some; once a loop each."""
