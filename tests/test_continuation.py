@@ -19,7 +19,7 @@ def sliding():
 
     def slide(first, last, cycling=False, times=1000, each=0, but_pseudo_transient=False):
         run = over(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), MU_F, 1e11, 1e10, held=False).continuation
-        solver = run.solver
+        solver, run.step_scale = run.solver, 0.5  # of 60 um
         run.run(Target("press", bone_height=-2e-6))
         solve, reached = run.coupling.solve, []
 
@@ -29,12 +29,13 @@ def sliding():
                 times -= 1
                 raise NotConverged("TEST", False, cycling=cycling)
             solve(pseudo_transient)
-            solver.counts.factorisations += each
+            solver.counts.factorisations += each if solver.control.x > 1e-9 else 0
 
         run.coupling.solve = failing
+        run.run(Target("back", bone_x=-30e-6))
         run.on_accept = lambda target, part, attempt: reached.append((solver.control.x, attempt))
         run.run(Target("slide", bone_x=0.6e-3))
-        return reached
+        return reached[1:]  # without the shorter step with which a slide begins
 
     return slide
 

@@ -210,7 +210,7 @@ def charged(request):
     rim = body.facet_tags.find(tags.BONE_RIM)
     solver = Solver(Equations(solver.problem, rim, [(2 * sides, 0.0)]), P_EXT * SIDE)
     model = FlatRidge(p_floor)
-    path = Path(solver, model.closure, touch_depth=5e-9, step_scale=STEP / 0.25)
+    path = Path(solver, model.closure, touch_depth=5e-9, step_scale=STEP / 0.5)
     path.to("press", f_ext=P_EXT * SIDE)
     path.to("charge", voltage=most)
     path.to("discharge", voltage=0.0)

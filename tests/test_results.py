@@ -128,7 +128,8 @@ TURN = {"name": "turn", "bone_x": 0.258e-3}  # after 0.26 mm: too little for a s
 @pytest.mark.parametrize(("more", "load"), [([CHARGE, SLIDE_ON], "slide on"), ([TURN], "slide")])
 def test_errors_are_estimated_of_the_headline(more, load):
     """The states kept for it are the last full slip that was held and normal contact, not those of another load."""
-    scene = from_data(LEAN | {"history": [PRESS, SLIDE, *more]})
+    numerics = LEAN.get("numerics", {}) | {"step_scale": 0.5}
+    scene = from_data(LEAN | {"history": [PRESS, SLIDE, *more], "numerics": numerics})
     simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD, lambda step, done: keeper.record(step))
     keeper = StateRecorder(simulation)
     simulation.run()

@@ -66,7 +66,7 @@ def test_kept_factorisation_never_raises_the_residual(body):
         rises.extend(trace.rises())
         kept.extend(trace.kept[1:])
 
-    walk(solver, [Control(0.0, -20e-6 * k) for k in (1, 2)], after=note)
+    walk(solver, [Control(0.0, -10e-6 * k) for k in (1, 2, 3, 4)], after=note)
     walk(solver, [Control(20e-6 * k, -40e-6) for k in (1, 2, 3)], after=note)
     assert rises == []
     assert sum(kept) > 5
@@ -111,7 +111,7 @@ def test_guess_of_a_load(flat, slipping, guess):
 def test_other_guess_is_tried_where_points_may_be_on_the_cone(flat, monkeypatch, mu_f, on_cone, runs):
     solver, guesses = make(flat, mu_f), []
 
-    def lost(x):
+    def lost(x, shifted, stop):
         guesses.append(float(solver.problem.guess.value))
         return -1
 

@@ -36,6 +36,7 @@ from variational.roughness.bam import BearingArea
 from variational.solvers.continuation import Attempt, Continuation, StepFailed, Target
 from variational.solvers.coupling import Coupling
 from variational.solvers.failure import NotConverged
+from variational.solvers.iteration import EXACT, StopRule
 from variational.solvers.newton import Solver
 
 _H_0 = 0.514e-6  # m
@@ -46,8 +47,8 @@ _ALPHA = -14.53
 class NewtonAlone(Solver):
     """Never turns to pseudo-transient continuation, whoever asks for it."""
 
-    def solve(self, pseudo_transient: bool = False) -> None:
-        super().solve(pseudo_transient=False)
+    def solve(self, pseudo_transient: bool = False, stop: StopRule = EXACT, tried: bool = False) -> None:
+        super().solve(False, stop, tried)
 
 
 class Recorder(Coupling):

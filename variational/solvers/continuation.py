@@ -42,7 +42,7 @@ class Target:
 
 
 # How far one step may go: parts of sqrt(f_ext) and of U^2, and metres of the bone.
-_FORCE, _VOLTAGE, _SINK, _SLIDE = 0.067, 0.25, 40e-6, 60e-6
+_FORCE, _VOLTAGE, _SINK, _SLIDE = 0.134, 0.5, 40e-6, 120e-6
 _SMALLEST = 1e-3  # step below which a load is given up, over the largest
 _MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on when the bone moves
 _STEP_OVER = 1.5  # step tried where the loop over the scales cycles, over the one that led there
@@ -200,7 +200,9 @@ class Continuation:
         """Reach a target; return False where ``on_accept`` stopped the path before."""
         way = _Way(self._now, target)
         largest = way.largest_step(self.step_scale)
-        part, step, uncut, cut = 0.0, largest, 0, 0
+        # A slide begins with a shorter step: under a light load it may be over within one.
+        slides = target.bone_x not in (None, self._now.control.x)
+        part, step, uncut, cut = 0.0, largest / 2 if slides else largest, 0, 0
         first, most = self.steps, _FEW_STEPS + int(np.ceil(_MANY_STEPS / largest))
         while part < 1:
             if self.steps - first >= most:

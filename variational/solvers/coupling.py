@@ -23,7 +23,7 @@ The tangent of the macroscale is that of frozen air gaps. When a later iteration
 fails, it is because a ridge jumps, and pseudo-transient continuation is allowed at once.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from mpi4py import MPI
@@ -33,10 +33,15 @@ from variational.contact.formulation import SurfaceState
 from variational.quantities import Observer
 from variational.roughness.closure import Closure, air_gaps, check
 from variational.solvers.failure import NotConverged
+from variational.solvers.iteration import EXACT, StopRule
 from variational.solvers.newton import Solver
 from variational.solvers.secant import Secants
 
 Array = NDArray[np.float64]
+# Solves at air gaps that change again are not exact: what the first leaves out of balance over the force scale, and the
+_FIRST, _LATER = StopRule(floor=1e-5), StopRule(part=0.03)  # later ones, over what the air gaps' change brought,
+_NEARLY = 1e-3  # until the air gaps' relative error is below this.
+_HASTE = 2  # iterations in which the residual must fall where a ridge lets go, as there is a remedy then
 
 
 @dataclass
@@ -101,9 +106,12 @@ class Coupling:
         if self.closure is not None:
             self.solver.problem.set_air_gaps(d_eq)
 
-    def _iterate(self, pseudo_transient: bool) -> tuple[Array, SurfaceState]:
+    def _iterate(self, pseudo_transient: bool, stop: StopRule, secants: Secants | None) -> tuple[Array, SurfaceState]:
         """Solve at the current air gaps; return the air gaps by the closure (m), and the surface."""
-        self.solver.solve(pseudo_transient)
+        if secants is None:
+            self.solver.solve(pseudo_transient, stop)
+        else:
+            self._solve_again(stop, secants)
         with self.solver.timings.phase("coupling"):
             state = self.observer.state()
             if self.closure is None:
@@ -113,6 +121,21 @@ class Coupling:
             ridge = self.observer.surface.ridge_numbers[int(np.argmin(np.isfinite(d_eq)))]
             raise NotConverged(f"NOT_A_NUMBER in the air gap of ridge {ridge}", False)
         return d_eq, state
+
+    def _solve_again(self, stop: StopRule, secants: Secants) -> None:
+        """Solve from the state at other air gaps, or from where a ridge jumps to.
+
+        Without attraction the skin of a ridge that lets go springs back, to a state that full Newton steps find. On the
+        way there at its present air gap the tangent is not positive.
+        """
+        leaving = bool(secants.leaving(self.d_eq).any())
+        if self.solver.attempt(replace(stop, patience=_HASTE) if leaving else stop):
+            return
+        if leaving:
+            self.set_air_gaps(secants.without_leaving(self.d_eq))
+            if self.solver.attempt(_LATER):
+                return
+        self.solver.solve(pseudo_transient=True, tried=True)
 
     def solve(self, pseudo_transient: bool = False) -> None:
         """Find the state in which air gaps and pressures agree, and the contact's conditions hold.
@@ -131,10 +154,12 @@ class Coupling:
         formulation = problem.interface.formulation
         charged = self.closure is not None and float(problem.voltage.value) != 0.0
         contact_history = problem.history
-        secants, numbers = Secants(self.d_eq, self.gain), self.observer.surface.ridge_numbers
+        free = np.inf if self.closure is None else float(air_gaps(self.closure, np.zeros(1))[0])
+        secants, numbers = Secants(self.d_eq, self.gain, free), self.observer.surface.ridge_numbers
+        stop = _FIRST if charged else EXACT
         for iteration in range(self.cap):
+            found, state = self._iterate(pseudo_transient, stop, secants if iteration else None)
             d = self.d_eq
-            found, state = self._iterate(pseudo_transient or iteration > 0)
             r = found - d if charged else np.zeros_like(d)  # without attraction the air gaps do not act
             error = formulation.error(state, contact_history, problem.interface.friction)
             self.history.errors.append(problem.mesh.comm.allreduce(error, op=MPI.MAX))
@@ -146,7 +171,7 @@ class Coupling:
             self.history.jumped = {numbers[k] for k in np.flatnonzero(secants.jumped())}
             scales = not charged or secants.settled(self.tolerance)
             contact = self.history.errors[-1] <= formulation.tolerance
-            if scales and contact:
+            if scales and contact and stop == EXACT:
                 if charged:
                     self.gain = secants.gain
                 else:
@@ -155,7 +180,8 @@ class Coupling:
             if not contact:
                 contact_history = formulation.corrected(state, contact_history)
                 problem.correct_history(contact_history)
-            if not scales:
+            if charged:
+                stop = EXACT if secants.settled(_NEARLY) else _LATER
                 self.set_air_gaps(secants.step())
         ridge, error = self.history.ridges[-1], self.history.errors[-1]
         where = f"a contact error of {error:.2g} m" if scales else f"ridge {ridge}"

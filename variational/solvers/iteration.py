@@ -13,10 +13,13 @@ Pseudo-transient continuation (Kelley and Keyes 1998, doi 10.1137/S0036142996304
 falls. Every iteration has a tangent of its own then.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from variational.solvers.anderson import Anderson
 from variational.solvers.equations import OUTSIDE, Equations
 from variational.solvers.tangent import Tangent
 from variational.solvers.timing import Counts
@@ -34,7 +37,6 @@ DEFAULTS = {
     "pc_factor_mat_solver_type": "mumps",
     "mat_mumps_icntl_8": "0",  # no scaling, which takes a sixth of a factorisation: all rows are forces over lengths
 }
-_PATIENCE = 4  # iterations in which the least residual must fall
 _CONTRACTS = 0.5  # reduction of the residual an iteration below which a factorisation is kept
 _DEEPEST = 1e-6  # m, how deep open skin may be driven by one of the first steps
 _LIMITED_STEPS = 6
@@ -44,6 +46,21 @@ _ROUNDINGS = 4.0  # units of roundoff of the sum of each node's absolute forces,
 _FLOOR = 1e-6  # if that is less than this part of the force scale
 _SHIFT = 2e9  # Pa/m, eta at the start
 _SHIFT_FALL, _SHIFT_RISE = 0.4, 4.0  # of eta an iteration
+
+
+@dataclass(frozen=True)
+class StopRule:
+    """When an iteration by full Newton steps ends: as converged within the solver's tolerance or this, or in vain."""
+
+    floor: float = 0.0
+    """Norm of the nodal forces' imbalance over the force scale that is small enough."""
+    part: float = 0.0
+    """The same over that of the first iterate."""
+    patience: int = 4
+    """Iterations in which the least residual must fall."""
+
+
+EXACT = StopRule()
 
 
 class Iteration:
@@ -62,8 +79,10 @@ class Iteration:
         self.equations, self.layout, self.counts = equations, equations.layout, counts
         self.tangent, self.force_scale = Tangent(equations, counts), force_scale
         self.f, self._next_x, self._next_f = (self.layout.create_vector() for _ in range(3))
+        self._anderson = Anderson(self.layout.comm)
         self.floor = 0.0
         self._norms: list[float] = []
+        self._stop, self._atol = EXACT, 0.0
         self._shifted = False  # whether the tangent has the shift of pseudo-transient continuation
         self._refused = False  # whether the present iteration stayed where it was
         self._ahead = False  # whether the residual of the next iterate is known
@@ -88,14 +107,16 @@ class Iteration:
         snes.getKSP().setPostSolve(self.tangent.make_relative)
         return snes
 
-    def run(self, x: PETSc.Vec, shifted: bool = False) -> int:
+    def run(self, x: PETSc.Vec, shifted: bool = False, stop: StopRule = EXACT) -> int:
         """Iterate from ``x`` and leave the last iterate there; return SNES's reason, positive if it converged.
 
         Args:
             x: unknowns.
             shifted: by pseudo-transient continuation.
+            stop: when the iteration ends.
         """
-        self._shifted = shifted
+        self._shifted, self._stop = shifted, stop
+        self._anderson.interrupt()
         self.tangent.start()
         self.tangent.stale |= shifted
         seconds = self.equations.timings.seconds
@@ -127,13 +148,14 @@ class Iteration:
         _, atol, _, most = snes.getTolerances()
         if iteration == 0:
             self._norms, self._refused = [], False
+            self._atol = max(atol, self._stop.part * norms[2], self._stop.floor * self.force_scale)
             eta.value = _SHIFT if self._shifted else 0.0
         previous = self._norms[-1] if self._norms else np.inf
         norm = norms[2]
         if not self._refused:
             self._norms.append(norm)
         self.floor = 0.0
-        if norm <= atol:
+        if norm <= self._atol:
             return reason.CONVERGED_FNORM_ABS
         if norm >= OUTSIDE / 2:
             return reason.DIVERGED_FUNCTION_DOMAIN
@@ -148,8 +170,9 @@ class Iteration:
         if self._shifted and iteration > 0:
             eta.value *= min(norm / previous, _SHIFT_RISE) if norm > previous else _SHIFT_FALL
         # The first norm is left out: it may hold a prescribed displacement not yet made.
-        late, early = self._norms[1:][-_PATIENCE:], self._norms[1:][-2 * _PATIENCE : -_PATIENCE]
-        if not self._shifted and len(early) == _PATIENCE and min(late) > 0.7 * min(early):
+        few = self._stop.patience
+        late, early = self._norms[1:][-few:], self._norms[1:][-2 * few : -few]
+        if not self._shifted and len(early) == few and min(late) > 0.7 * min(early):
             return reason.DIVERGED_LOCAL_MIN  # cycles
         return reason.ITERATING
 
@@ -177,7 +200,13 @@ class Iteration:
         return float(_ROUNDINGS * np.finfo(float).eps * np.sqrt(total))
 
     def _limit(self, x: PETSc.Vec, step: PETSc.Vec) -> bool:
-        """Shorten a step to where its tangent still holds, or refuse it."""
+        """Accelerate a step, shorten it to where its tangent still holds, or refuse it."""
+        if not self.tangent.kept:
+            self._anderson.forget()
+        if not self._shifted:
+            more = self._anderson.correction(x.array_r, self.f.array_r, step.array_r)
+            if more is not None:
+                step.array_w[:] += more
         if len(self._norms) <= _LIMITED_STEPS:
             step.scale(self._until_deep(x, step))
         norm = self._look_ahead(x, step)
@@ -188,6 +217,7 @@ class Iteration:
             norm = self._look_ahead(x, step)
         self._refused = self.tangent.kept and len(self._norms) > 1 and norm > self._norms[-1]
         if self._refused:
+            self._anderson.interrupt()
             step.set(0.0)
             self._look_ahead(x, step)
         self._ahead = True

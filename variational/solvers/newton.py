@@ -1,7 +1,8 @@
 r"""The equilibrium for given loads: Newton's method, and what is tried where it fails.
 
 The unknowns are the bone's translation and the displacement relative to it (:mod:`~variational.problem`). The first
-tangent of a load is always that of the state it starts from, so that the first iterate is the tangent predictor.
+tangent of a load is that of the state it starts from, so that the first iterate is the tangent predictor; along a slide
+it is the last one, which goes on serving while it serves.
 :mod:`~variational.solvers.iteration` has the rules for steps.
 
 Where the iteration fails, points on the friction cone are first taken for slipping instead of sticking, or the other
@@ -19,7 +20,7 @@ from petsc4py import PETSc
 from variational.problem import SLIPS, STICKS
 from variational.solvers.equations import OUTSIDE, Control, Equations
 from variational.solvers.failure import snes_failure
-from variational.solvers.iteration import Iteration
+from variational.solvers.iteration import EXACT, Iteration, StopRule
 from variational.solvers.timing import Counts
 
 Array = NDArray[np.float64]
@@ -54,6 +55,7 @@ class Solver:
         self.force_scale, self.counts, self.timings = force_scale, Counts(), equations.timings
         self.x = self.layout.create_vector()
         self.iteration = Iteration(equations, self.counts, force_scale, tolerance)
+        self._solved = False  # whether the last solve ended in an equilibrium
         self._on_cone = True  # whether points may be on the friction cone
         self._skin_rows_x = equations.skin_rows([0])
 
@@ -119,7 +121,10 @@ class Solver:
         A.destroy()
 
     def new_load(self, control: Control, voltage: float, slipping: bool = False, on_cone: bool = True) -> None:
-        """Prescribe a load; the next solve starts from the tangent of the present state, not from a kept one.
+        """Prescribe a load.
+
+        The next solve starts from the tangent of the present state; along a slide whose last solve ended in an
+        equilibrium, from a kept one.
 
         Args:
             control: what is prescribed of the bone.
@@ -127,24 +132,49 @@ class Solver:
             slipping: points on the friction cone are first taken for slipping on, not for sticking.
             on_cone: whether there are any, as the last accepted state of a path leaves; else no other guess is tried.
         """
+        guess = SLIPS if slipping else STICKS
+        same = self.problem.voltage.value == voltage and self.problem.guess.value == guess
+        self.iteration.tangent.stale |= not (self._solved and same and self.control.x != control.x)
         self.control, self.problem.voltage.value = control, voltage
-        self.problem.guess.value = SLIPS if slipping else STICKS
+        self.problem.guess.value = guess
         self._on_cone = on_cone
-        self.iteration.tangent.stale = True
 
-    def solve(self, pseudo_transient: bool = False) -> None:
+    def attempt(self, stop: StopRule) -> bool:
+        """Iterate from ``x`` by full Newton steps alone.
+
+        Args:
+            stop: when the iteration ends.
+
+        Returns:
+            Whether it ended in an equilibrium; else ``x`` is where it was.
+        """
+        start = self.x.array_r.copy()
+        self._solved = self.iteration.run(self.x, stop=stop) > 0
+        if not self._solved:
+            self.x.array_w[:] = start
+            self.iteration.tangent.stale = True
+        return self._solved
+
+    def solve(self, pseudo_transient: bool = False, stop: StopRule = EXACT, tried: bool = False) -> None:
         """Find the equilibrium near ``x`` for the current loads and leave it in ``x`` and the problem's u.
 
         Args:
             pseudo_transient: repeat as pseudo-transient continuation what full Newton steps do not manage, instead of
                 with the other guess for the points on the friction cone.
+            stop: when full Newton steps end.
+            tried: whether full Newton steps from ``x`` have just failed, see :meth:`attempt`.
 
         Raises:
             NotConverged: with SNES's reason; ``x`` is then the last iterate.
         """
-        start, run = self.x.array_r.copy(), self.iteration.run
+        start = self.x.array_r.copy()
+        self._solved = False
+
+        def run(x: PETSc.Vec, shifted: bool = False) -> int:
+            return self.iteration.run(x, shifted, EXACT if shifted else stop)
+
         self.equations.inverted, self.equations.not_a_number = False, ""
-        reason = run(self.x)
+        reason = -1 if tried else run(self.x)
         friction = self.problem.anchor is not None
         if reason <= 0 and not pseudo_transient and friction and self._on_cone:  # the other guess, which is then kept
             self.x.array_w[:] = start
@@ -159,6 +189,7 @@ class Solver:
             reason = run(self.x, shifted=True)
         if reason <= 0:
             raise snes_failure(self.iteration.snes, self.equations.inverted, self.equations.not_a_number)
+        self._solved = True
 
     def _ease(self, start: Array) -> int:
         """Solve with softened tangential springs and stiffen them step by step; return SNES's reason.
