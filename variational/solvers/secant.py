@@ -82,7 +82,7 @@ class Secants:
         return self._open(self._d + np.clip(step, -self._d / 3, self._d / 2), lets_go)
 
     def leaving(self, d: Array) -> NDArray[np.bool_]:
-        """Return the ridge, if any, that lets go of the screen when the skin finds no equilibrium at air gaps ``d`` (m).
+        """Return the ridge, if any, that lets go when the skin finds no equilibrium at air gaps ``d`` (m).
 
         It is the one whose air gap opened most in this loop. There is none while another ridge comes down.
         """
