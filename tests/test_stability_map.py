@@ -162,7 +162,7 @@ def test_failure_is_recorded_with_its_reason(tiny):
 
 @pytest.mark.parametrize("allowed", [True, False])
 def test_newton_alone_is_never_pseudo_transient(monkeypatch, allowed):
-    """Of every solve of a path with voltage, whose later iterations of the loop ask for it where Newton's steps fail."""
+    """Of every solve of a path with voltage, also where a later iteration of the loop finds no equilibrium."""
     asked, newton = set(), Solver.solve
 
     def solve_and_note(self, pseudo_transient=False, *more, **how):

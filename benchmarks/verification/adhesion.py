@@ -117,7 +117,7 @@ def maugis(small: bool) -> list[Row]:
     formulation = formulations(young / (unit / part), 1e-11)["penalty"]
     interface = Interface(formulation, 0.0, h_0, constant_attraction(0.2))
     build, scale = pad(unit / part, 4 * part, radius, 200 * unit), e_star * unit**2 / radius
-    run = over_screen(build, SaintVenant(young, nu), interface, scale, touch_depth=0.5e-6, step_scale=4.0)
+    run = over_screen(build, SaintVenant(young, nu), interface, scale, touch_depth=0.5e-6, step_scale=2.0)
     run.run(Target("press", bone_height=-0.5e-6))
     run.run(Target("charge", voltage=float(np.sqrt(2 * sigma_0 * h_0**2 / VACUUM_PERMITTIVITY))))
     mesh = f"P2, facets of {unit / part * 1e6:g} um"

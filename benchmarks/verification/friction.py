@@ -91,7 +91,7 @@ def partial_slip(small: bool) -> list[Row]:
     # Pressing moves the surface sideways so little that one step will do.
     run = over_screen(
         pad(size, int(np.ceil(1.3 * facets)), RADIUS, 300 * HALF_WIDTH), solid, interface, FORCE,
-        element="P2-P1", tolerance=1e-6, touch_depth=0.5e-6, step_scale=15.0,
+        element="P2-P1", tolerance=1e-6, touch_depth=0.5e-6, step_scale=7.5,
     )  # fmt: skip
     run.run(Target("press", f_ext=FORCE))
     mesh = f"P2-P1, facets of a / {facets + 0.5:g}"

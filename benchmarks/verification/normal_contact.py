@@ -67,7 +67,7 @@ def patch(small: bool) -> list[Row]:
 def press(build: Callable[[], float], name: str, size: float, force: float = FORCE, **options: Any) -> Continuation:
     """Return a body pressed by a force (N/m), in one step, by the formulation of a name for facets of a size (m)."""
     interface = Interface(formulations(YOUNG / size, 1e-11)[name], 0.0, _H_0)
-    run = over_screen(build, _SOLID, interface, force, step_scale=15.0, **({"touch_depth": 0.5e-6} | options))
+    run = over_screen(build, _SOLID, interface, force, step_scale=7.5, **({"touch_depth": 0.5e-6} | options))
     run.run(Target("press", f_ext=force))
     return run
 
