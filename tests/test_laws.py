@@ -10,10 +10,9 @@ import pytest
 import ufl
 from mpi4py import MPI
 
-from fingerpad.model import touching
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.reduced import cylinders, ridge_cell, smooth
+from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene, SceneError, from_data, laws
 from fingerpad.scene.law_source import digest
 from fingerpad.scene.laws import Laws, used
@@ -24,8 +23,7 @@ from variational.materials.neo_hooke import NeoHooke
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
 from variational.roughness.bam import BearingArea
-from variational.roughness.closure import AirGap, Closure, check
-from variational.solvers.coupling import Coupling
+from variational.roughness.closure import AirGap, Closure
 
 DERJAGUIN = Derjaguin(0.3, tau_0=5e3)
 
@@ -267,124 +265,6 @@ class OfArrays(Mine):
 def test_energy_that_ufl_cannot_hold_is_refused():
     with pytest.raises(SceneError, match="energy of OfArrays.*, to be written with arithmetic and ufl's functions"):
         Scene().with_laws(materials={"dermis": OfArrays(2.5e3, 6e4)})
-
-
-# -- closures --------------------------------------------------------------------------------------------------
-class Shape(Held):
-    def __call__(self, p_c):
-        return AirGap(np.array([1e-6, 1e-6]))
-
-
-class Plain(Held):
-    def __call__(self, p_c):
-        return np.full_like(p_c, 1e-6)
-
-
-class Failing(Held):
-    def __call__(self, p_c):
-        raise KeyError("no such pressure")
-
-
-class Speechless(Held):
-    def state(self, p_c, voltage):
-        return None
-
-
-@pytest.mark.parametrize(
-    ("closure", "sentence"),
-    [
-        (Shape(), r"closure Shape returns air gaps of shape \(2,\) for pressures of shape"),
-        (Plain(), "closure Plain returns ndarray; it must return an AirGap"),
-        (Failing(), "closure Failing cannot be evaluated: .*no such pressure"),
-        (Speechless(), "closure Speechless returns None as a ridge's state; it must be text"),
-        (lambda p_c: p_c, "it must be a Closure, with p_c in and an AirGap out"),
-        (Held(0.0), "an air gap of 0 m at a pressure of 0 Pa; it must be finite and greater than 0"),
-    ],
-)
-def test_what_is_no_closure_is_refused(closure, sentence):
-    with pytest.raises(ValueError, match=sentence):
-        check(closure)
-    with pytest.raises(ValueError, match=sentence):
-        Coupling(None, None, closure)
-
-
-def test_closures_of_the_package_are_closures():
-    check(BearingArea(0.5e-6))
-    check(Held())
-    assert Held().state(1e4, 200.0) == ""
-
-
-# -- reduced models --------------------------------------------------------------------------------------------
-def test_cylinders_take_any_friction_law():
-    """f_T is the limit at each state's mean pressure over its length. Tolerance: roundoff."""
-    for law in (DERJAGUIN, OWN["friction"], Coulomb(0.25)):
-        slip = cylinders.solve(Scene().with_laws(friction=law)).full_slip
-        length = slip.contact_length
-        assert slip.f_t == pytest.approx(law.limit(slip.f_contact / length) * length, rel=1e-14)
-        assert slip.mu_app == pytest.approx(slip.f_t / 75.0, rel=1e-14)
-
-
-def test_cylinders_take_any_closure():
-    """Each ridge is Maugis's cylinder at the closure's own gap."""
-    found = cylinders.solve(Scene().with_laws(closure=Held()))
-    assert found.record["slip_d_eq"] == 2e-6
-    assert found.full_slip.f_electrostatic != cylinders.solve(Scene()).full_slip.f_electrostatic
-
-
-def test_cylinders_know_the_default_fingers_lengths_alone():
-    scene = Scene().with_laws(materials={"stratum_corneum": NeoHooke(1e5)})
-    with pytest.raises(SceneError, match="materials are given for stratum_corneum, and a contact length is known of"):
-        cylinders.solve(scene)
-    given = cylinders.given(1.5e-3, 15)
-    own, default = (cylinders.solve(one, given).full_slip.f_electrostatic for one in (scene, Scene()))
-    assert own != default
-
-
-def test_modulus_of_the_skin_is_the_given_materials():
-    """The same solid given as a key and as an object has the same modulus. Tolerance: roundoff."""
-    own = Scene().with_laws(materials={"stratum_corneum": Ogden(86.76e3, -14.53, 0.48)})
-    assert laws.skin_modulus(own) == pytest.approx(laws.skin_modulus(Scene()), rel=1e-12)
-
-
-def test_smooth_finger_takes_a_coefficient_alone(tmp_path):
-    with pytest.raises(SceneError, match=r"friction is Derjaguin\(.*so that it takes a friction coefficient alone"):
-        smooth.solve(Scene().with_laws(friction=DERJAGUIN), tmp_path)
-
-
-def test_reduced_models_take_no_mesh(tmp_path):
-    file = tmp_path / "mine.msh"
-    file.write_text("", encoding="utf-8")
-    scene = Scene().with_laws(mesh=file)
-    for solve in (cylinders.solve, lambda scene: smooth.solve(scene, tmp_path)):
-        with pytest.raises(SceneError, match="answers for fingers of the scene's own geometry"):
-            solve(scene)
-
-
-def test_layer_of_another_material_between_walls():
-    """The stretch under a pressure is a root of the material's own stress, here of the same solid in another form."""
-    neo, ogden = NeoHooke(2.5e3, 0.48), Ogden(2.5e3, 2.0, 0.48, "abaqus")
-    assert ridge_cell.confined(neo, 2e4) == pytest.approx(ridge_cell.confined(ogden, 2e4), rel=1e-12)
-
-
-def test_tables_of_a_ridge_depend_on_its_laws():
-    names = [
-        json.dumps(ridge_cell._made_of(scene), sort_keys=True)
-        for scene in (
-            Scene(),
-            Scene().with_laws(closure=Held()),
-            Scene().with_laws(materials={"dermis": NeoHooke(2e3)}),
-            Scene().with_laws(friction=0.3),
-        )
-    ]
-    assert len(set(names)) == 4
-    subcutis = Scene().with_laws(materials={"subcutis": NeoHooke(2e3)})  # not in the cell
-    assert json.dumps(ridge_cell._made_of(subcutis), sort_keys=True) == names[0]
-
-
-def test_rule_of_thumb_takes_a_law():
-    """More friction rolls the finger further, by the coefficient at a ridge's pressure."""
-    plain, rough = (touching.by_rule(Scene().with_laws(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
-    assert rough.mesh.touching_half_arc > plain.mesh.touching_half_arc
 
 
 # -- all at once -----------------------------------------------------------------------------------------------

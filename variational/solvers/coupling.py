@@ -20,7 +20,8 @@ iteration corrects air gaps and multipliers, and the loop ends when both agree. 
 voltage, the multipliers are all there is to correct, and a step is mostly one solve.
 
 The tangent of the macroscale is that of frozen air gaps. When a later iteration of a load that was in equilibrium
-fails, it is because a ridge jumps, and pseudo-transient continuation is allowed at once.
+fails, it is because a ridge jumps. If its air gap opens, the ridge is given that of one without contact. Where this
+does not help, pseudo-transient continuation follows at once. Solves at air gaps that change again end inexactly.
 """
 
 from dataclasses import dataclass, field, replace
@@ -169,9 +170,9 @@ class Coupling:
             self.history.ridges.append(numbers[worst])
             secants.record(d, r)
             self.history.jumped = {numbers[k] for k in np.flatnonzero(secants.jumped())}
-            scales = not charged or secants.settled(self.tolerance)
+            scales = not charged or (stop == EXACT and secants.settled(self.tolerance))
             contact = self.history.errors[-1] <= formulation.tolerance
-            if scales and contact and stop == EXACT:
+            if scales and contact:
                 if charged:
                     self.gain = secants.gain
                 else:

@@ -1,0 +1,74 @@
+"""Accuracies that scenes ask for: what is read and refused, how results are printed, where a run starts again finer."""
+
+import signal
+
+import pytest
+
+from fingerpad.io.interrupt import Interrupted
+from fingerpad.richardson import plus_minus
+from fingerpad.runs import attempt
+from fingerpad.runs.batch import key
+from fingerpad.scene import SceneError, from_data
+from tests.test_accuracy import model_of
+from variational.solvers.continuation import StepFailed
+from variational.solvers.failure import NotConverged
+
+
+# -- scenes ------------------------------------------------------------------------------------------------
+def test_scene_without_accuracy_keeps_its_key():
+    """What sweeps have run is found again."""
+    assert "accuracy" not in from_data({}).parameters()
+    assert key(from_data({"accuracy": {"f_t": 0.1}})) != key(from_data({}))
+
+
+def test_scene_that_asks_starts_coarse_where_it_gives_no_size():
+    mesh = from_data({"accuracy": {"mu_app": 0.01}, "mesh": {"growth": 0.3}}).mesh
+    assert (mesh.contact, mesh.growth, mesh.receptor) == (20e-6, 0.3, 40e-6)
+    assert from_data({"accuracy": {"sed": 0.01}}).mesh.receptor == 10e-6, "coarser sites do not see the tips"
+
+
+def test_parameters_in_use_give_the_same_scene():
+    scene = from_data({"accuracy": {"mu_app": 0.01}})
+    assert from_data(scene.parameters()) == scene
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"accuracy": {"mu_app": 1.5}}, "accuracy.mu_app is 1.5; it must be from 1e-06 to 0.5"),
+        ({"accuracy": {"f_n": 0.1}}, "accuracy.f_n is not a key of accuracy"),
+        ({"accuracy": {}}, "accuracy is empty; give at least one of accuracy.mu_app, accuracy.f_t"),
+        (
+            {"accuracy": {"sed": 0.1}, "output": {"receptors": False}},
+            "accuracy.sed is 0.1 and output.receptors is false, without which there are no sites",
+        ),
+    ],
+)
+def test_impossible_accuracy_is_refused(given, words):
+    with pytest.raises(SceneError, match=words):
+        from_data(given)
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [(0.47512, 0.0041, "0.4751 ± 0.0041"), (39.226, 12.0, "39 ± 12"), (1.0, 0.0, "1.000000 ± 0.000000")],
+)
+def test_plus_minus(value, error, text):
+    assert plus_minus(value, error) == text
+
+
+# -- from which mesh ---------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("start", "helps", "finer"),
+    [(20e-6, True, 10e-6), (20e-6, False, None), (8e-6, True, None)],
+)
+@pytest.mark.parametrize("asked", [{"mu_app": 0.01}, {}])
+def test_starts_again_finer_where_the_path_is_lost(asked, start, helps, finer):
+    """With half the contact size; not where that cannot help, nor below the limit."""
+    model = model_of(({"accuracy": asked} if asked else {}) | {"mesh": {"contact": start}})
+    lost: StepFailed = StepFailed("no equilibrium")
+    lost.__cause__ = NotConverged("DIVERGED_LOCAL_MIN" if helps else "NOT_A_NUMBER", False)
+    if asked and not helps:  # any loss of a mesh to start from may be its coarseness
+        lost = Interrupted(signal.SIGTERM, 3)
+    restart = attempt._finer(model, lost)
+    assert (restart and restart.model.mesh.contact) == finer

@@ -1,0 +1,145 @@
+"""Shapes, sizes and meshes that are refused, in one sentence."""
+
+import gmsh
+import pytest
+from mpi4py import MPI
+from pydantic import ValidationError
+
+from geometry import refusals, tags
+from geometry.bodies import block
+from geometry.mesh import load
+from geometry.parameters import Fingertip, MeshSize
+from geometry.profiles import GeometryError, Profiles
+from geometry.sizing import check
+from tests.test_profiles import MM, UM
+
+# -- refusals ------------------------------------------------------------------------------------------
+LENGTHS = [name for name, field in Fingertip.model_fields.items() if field.annotation is float]
+SIZES = ["contact", "receptor", "interface", "coarsest", "growth", "touching_half_arc", "touching_fraction"]
+
+
+@pytest.mark.parametrize("value", [0.0, -1e-3, float("nan"), float("inf"), "thick"])
+@pytest.mark.parametrize("name", LENGTHS)
+def test_length_is_refused(name, value):
+    with pytest.raises(ValidationError, match=name):
+        Fingertip(**{name: value})
+
+
+@pytest.mark.parametrize("value", [0.0, -1e-3, float("nan"), float("inf"), "fine"])
+@pytest.mark.parametrize("name", SIZES)
+def test_size_is_refused(name, value):
+    with pytest.raises(ValidationError, match=name):
+        MeshSize(**{name: value})
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"ridge_count": 54}, "ridge_count is 54; it must be odd"),
+        ({"ridge_count": -1}, "ridge_count"),
+        ({"ridge_profile": (0.0, 0.0)}, "ridge_profile has only zero coefficients"),
+        ({"nail_half_width": 10e-3}, "nail_half_width is 0.01 m; it must be below half the width, 0.01 m"),
+        ({"nail_bed_half_width": 4e-3}, "nail_bed_half_width is 0.004 m; it must be below half the bone_width"),
+        ({"nail_thickness": 2e-3}, "nail_thickness is 0.002 m; it must be below the thickness of the skin layers"),
+        ({"fingernail": 1e-3}, "fingernail"),
+    ],
+)
+def test_parameters_are_refused(given, message):
+    with pytest.raises(ValidationError, match=message):
+        Fingertip(**given)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"ve_thickness": 150e-6}, "SC-VE junction and VE-D junction cross by .*ve_thickness is 0.00015 m"),
+        ({"limiting_ridge_height": 450e-6}, "SC-VE junction and VE-D junction cross by .*ve_thickness is 0.000175 m"),
+        ({"dermis_thickness": 100e-6}, "VE-D junction and D-subcutis junction cross by .*dermis_thickness is 0.0001 m"),
+        (
+            {"merkel_offset": 900e-6},
+            "merkel_offset is 0.0009 m; it must be below the thickness of the viable epidermis",
+        ),
+        (
+            {"meissner_offset": 1e-3, "dermis_thickness": 800e-6},
+            "meissner_offset is 0.001 m; it must be below the height",
+        ),
+        ({"dermis_thickness": 3.8e-3}, "layers end inside the bone at the nail's edge: reduce dermis_thickness"),
+        (
+            {"nail_thickness": 475e-6},
+            "nail_thickness is 0.000475 m, the depth of the SC-VE junction at the nail's edge",
+        ),
+        ({"ridge_count": 101}, "ridge_count 101 of ridge_wavelength 0.000483 m do not fit"),
+        ({"dermis_thickness": 5e-3}, "0.00565 m deep, more than the outline's radius of curvature, 0.0049 m"),
+        ({"bone_centre": 4.5e-3}, "bone touches the skin's layers at .*bone_centre"),
+        ({"bone_width": 17e-3}, "bone touches the skin's layers at .*bone_width"),
+        ({"bone_height": 13e-3}, "bone touches the skin's layers at .*bone_height"),
+        ({"bone_centre": 10.95e-3}, "bone reaches the nail: .* is at 0.01355 m and must stay below .* 0.0135 m"),
+    ],
+)
+def test_fingertip_is_refused(given, message):
+    """What crosses, and the parameter, are named."""
+    with pytest.raises(GeometryError, match=message):
+        refusals.check(Profiles(Fingertip(**given)))
+
+
+def test_default_is_accepted(profiles):
+    refusals.check(profiles)
+
+
+def test_least_thickness_that_is_named_is_the_least():
+    """A micrometre more than the message asks for is accepted, a micrometre less is not."""
+    with pytest.raises(GeometryError) as refusal:
+        refusals.check(Profiles(Fingertip(ve_thickness=100e-6)))
+    least = float(str(refusal.value).split()[-2])
+    refusals.check(Profiles(Fingertip(ve_thickness=least + UM)))
+    with pytest.raises(GeometryError):
+        refusals.check(Profiles(Fingertip(ve_thickness=least - UM)))
+
+
+@pytest.mark.parametrize("wavelength", [460e-6, 483e-6, 500e-6])
+def test_most_ridges_that_are_named_fit(wavelength):
+    """The message gives a number that is accepted, and the next odd one is not."""
+    with pytest.raises(GeometryError) as refusal:
+        refusals.check(Profiles(Fingertip(ridge_count=101, ridge_wavelength=wavelength)))
+    most = int(str(refusal.value).split()[-2])
+    refusals.check(Profiles(Fingertip(ridge_count=most, ridge_wavelength=wavelength)))
+    with pytest.raises(GeometryError):
+        refusals.check(Profiles(Fingertip(ridge_count=most + 2, ridge_wavelength=wavelength)))
+
+
+def test_contact_size_is_refused():
+    with pytest.raises(GeometryError, match="contact size 0.00013 m is too large for a ridge of 0.000483 m"):
+        check(Fingertip(), MeshSize(contact=130e-6))
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("error", [GeometryError, RuntimeError, ZeroDivisionError])
+def test_refusal_reaches_every_rank(error):
+    """A builder runs on one rank; what it raises is raised on all, and the next mesh can be built."""
+
+    def refuse() -> float:
+        raise error("no such body")
+
+    with pytest.raises(error, match="no such body"):
+        load(MPI.COMM_WORLD, refuse)
+    assert not gmsh.isInitialized()
+    assert load(MPI.COMM_WORLD, block(MM, MM, MM)).mesh.topology.index_map(2).size_global == 2
+
+
+@pytest.mark.mpi
+def test_what_gmsh_refuses_is_one_sentence():
+    def refuse() -> float:
+        raise Exception("Invalid boundary mesh (overlapping facets) on surface 1")
+
+    with pytest.raises(
+        GeometryError, match="gmsh cannot mesh the body: Invalid boundary mesh .*; try smaller elements"
+    ):
+        load(MPI.COMM_WORLD, refuse)
+
+
+@pytest.mark.mpi
+def test_missing_tag_is_refused():
+    build = block(MM, MM, 0.5 * MM)
+    load(MPI.COMM_WORLD, build, [tags.STRATUM_CORNEUM, tags.ridge(0), tags.BONE_RIM, tags.SIDES])
+    with pytest.raises(GeometryError, match=f"no cell or facet with tag {tags.NAIL_SURFACE}"):
+        load(MPI.COMM_WORLD, build, [tags.SIDES, tags.NAIL_SURFACE])
