@@ -15,6 +15,7 @@ from variational.roughness.closure import AirGap, Closure
 from variational.solvers.coupling import Coupling
 from variational.solvers.failure import NotConverged
 from variational.solvers.iteration import EXACT
+from variational.solvers.secant import Secants
 from variational.solvers.timing import Timings
 
 H_0, EPS_0, FOLD_VOLTAGE = 0.514e-6, 8.854e-12, 200.0
@@ -157,6 +158,18 @@ def test_only_the_last_solves_are_exact():
     stub.coupling.solve()
     assert EXACT not in stub.stops[:2]
     assert stub.stops[-1] == EXACT
+
+
+def test_ridge_past_its_fold_is_given_the_free_air_gap_at_once():
+    """It is once its gain is seen to be above one while its air gap opens by far; the other ridge stays where it is."""
+    free, gain = 12e-6, np.array([1.5, 0.5])
+    secants = Secants(np.full(2, 2e-6), np.full(2, np.nan), free)
+    d = np.array([2e-6, 2e-6])
+    for _ in range(3):
+        secants.record(d, np.array([0.4e-6, 1e-9]) + (gain - 1) * (d - 2e-6))
+        d = secants.step()
+    assert d[0] == free
+    assert 2e-6 < d[1] < 2e-6 + 2e-9, "its fixed point"
 
 
 @pytest.mark.parametrize("also_free", [False, True])

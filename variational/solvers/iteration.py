@@ -5,8 +5,9 @@ are in contact, and backtracking on the residual only slows it. But the first st
 they would drive open skin deep through the screen, which the tangent of open skin does not resist, and any step is
 halved that would turn elements inside out or send the residual up tenfold. A factorisation serves as long as the
 residual falls to half an iteration, accelerated by :mod:`~variational.solvers.anderson`; a step it proposes is refused
-when the residual would rise, and made anew with the tangent of the present iterate. A residual that stalls within some units of roundoff of the forces that cancel in it is
-at its floor, and the solve ends as converged there; :attr:`Iteration.floor` is that residual.
+when the residual would rise, and made anew with the tangent of the present iterate. A residual that stalls within some
+units of roundoff of the forces that cancel in it is at its floor, and the solve ends as converged there;
+:attr:`Iteration.floor` is that residual.
 
 Pseudo-transient continuation (Kelley and Keyes 1998, doi 10.1137/S0036142996304796): the tangent gets a shift
 :math:`\eta` on the touching skin, an implicit Euler step of :math:`\eta \dot u = -r(u)`, and eta falls as the residual
