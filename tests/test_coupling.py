@@ -212,3 +212,7 @@ def test_past_the_pull_in_fold():
     stub.coupling.solve()
     assert stub.coupling.history.jumped == {0}
     assert stub.coupling.d_eq[0] == pytest.approx(closure.air_gap_at_external(110.0, FOLD_VOLTAGE), rel=1e-6)
+    parts = [stop.part for stop in stub.stops]
+    assert 0.5 in parts, "on its way down the ridge is solved for roughly,"
+    assert any(0 < part < 0.5 for part in parts), "and where it arrives it is not"
+    assert stub.stops[-1] == EXACT

@@ -167,6 +167,22 @@ class Continuation:
         self._now = AcceptedState.of(self.coupling)
         self.steps += 1
 
+    def adopt(self, u: Array, bone: Array, load: tuple[Control, float], d_eq: Array, gain: Array) -> None:
+        """Accept a state of equilibrium that another solver has found; collective.
+
+        Args:
+            u: displacement (m) of all nodes of this rank, shape (nodes, 2).
+            bone: the bone's translation (m), shape (2,).
+            load: control of the bone, and voltage (V).
+            d_eq: equivalent air gaps (m), shape (ridges,).
+            gain: see :attr:`variational.solvers.coupling.Coupling.gain`.
+        """
+        self.solver.new_load(replace(load[0]), load[1])
+        self.coupling.set_air_gaps(d_eq)
+        self.coupling.gain = gain
+        self.solver.adopt(u, bone)
+        self._accept()
+
     # -- targets ---------------------------------------------------------------------------------------
     def run(self, target: Target) -> None:
         """Reach a target, or stop on the way where ``on_accept`` returns True.
