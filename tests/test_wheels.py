@@ -4,8 +4,8 @@ import os
 import re
 import shutil
 import subprocess
+import sysconfig
 from importlib.metadata import distributions
-from pathlib import Path
 
 import pytest
 
@@ -13,10 +13,11 @@ from tests.test_lint import ROOT, script
 
 VERSION = re.search(r"^version=(\S+)$", (ROOT / "environment/wheels").read_text(), re.MULTILINE)[1]
 PLACE = "usr/local/lib/python3.13/dist-packages"
-# Names the root, or installs SurfaceTopography as pip does, from nowhere.
+# Names the root's folder of packages, or installs SurfaceTopography as pip does, from nowhere.
 ENTER = f"""#!/bin/bash
-[ "$1" != sh ] || {{ echo "$IN_ROOT"; exit; }}
+[ "$1" != python3 ] || {{ echo "$FOLDER"; exit; }}
 [ -z "$OFFLINE" ] || {{ echo "no network"; exit 1; }}
+[ ! -e "$FOLDER" ] || {{ echo "what is there is not got again"; exit 1; }}
 while [ "$1" != --prefix ]; do shift; done
 mkdir -p "$2/local/lib/python3.13/dist-packages/surfacetopography-{VERSION}.dist-info"
 """
@@ -34,17 +35,16 @@ def wheels(tmp_path):
 
     def run(**more: str) -> tuple[list[str], set[str]]:
         """Return what is said and what is in the root's folder of packages then; nothing else is left in the cache."""
-        variables = os.environ | {"IN_ROOT": str(root)} | more
+        variables = os.environ | {"FOLDER": str(root / PLACE)} | more
         done = subprocess.run([checkout / "wheels"], env=variables, capture_output=True, text=True, check=False)
         assert (done.returncode, done.stdout) == (0, "")
         assert {path.name for path in (tmp_path / "cache").iterdir()} <= {"root", "wheels.lock", "wheels.log"}
-        return done.stderr.splitlines(), {path.name for path in (root / PLACE).iterdir()}
+        return done.stderr.splitlines(), {path.name for path in root.glob(f"{PLACE}/*")}
 
     return run
 
 
 def test_they_are_got_once(wheels):
-    """And again where the script names another version."""
     here = {f"surfacetopography-{VERSION}.dist-info"}
     said, there = wheels()
     assert len(said) == 1 and said[0].startswith(f"fingerpad: getting SurfaceTopography {VERSION} from PyPI")
@@ -53,6 +53,7 @@ def test_they_are_got_once(wheels):
 
 
 def test_another_version_is_replaced(wheels, tmp_path):
+    """It goes first: pip leaves out what is there, which the old one may have brought."""
     old = tmp_path / "cache" / "root" / PLACE / "surfacetopography-1.0.0.dist-info"
     old.mkdir()
     assert wheels()[1] == {f"surfacetopography-{VERSION}.dist-info"}
@@ -69,7 +70,7 @@ def test_without_a_network(wheels):
 
 
 def test_another_python_is_left_alone(wheels):
-    assert wheels(IN_ROOT="") == ([], set())
+    assert wheels(FOLDER="") == ([], set())
 
 
 def test_they_are_on_the_list():
@@ -82,6 +83,6 @@ def test_they_are_on_the_list():
 @pytest.mark.skipif("FINGERPAD_ROOT" not in os.environ, reason="not in the private root")
 def test_they_hide_nothing_of_debian():
     """No package is there twice, so that none of Debian's has another version with them than without."""
-    folders = (next(Path("/usr/local/lib").glob("python3*/dist-packages")), Path("/usr/lib/python3/dist-packages"))
-    ours, debian = ({re.sub(r"[-_.]+", "-", d.name).lower() for d in distributions(path=[str(f)])} for f in folders)
+    folders = sysconfig.get_path("purelib"), "/usr/lib/python3/dist-packages"
+    ours, debian = ({re.sub(r"[-_.]+", "-", d.name).lower() for d in distributions(path=[f])} for f in folders)
     assert debian and not ours & debian
