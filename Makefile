@@ -15,7 +15,7 @@
 
 run := environment/run
 
-.PHONY: help demo lint wheels test check test-order fuzz pages verify paper chart performance
+.PHONY: help demo lint test check test-order fuzz pages verify paper chart performance
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -26,17 +26,17 @@ demo:
 lint:
 	environment/lint
 
-wheels:
+test:
 	environment/wheels
-
-test: wheels
 	$(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" tests
 	$(run) mpirun -n 2 python3 -m pytest -q --color=no -p no:cacheprovider -m "not long" tests
 
-check: wheels
+check:
+	environment/wheels
 	$(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" --quick tests
 
-test-order: wheels
+test-order:
+	environment/wheels
 	OPENBLAS_CORETYPE=Nehalem $(run) python3 -m pytest -q --color=no -n auto --renumber tests
 
 fuzz:
