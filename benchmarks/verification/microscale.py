@@ -87,7 +87,13 @@ def folds(small: bool) -> list[Row]:
             exact.external_pressure(exact_off, 200) / 1000,
         ),
         _roundoff("pull-off: p_c (kPa)", bam.contact_pressure(off) / _KPA, exact.contact_pressure(exact_off) / 1000),
-        Row("pull-in: u_bar (um)", float(found.x), float(exact_in / exact.UM), 1e-6, "flat: about roundoff's root"),
+        Row(
+            "pull-in: u_bar (um)",
+            float(found.x),
+            float(exact_in / exact.UM),
+            1e-6,
+            "the pressure is flat there: a root of roundoff",
+        ),
         _roundoff("pull-in: p_ext (kPa)", -found.fun / _KPA, exact.external_pressure(exact_in, 200) / 1000),
     ]
 
