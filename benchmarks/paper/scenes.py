@@ -13,7 +13,8 @@ SECTION = (120.0, 150.0)  # N/m, V of Fig. 2
 TRANSITION = 120.0  # N/m of Fig. 8
 MAP = 75.0  # N/m of Fig. 9
 PEAK = 200.0  # V, amplitude of Fig. 9's sine
-CENTRE = 28  # the paper's number of the central ridge's Merkel site, of 55
+NAMED = {"highest": 22, "enters": 27, "leaves": 16, "changes least": 25}
+"""The paper's numbers of Merkel sites in Fig. 9B by what they do; from where it counts, it does not say."""
 _SLIP = 2e-3  # m, by which the finger slips without voltage (at 1.4 mm)
 _BETWEEN = 0.8e-3  # m of sliding from one voltage to the next, half of it while the voltage changes
 PHASES = np.linspace(0, np.pi, 13)  # of one half period, of which the square of the voltage is a whole one
@@ -38,6 +39,13 @@ def sine() -> Scene:
             {"name": f"sine {k}", "bone_x": x, "until_full_slip": True},
         ]
     return by_rule(from_data({"mesh": {"contact": SIZE, "receptor": SITES}, "history": history}))
+
+
+def stiffer() -> Scene:
+    """Return Fig. 2's normal contact, where points that stick yield by a twentieth of the default."""
+    history = [{"name": "press", "f_ext": SECTION[0]}, {"name": "charge", "voltage": SECTION[1]}]
+    mesh = {"contact": SIZE, "receptor": SITES}
+    return by_rule(from_data({"mesh": mesh, "contact": {"eps_t": 20 * Scene().contact.eps_t}, "history": history}))
 
 
 def rougher(high: Run) -> Scene:
