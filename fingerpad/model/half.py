@@ -6,6 +6,7 @@ may turn over to one side (:mod:`fingerpad.model.stability`).
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from mpi4py import MPI
@@ -52,19 +53,24 @@ class HalfFinger:
         self._body.continuation.run(target)
 
     def end(self) -> None:
-        """Count the half's work as the finger's."""
+        """Count the half's work as the finger's, and free the memory it took."""
         whole, half = self._finger.solver, self._body.solver
         whole.counts.add(half.counts)
         whole.timings.add(half.timings)
+        half.iteration.free()
 
     def _together(self, mine: Array) -> Array:
         return np.concatenate(self._comm.allgather(mine))
 
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> bool:
         """Put the half's accepted state on the finger."""
-        solver, coupling = self._body.solver, self._body.coupling
+        half, whole = self._body.coupling, self._finger.coupling
+        solver = whole.solver
+        solver.new_load(replace(half.solver.control), float(half.solver.problem.voltage.value))
+        d_eq, whole.gain = (np.array(symmetry.values(list(values))) for values in (half.d_eq, half.gain))
+        whole.set_air_gaps(d_eq)
         u = self._flip * self._together(self._body.problem.displacement()[self._own])[self._nodes]
-        d_eq, gain = (np.array(symmetry.values(list(values))) for values in (coupling.d_eq, coupling.gain))
-        load = solver.control, float(self._body.problem.voltage.value)
-        self._finger.continuation.adopt(u, solver.bone, load, d_eq, gain)
+        solver.set_displacement(u, half.solver.bone)
+        solver.equations.residual(solver.x, solver.iteration.f)
+        self._finger.continuation.accept()
         return self._on_accept(target, part, attempt)

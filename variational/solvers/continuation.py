@@ -4,7 +4,7 @@ A step that fails is halved. Where the loop over the scales cycles there may be 
 :mod:`~variational.solvers.coupling`), which halved steps approach and never cross; so a longer step over that range is
 tried first.
 
-History (friction anchors, contact multipliers, air gaps, displacement) is accepted in :meth:`Continuation._accept`
+History (friction anchors, contact multipliers, air gaps, displacement) is accepted in :meth:`Continuation.accept`
 and nowhere else; a rejected attempt restores the last accepted state.
 """
 
@@ -159,29 +159,14 @@ class Continuation:
     def _restore(self) -> None:
         self._now.restore(self.coupling)
 
-    def _accept(self) -> None:
+    def accept(self) -> None:
+        """Accept the present state, an equilibrium; collective."""
         self.surface_state = self.observer.state()
         self.slip = self.observer.slip(self.surface_state)
         s = self.surface_state
         self.problem.set_history(History(s.anchor, s.p_n, s.x))
         self._now = AcceptedState.of(self.coupling)
         self.steps += 1
-
-    def adopt(self, u: Array, bone: Array, load: tuple[Control, float], d_eq: Array, gain: Array) -> None:
-        """Accept a state of equilibrium that another solver has found; collective.
-
-        Args:
-            u: displacement (m) of all nodes of this rank, shape (nodes, 2).
-            bone: the bone's translation (m), shape (2,).
-            load: control of the bone, and voltage (V).
-            d_eq: equivalent air gaps (m), shape (ridges,).
-            gain: see :attr:`variational.solvers.coupling.Coupling.gain`.
-        """
-        self.solver.new_load(replace(load[0]), load[1])
-        self.coupling.set_air_gaps(d_eq)
-        self.coupling.gain = gain
-        self.solver.adopt(u, bone)
-        self._accept()
 
     # -- targets ---------------------------------------------------------------------------------------
     def run(self, target: Target) -> None:
@@ -244,7 +229,7 @@ class Continuation:
                     step = over if attempt.stepped_over_fold else within
                     if failure.irrecoverable or within < _SMALLEST * largest:
                         raise StepFailed(self._describe(target, part, failure)) from failure
-            self._accept()
+            self.accept()
             part += step
             if self.on_accept(target, part, attempt) is True:
                 return False
@@ -290,7 +275,7 @@ class Continuation:
                     self._relax(0.5)
                 load = replace(self._now.control), self._now.voltage
                 self._try(load, attempt, pseudo_transient=way == "pseudo-transient", on_cone=False)
-                self._accept()
+                self.accept()
                 return attempt
             except NotConverged as failure:
                 self._restore()

@@ -98,12 +98,6 @@ class Solver:
             self._set_pressure()
         self.equations.to_fields(self.x)
 
-    def adopt(self, u: Array, bone: Array) -> None:
-        """Take a displacement, as in :meth:`set_displacement`, as the equilibrium; collective."""
-        self.set_displacement(u, bone)
-        self.equations.residual(self.x, self.iteration.f)
-        self.iteration.floor = 0.0
-
     def _set_pressure(self) -> None:
         """Solve the second equation, which is linear in the pressure, at the present displacement.
 
