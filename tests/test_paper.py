@@ -313,7 +313,7 @@ def test_sine_is_a_valid_scene():
 
 
 def numbers_with(*statements):
-    return {"contact_size": scenes.SIZE, "missing": [], "statements": [asdict(s) for s in statements]}
+    return {"missing": [], "statements": [asdict(s) for s in statements]}
 
 
 def test_page(tmp_path):

@@ -24,7 +24,7 @@ _LIMIT = 3600.0  # s of processor time for one run; the sine takes longest
 
 def collect(out: Path) -> dict[str, Any]:
     """Return the numbers of the page from the runs there are; what is missing is named."""
-    numbers: dict[str, Any] = {"contact_size": scenes.SIZE, "missing": [], "statements": []}
+    numbers: dict[str, Any] = {"missing": [], "statements": []}
     grid = scenes.grid()
 
     def at(force: float, voltage: float) -> Run:

@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks.harness import kept, page, picture, prose, table
 from benchmarks.paper import friction
 from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
-from benchmarks.runs import FORCES, SITES, VOLTAGES
+from benchmarks.runs import FORCES, VOLTAGES
 
 _PUBLISHED = Path(__file__).parent / "published.csv"
 
@@ -39,7 +39,7 @@ def draw(docs: Path) -> Path:
     with _PUBLISHED.open(encoding="utf-8", newline="") as file:
         _, *published = csv.reader(file)
     missing = ", ".join(numbers.get("missing", []))
-    how = text["how"].format(contact=1e6 * numbers["contact_size"], sites=1e6 * SITES, runs=len(FORCES) * len(VOLTAGES))
+    how = text["how"].format(runs=len(FORCES) * len(VOLTAGES))
     grid = {key: np.array(values) for key, values in numbers.get("grid", {}).items()}
     path, caption = docs / "paper_friction.png", " ".join(text["caption"].split())
     body = [
