@@ -133,11 +133,11 @@ from fingerpad.io.interrupt import Interrupt, Interrupted
 from tests.runs import run
 from fingerpad.scene import load
 from variational.solvers.continuation import Continuation
-accept, steps = Continuation.accept, []
+accept, steps = Continuation.accept, []  # of the half finger, and of the whole
 def raising(self):
     accept(self)
     steps.append(1)
-    if len(steps) == 2 and MPI.COMM_WORLD.rank == int(sys.argv[3]):
+    if len(steps) == 4 and MPI.COMM_WORLD.rank == int(sys.argv[3]):
         raise ValueError("raised on one rank")
 Continuation.accept = raising
 run(load(Path(sys.argv[1])), Path(sys.argv[2]), MPI.COMM_WORLD)
