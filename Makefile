@@ -5,6 +5,7 @@
 # make test-order  all tests with other rounding: cells numbered the other way round, other kernels of OpenBLAS
 # make fuzz   10 000 scenes and command lines, each ready to run or refused in one sentence; some minutes
 # make pages  every generated page and picture of docs/ from the numbers kept there; seconds, no run
+# make stale  the pages older than the code that they rest on; needs git
 # make verify every number with a known answer, some minutes; docs/verification.md
 # make paper  the statements of the paper beside this model's numbers; docs/paper.md, an hour or two
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour
@@ -15,7 +16,7 @@
 
 run := environment/run
 
-.PHONY: help demo lint test check test-order fuzz pages verify paper chart performance
+.PHONY: help demo lint test check test-order fuzz pages stale verify paper chart performance
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -27,13 +28,16 @@ lint:
 	environment/lint
 
 test:
+	environment/wheels
 	$(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" tests
 	$(run) mpirun -n 2 python3 -m pytest -q --color=no -p no:cacheprovider -m "not long" tests
 
 check:
+	environment/wheels
 	$(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" --quick tests
 
 test-order:
+	environment/wheels
 	OPENBLAS_CORETYPE=Nehalem $(run) python3 -m pytest -q --color=no -n auto --renumber tests
 
 fuzz:
@@ -41,6 +45,9 @@ fuzz:
 
 pages:
 	$(run) python3 -m benchmarks.pages
+
+stale:
+	python3 -m benchmarks.pages --stale
 
 verify:
 	$(run) python3 -m benchmarks.verification

@@ -68,7 +68,7 @@ class Made:
 
     version: str
     commit: str
-    """Empty where the runs are of several states of the program."""
+    """Empty where the runs are of several states of the program, or git is not there to name it."""
     date: str
     source: str = ""
     """Hash of the program's files; empty for older numbers, whose commit is the one that brought them into git."""
@@ -77,8 +77,9 @@ class Made:
         """Return the sentence at the end of a page."""
         if not self.source:
             return f"Numbers by version {self.version} before {self.date}, in git since commit {self.commit}."
-        state = f"commit {self.commit}" if self.commit else "several commits"
-        return f"Numbers by version {self.version}, {state}, of {self.date} (source {self.source})."
+        several = ", several commits," * (", " in self.source)
+        state = f", commit {self.commit}," if self.commit else several
+        return f"Numbers by version {self.version}{state} of {self.date} (source {self.source})."
 
 
 def made(summaries: Iterable[Summary] = ()) -> Made:

@@ -1,6 +1,7 @@
 """A finished run as arrays, and the scenes that several studies run."""
 
 import csv
+from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -20,8 +21,12 @@ SITES = 20e-6  # m, size at the Merkel sites: coarser than the default of 5 um; 
 
 def trace(f_ext: float, voltage: float, size: float, **more: Any) -> Scene:
     """Return the default finger pressed (N/m), charged (V) and slid, with a contact size (m) and more of its tables."""
-    mesh = {"contact": size, "receptor": SITES}
-    return by_rule(from_data({"f_ext": f_ext, "voltage": voltage, "mesh": mesh} | more))
+    return plain({"f_ext": f_ext, "voltage": voltage, "mesh": {"contact": size, "receptor": SITES}} | more)
+
+
+def plain(data: Mapping[str, Any]) -> Scene:
+    """Return a scene, with a number of ridges that can touch."""
+    return by_rule(from_data(data))
 
 
 class Run:

@@ -4,7 +4,7 @@ import gmsh
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry import tags
+from geometry import reflection, tags
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
 from geometry.shape import shape
@@ -23,7 +23,7 @@ def build(finger: Fingertip, size: MeshSize, receptors: bool = True, half: bool 
         finger: what is meshed.
         size: of its elements.
         receptors: whether elements are small at the tips of the intermediate ridges, just below the Merkel sites.
-        half: mesh the half at x >= 0 alone, with half of ridge 0.
+        half: leave it at the half at x >= 0, with half of ridge 0; else its mirror image is added.
 
     Returns:
         The length of gmsh's unit in m.
@@ -32,11 +32,13 @@ def build(finger: Fingertip, size: MeshSize, receptors: bool = True, half: bool 
         GeometryError: see :mod:`geometry.sizing`.
     """
     profiles = check(finger, size)
-    touching = [j for j in touching_ridges(finger, size) if j >= 0 or not half]
-    curves = _curves(profiles, touching, half)
+    touching = [j for j in touching_ridges(finger, size) if j >= 0]
+    curves = _curves(profiles, touching)
     _surfaces(curves)
     _sizes(profiles, size, curves, touching, receptors)
     gmsh.model.mesh.generate(2)
+    if not half:
+        reflection.complete()
     return 1 / _MM
 
 
@@ -55,10 +57,10 @@ def finger(parameters: Fingertip | None = None, receptors: bool = False, **sizes
 
 
 class _Curves:
-    """Tags of gmsh curves by what they are; closed ones run anticlockwise.
+    """Tags of gmsh curves of the half at x >= 0 by what they are; closed ones run anticlockwise.
 
-    At either end the layers are cut by a line from the skin to the bone, at x < 0 (0) and at x > 0 (1): at the nail's
-    edges, or on the left at x = 0 if the finger is built by half. Half a nail and its bed have another cut, on top.
+    At either end the layers are cut by a line from the skin to the bone: at x = 0 (0) and at the nail's edge (1). Half
+    a nail and its bed have another cut, on top.
     """
 
     def __init__(self) -> None:
@@ -103,11 +105,10 @@ def _chain(
     return chain
 
 
-def _curves(p: Profiles, touching: list[int], half: bool) -> _Curves:
+def _curves(p: Profiles, touching: list[int]) -> _Curves:
     f, c = p.finger, _Curves()
     end = p.nail_arc
-    start = 0.0 if half else -end
-    edge = np.array([start, end])
+    edge = np.array([0.0, end])
     depths = {
         "skin": p.skin,
         "sc_ve": p.sc_ve,
@@ -122,10 +123,10 @@ def _curves(p: Profiles, touching: list[int], half: bool) -> _Curves:
         xy = p.point(edge, depth(edge))
         corners[name] = (_point(xy[0]), _point(xy[1]))
     attach = np.arcsin(f.nail_bed_half_width / (f.bone_width / 2))
-    bone = tuple(_point(p.bone(phi)) for phi in (0.0 if half else -(np.pi - attach), np.pi - attach))
+    bone = tuple(_point(p.bone(phi)) for phi in (0.0, np.pi - attach))
     for side in (0, 1):
         down = sorted(depths, key=lambda name: float(depths[name](edge)[side]))
-        if half and side == 0:
+        if side == 0:
             down.remove("nail")
         c.ends[side] = _lines([corners[name][side] for name in down] + [bone[side]])
         c.depths[side] = [*down, "bone"]
@@ -133,39 +134,34 @@ def _curves(p: Profiles, touching: list[int], half: bool) -> _Curves:
     # Skin: one group of curves a ridge, those that can touch broken where the fine mesh ends.
     grooves = (np.arange(f.ridge_count + 1) - f.ridge_count / 2) * f.ridge_wavelength
     tips = np.linspace(grooves[0], grooves[-1], 4 * f.ridge_count + 1)
-    first = 0 if half else 1  # curve of the first ridge
-    stations = np.concatenate([[start], grooves[grooves > start], [end]])
+    stations = np.concatenate([[0.0], grooves[grooves > 0], [end]])
     c.skin = _chain(p, p.skin, stations, corners["skin"])
-    for j, curve in zip((j for j in p.ridges if j >= 0 or not half), c.skin[first:-1], strict=True):
+    for j, curve in zip((j for j in p.ridges if j >= 0), c.skin[:-1], strict=True):
         c.ridges[j] = [curve]
         if j in touching:
             c.touching.append(curve)
     for name, depth in (("sc_ve", p.sc_ve), ("d_sub", p.d_sub)):
         c.interfaces[name] = _chain(p, depth, stations, corners[name])
     # A node on each tip and papilla: facets that cut them off would leave receptor sites in the wrong layer.
-    tips = np.concatenate([[start], tips[tips > start + f.ridge_wavelength / 8], [end]])
+    tips = np.concatenate([[0.0], tips[tips > f.ridge_wavelength / 8], [end]])
     c.interfaces["ve_d"] = _chain(p, p.ve_d, tips, corners["ve_d"], _SHARP_SAMPLES)
-    c.wavy = c.skin[first:-1] + c.interfaces["sc_ve"][first:-1] + c.interfaces["ve_d"][first:-1]
+    c.wavy = c.skin[:-1] + c.interfaces["sc_ve"][:-1] + c.interfaces["ve_d"][:-1]
 
-    # Dorsal faces of the nail, from the right edge over the top to the left one, or to the top.
-    top = [_point(p.point(p.half_perimeter, depth)) for depth in (0.0, f.nail_thickness)] if half else []
+    # Dorsal faces of the nail, from the right edge to the top.
+    top = [_point(p.point(p.half_perimeter, depth)) for depth in (0.0, f.nail_thickness)]
     s = np.linspace(end, p.half_perimeter, 61)
     for k, (name, key, depth_value) in enumerate(
         (("nail outside", "skin", 0.0), ("nail inside", "nail", f.nail_thickness))
     ):
-        right = p.point(s, depth_value)
-        xy = right if half else np.concatenate([right, (right * [-1, 1])[-2::-1]])
-        # The ends are the corners: the ridges' mean line lies deeper than the outline, the nail starts on the skin.
-        c.interfaces[name] = [_spline(xy, corners[key][1], top[k] if half else corners[key][0])]
+        # The first is the corner: the ridges' mean line lies deeper than the outline, the nail starts on the skin.
+        c.interfaces[name] = [_spline(p.point(s, depth_value), corners[key][1], top[k])]
 
-    lower = np.linspace(0.0 if half else -(np.pi - attach), np.pi - attach, 121)
-    upper = np.linspace(np.pi - attach, np.pi if half else np.pi + attach, 61)
-    summit = _point(p.bone(np.pi)) if half else bone[0]
+    lower, upper = np.linspace(0.0, np.pi - attach, 121), np.linspace(np.pi - attach, np.pi, 61)
+    summit = _point(p.bone(np.pi))
     c.interfaces["bone below"] = [_spline(p.bone(lower), bone[0], bone[1])]
     c.interfaces["bone above"] = [_spline(p.bone(upper), bone[1], summit)]
-    if half:
-        c.top = _lines([*top, summit])
-        c.symmetry = c.ends[0] + c.top
+    c.top = _lines([*top, summit])
+    c.symmetry = c.ends[0] + c.top
     return c
 
 
@@ -183,7 +179,7 @@ def _surfaces(c: _Curves) -> None:
         """Return the surface between two curves whose ends are at depths a and b of the end lines."""
         return surface(*upper, *c.cut(1, a, b), *reverse(lower), *reverse(c.cut(0, a, b)))
 
-    nail, bed = ([c.top[:1], c.top[1:]]) if c.top else (c.cut(0, "skin", "nail"), c.cut(0, "nail", "bone"))
+    nail, bed = c.top[:1], c.top[1:]
 
     surfaces = {
         tags.STRATUM_CORNEUM: band(c.skin, i["sc_ve"], "skin", "sc_ve"),
@@ -198,8 +194,7 @@ def _surfaces(c: _Curves) -> None:
         gmsh.model.addPhysicalGroup(2, [surfaces[tag]], tag, name)
     gmsh.model.addPhysicalGroup(1, i["bone below"] + i["bone above"], tags.BONE_RIM, "bone rim")
     gmsh.model.addPhysicalGroup(1, i["nail outside"], tags.NAIL_SURFACE, "nail surface")
-    if c.symmetry:
-        gmsh.model.addPhysicalGroup(1, c.symmetry, tags.SYMMETRY, "symmetry")
+    gmsh.model.addPhysicalGroup(1, c.symmetry, tags.SYMMETRY, "symmetry")
     others = [k for k in c.skin if k not in c.touching]
     gmsh.model.addPhysicalGroup(1, others, tags.OUTER_SKIN, "outer skin")
     for j, curves in c.ridges.items():

@@ -1,5 +1,7 @@
 """Contact, force control and friction of solved states against closed forms and balances, on any number of ranks."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import ufl
@@ -255,6 +257,27 @@ def test_force_is_held_while_sliding(slide):
     """Under force control the contact force is the prescribed one, sliding or not. Tolerance as above."""
     for control, _, loads, *_ in slide[1:]:
         assert loads.f_contact[0] == pytest.approx(control.force, abs=100 * TOLERANCE)
+
+
+@pytest.mark.parametrize(
+    ("pull", "found"),
+    [
+        (lambda x: 1.0, (1.0, True)),
+        (lambda x: -1.0, (1.0, True)),
+        (np.sign, (1.0, False)),
+        (lambda x: np.where(x < 0, 0.5, 1.0), (0.5, False)),
+    ],
+    ids=["forth", "back", "apart", "half sticks"],
+)
+def test_full_slip_is_one_way(body, pull, found):
+    """Skin at its cone that spreads, left half one way and right half the other, slips everywhere and does not slide.
+
+    The tractions are written down, so that the count is exact.
+    """
+    observer = Observer(make(body, MU_F).problem)
+    state = observer.state()
+    p_n = np.full_like(state.x, 1e4)
+    assert observer.slip(replace(state, p_n=p_n, t_t=MU_F * p_n * pull(state.x))) == found
 
 
 # -- the solver's settings -----------------------------------------------------------------------------

@@ -133,13 +133,13 @@ from fingerpad.io.interrupt import Interrupt, Interrupted
 from tests.runs import run
 from fingerpad.scene import load
 from variational.solvers.continuation import Continuation
-accept, steps = Continuation._accept, []
+accept, steps = Continuation.accept, []
 def raising(self):
     accept(self)
     steps.append(1)
     if len(steps) == 2 and MPI.COMM_WORLD.rank == int(sys.argv[3]):
         raise ValueError("raised on one rank")
-Continuation._accept = raising
+Continuation.accept = raising
 run(load(Path(sys.argv[1])), Path(sys.argv[2]), MPI.COMM_WORLD)
 """
 

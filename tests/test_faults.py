@@ -69,7 +69,7 @@ def before_solves(monkeypatch):
     """Return a function that has something done to the solver before each solve after the good steps."""
 
     def install(act):
-        solve, accept, count = Solver.solve, Continuation._accept, [0]
+        solve, accept, count = Solver.solve, Continuation.accept, [0]
 
         def counted(self):
             accept(self)
@@ -80,7 +80,7 @@ def before_solves(monkeypatch):
                 act(self)
             solve(self, *how, **more)
 
-        monkeypatch.setattr(Continuation, "_accept", counted)
+        monkeypatch.setattr(Continuation, "accept", counted)
         monkeypatch.setattr(Solver, "solve", disturbed)
 
     return install
@@ -195,7 +195,7 @@ def trajectory(chance: float, seed: int) -> tuple[list[dict[str, np.ndarray]], i
                 assert failure.reason == "drawn"
                 rejected += 1
                 continuation._restore()
-        continuation._accept()
+        continuation.accept()
         problem, state = solver.problem, continuation.surface_state
         states.append(
             {

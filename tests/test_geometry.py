@@ -217,15 +217,20 @@ def test_ridge_tags():
     assert not {tags.ridge(j) for j in range(-50, 51)} & set(others)
 
 
-def test_half_a_finger_has_half_of_each_layer(coarse, finger_mesh):
-    """Its areas are half those of the whole; half of ridge 0 is there.
-
-    Tolerance: coarse elements cut the nail's and the bone's curves off by chords that lie elsewhere, some 0.3 %.
-    """
+def test_finger_is_a_half_and_its_mirror_image(coarse, finger_mesh):
+    """To the last node: areas of layers, lengths of ridges and of the rim are twice the half's."""
     half = load(MPI.COMM_WORLD, partial(fingertip.build, Fingertip(), coarse, half=True))
     for name, tag in tags.LAYERS.items():
-        assert 2 * integral(half, tag) == pytest.approx(integral(finger_mesh, tag), rel=5e-3), name
+        assert 2 * integral(half, tag) == pytest.approx(integral(finger_mesh, tag), rel=1e-12), name
     assert half.ridges() == [j for j in finger_mesh.ridges() if j >= 0]
     line = vertices(half, half.facet_tags.find(tags.SYMMETRY))
     assert np.abs(line[:, 0]).max(initial=0) < 1e-12
     assert half.mesh.geometry.x[:, 0].min(initial=0) > -1e-12
+    assert not len(finger_mesh.facet_tags.find(tags.SYMMETRY))
+    for tag in (tags.BONE_RIM, tags.OUTER_SKIN, tags.NAIL_SURFACE, tags.ridge(0)):
+        assert len(finger_mesh.facet_tags.find(tag)) == 2 * len(half.facet_tags.find(tag)) > 0
+    points = finger_mesh.mesh.geometry.x[:, :2]
+    assert cKDTree(points).query(points * [-1, 1])[0].max() < 1e-15
+    for j in half.ridges():
+        right, left = (vertices(finger_mesh, finger_mesh.facet_tags.find(tags.ridge(k))) for k in (j, -j))
+        assert np.sort(right[:, 0]) == pytest.approx(np.sort(-left[:, 0]), abs=1e-15)

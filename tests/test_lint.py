@@ -28,7 +28,8 @@ def lint(tmp_path):
     checkout, tools = tmp_path / "checkout", tmp_path / "bin"
     (checkout / "environment").mkdir(parents=True)
     tools.mkdir()
-    shutil.copy(ROOT / "environment/lint", checkout / "environment")
+    for name in ("lint", "pip"):
+        shutil.copy(ROOT / "environment" / name, checkout / "environment")
     (checkout / "pyproject.toml").write_text(f'test = ["pytest", "ruff=={VERSION}"]\n')
     script(checkout / "environment/run", ENTER)
     script(tmp_path / "ruff", RUFF.format(version=VERSION))

@@ -2,6 +2,7 @@
 
 import math
 import shutil
+from typing import ClassVar
 
 import pytest
 
@@ -30,6 +31,87 @@ def test_prose_is_of_pages():
         assert texts and all(texts.values())
 
 
+# -- pages older than the code -----------------------------------------------------------------------
+class History:
+    """A history of five commits, the newest first; each changes one file, or none that numbers rest on."""
+
+    changed: ClassVar = {
+        "e": "docs/x.md",
+        "d": "benchmarks/chart.py",
+        "c": "fingerpad/x.py",
+        "b": "tests/x.py",
+        "a": "variational/x.py",
+    }
+    commits = tuple(changed)
+    brought = "d"
+    """Commit that brought the numbers into git."""
+
+    def git(self, command, *words):
+        """Answer as git does; a path names a file or the folder that it is in."""
+        found = {"log": [self.brought]}.get(command)
+        if command == "rev-list":
+            paths = words[words.index("--") + 1 :]
+            first, until, _ = next(word for word in words if not word.startswith("-")).partition("..")
+            k = self.commits.index(first)
+            asked = self.commits[:k] if until else self.commits[k:]
+            found = [c for c in asked if any(self.changed[c].startswith(path) for path in paths)]
+        return "\n".join(found).encode()
+
+    def source(self, commit):
+        """Return a hash that changes with the packages alone."""
+        return {"e": "02", "d": "02", "c": "02", "b": "01", "a": "01"}[commit]
+
+
+@pytest.fixture
+def history(monkeypatch):
+    found = History()
+    monkeypatch.setattr(pages, "git", found.git)
+    monkeypatch.setattr(pages, "source", found.source)
+    return found
+
+
+def count(folder, page, made):
+    harness.keep(page, {}, made, folder)
+    return pages.stale(page, folder)[1]
+
+
+def test_page_is_older_than_the_code_by_commits_that_change_it(history, tmp_path):
+    """By packages and its own program; docs, tests and other pages' programs do not count."""
+    assert count(tmp_path, "errors", Made("0.1.0", "", "", "02")) == 0
+    assert count(tmp_path, "chart", Made("0.1.0", "", "", "02")) == 0  # its program came with the numbers
+    history.brought = "c"
+    assert count(tmp_path, "chart", Made("0.1.0", "", "", "02")) == 1
+    assert count(tmp_path, "errors", Made("0.1.0", "", "", "01")) == 1
+    assert count(tmp_path, "chart", Made("0.1.0", "", "", "01")) == 2
+    assert count(tmp_path, "chart", Made("0.1.0", "", "", "02, 01")) == 2
+
+
+def test_numbers_of_no_commit_are_as_old_as_in_git(history, tmp_path):
+    """By the hash of no commit, or without a hash, where the commit that brought them is kept."""
+    assert count(tmp_path, "errors", Made("0.1.0", "", "", "ff")) == 0
+    assert count(tmp_path, "chart", Made("0.1.0", "b", "")) == 2
+    assert count(tmp_path, "errors", Made("0.1.0", "c", "")) == 0
+
+
+def test_drawing_does_not_make_numbers_older():
+    assert {"benchmarks/paper", ":!benchmarks/paper/page.py"} <= set(pages.program("paper"))
+    assert "benchmarks/chart.py" in pages.program("chart")
+    assert not any("prose" in path or "harness" in path for path in pages.program("chart"))
+
+
+def test_older_pages_are_listed(history, tmp_path, capsys):
+    """Those alone, with version and count; a page is not drawn."""
+    harness.keep("chart", {}, Made("0.1.0", "", "2026-11-22", "01"), tmp_path)
+    harness.keep("errors", {}, Made("0.1.0", "", "2026-11-22", "02"), tmp_path)
+    history.brought = "c"
+    assert pages.main(["chart", "errors", "--stale", "--docs", str(tmp_path)]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "chart: version 0.1.0 of 2026-11-22, commit a; 2 commits since",
+        "1 of 2 pages are older than the code that they rest on",
+    ]
+    assert not list(tmp_path.glob("*.md"))
+
+
 def test_unknown_page_is_refused(capsys):
     with pytest.raises(SystemExit):
         pages.main(["nothing"])
@@ -56,6 +138,7 @@ def test_page_names_the_program_that_made_its_numbers(tmp_path):
     older = Made("0.1.0", "abc1234", "2026-11-22")
     assert "version 0.1.0 before 2026-11-22, in git since commit abc1234" in text(older)
     assert "several commits" in text(Made("0.1.0", "", "2026-11-22", "01, 23"))
+    assert "version 0.1.0 of 2026-11-22 (source 0123456789ab)" in text(Made("0.1.0", "", "2026-11-22", "0123456789ab"))
 
 
 def test_runs_of_another_program_have_no_commit():

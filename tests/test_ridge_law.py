@@ -107,6 +107,14 @@ def test_table_spans_the_load_and_the_release(cell):
         assert table.y[table.contact > 0].max() == pytest.approx(0, abs=1e-6)  # lets go where it first touched
 
 
+def test_fine_facets_are_on_the_part_of_the_ridge_that_the_scene_gives():
+    """Facets of 30 um grow off that part, so that a wider one has more unknowns; and the tables' name tells them."""
+    narrow, wide = (from_data({"f_ext": 10.0, "mesh": COARSE["mesh"] | {"touching_fraction": f}}) for f in (0.2, 0.9))
+    counts = [ridge_cell._Cell(scene, 5.0).solver.layout.global_size for scene in (narrow, wide)]
+    assert counts[0] < 0.9 * counts[1]
+    assert ridge_cell._made_of(narrow) != ridge_cell._made_of(wide)
+
+
 def test_table_does_not_know_of_the_layers_below(cell, tmp_path, monkeypatch):
     """A cell with three times the dermis has the same table: what flat layers yield is taken off exactly.
 

@@ -45,6 +45,11 @@ def test_insulator_thickness():
     assert Scene().h_0 == pytest.approx(425e-6 / 1650 + 1e-6 / 3.9, rel=1e-15)
 
 
+def test_default_air_gap_without_contact():
+    """It is held at 1 kPa. Tolerance: half of the last digit of 11.8 um; at 10 kPa it would be 3.1 um."""
+    assert Scene().closure()(0.0).d_eq == pytest.approx(11.8e-6, abs=0.05e-6)
+
+
 def test_closure_takes_the_scene_s_roughness():
     closure = scenes.load(None, {"roughness.h_rms": 2e-6}).roughness.bearing_area(0.5e-6)
     assert (closure.h_0, closure.h_rms, closure.gamma) == (0.5e-6, 2e-6, 0.5)

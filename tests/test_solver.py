@@ -107,8 +107,12 @@ def test_guess_of_a_load(flat, slipping, guess):
     assert float(solver.problem.guess.value) == guess
 
 
-@pytest.mark.parametrize(("mu_f", "on_cone", "runs"), [(MU_F, True, 2), (MU_F, False, 1), (0.0, True, 1)])
-def test_other_guess_is_tried_where_points_may_be_on_the_cone(flat, monkeypatch, mu_f, on_cone, runs):
+@pytest.mark.parametrize(
+    ("mu_f", "on_cone", "sideways", "runs"),
+    [(MU_F, True, 0.6, 2), (MU_F, True, 0.3, 1), (MU_F, False, 0.6, 1), (0.0, True, 0.6, 1)],
+)
+def test_other_guess_is_tried_where_points_may_be_on_the_cone(flat, monkeypatch, mu_f, on_cone, sideways, runs):
+    """And where mostly friction is out of balance."""
     solver, guesses = make(flat, mu_f), []
 
     def lost(x, shifted, stop):
@@ -116,6 +120,7 @@ def test_other_guess_is_tried_where_points_may_be_on_the_cone(flat, monkeypatch,
         return -1
 
     monkeypatch.setattr(solver.iteration, "run", lost)
+    monkeypatch.setattr(solver, "_sideways", lambda: sideways)
     solver.new_load(Control(), 0.0, on_cone=on_cone)
     with pytest.raises(NotConverged):
         solver.solve()

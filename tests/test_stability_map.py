@@ -196,6 +196,26 @@ def test_kept_runs_are_not_repeated(tiny, panel, monkeypatch):
     assert run_all([*panel.cases(), IRRECOVERABLE], again, jobs=2, limit=1, hours=1) == 0
 
 
+def test_one_row_is_made_alone(tmp_path, monkeypatch, capsys):
+    """With its reference where errors are shown; printed as on the page, kept with the other runs."""
+    lengths = {plan.DEFAULT: 9e-5, plan.DEFAULT.reference: 1e-4}
+    monkeypatch.setattr(keeping, "solve", lambda case, limit: outcome(contact_length=lengths.get(case, 1e-4)))
+    asked = ["--out", str(tmp_path), "--docs", str(tmp_path), "--jobs", "1", "--row"]
+    assert keeping.main([*asked, "default"]) == 0
+    assert set(Runs(tmp_path / "runs.jsonl").outcomes) == set(lengths)
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert last.startswith("| default | ● converged |")
+    assert "| 90.00 | – | -10 |" in last
+    assert keeping.main([*asked, "Newton alone, with cutback"]) == 0
+    assert len(Runs(tmp_path / "runs.jsonl").outcomes) == 3
+    assert not list(tmp_path.glob("*.md"))
+
+
+def test_rows_have_names_of_their_own():
+    names = [name for group in (plan.neighbours(), *plan.named().values()) for name in group.cases]
+    assert len(names) == len(set(names))
+
+
 def test_line_that_was_cut_short(tmp_path):
     """What a kill leaves of the line in hand costs that run alone, and the next line is whole."""
     runs = Runs(tmp_path / "runs.jsonl")

@@ -1,41 +1,99 @@
-"""Figs. 2, 4, 5 and 9 and section 5: tractions and air gaps, the microscale, and the receptors' energy density."""
+"""Figs. 2, 4, 5 and 9B and section 5: tractions and air gaps, the microscale, and the receptors' energy density."""
 
 import numpy as np
+from numpy.typing import NDArray
 
+from benchmarks.paper.scenes import NAMED
 from benchmarks.paper.statement import Statement, statement
-from benchmarks.runs import Run
+from benchmarks.runs import Array, Run
 from fingerpad.scene import Scene
-from geometry import tags
+
+Which = NDArray[np.bool_]
+Ridge = tuple[Array, Array, Array, Array]
+"""Place (m), pressure, attraction and shear (Pa) at the points of a ridge under pressure, from left to right."""
+_CONE = 1 - 1e-6  # of the friction limit, from which on a point slips
 
 
 # -- Figs. 2, 4 and 5 ----------------------------------------------------------------------------------------
-def section(run: Run) -> list[Statement]:
-    """Return the statements on the tractions in normal contact and on the path to full slip."""
-    a = run.arrays("surface")
-    x, p, p_el, t = (a[f"normal_{name}"][np.isfinite(a["normal_p"])] for name in ("x", "p", "p_el", "t"))
+def touching(run: Run, state: str) -> list[Ridge]:
+    """Return the ridges under pressure."""
+    a = {name: values for name, values in run.arrays("surface").items() if name.startswith(state)}
+    under = np.nan_to_num(a[f"{state}_p"]) > 0
+    ridges = [under & (a[f"{state}_ridge"] == k) for k in np.unique(a[f"{state}_ridge"][under])]
+    x, p, p_el, t = (a[f"{state}_{name}"] for name in ("x", "p", "p_el", "t"))
+    return [(x[mine], p[mine], p_el[mine], t[mine]) for mine in ridges]
+
+
+def section(run: Run, stiffer: Run) -> list[Statement]:
+    """Return the statements on the tractions in normal contact and on the path to full slip.
+
+    Args:
+        run: to full slip.
+        stiffer: to the same normal contact, with stiffer springs where points stick.
+    """
+    normal, partial, slip = (touching(run, state) for state in ("normal", "partial", "slip"))
     # The paper normalises by f_ext / L_R.
     scale = run.steps["f_ext"][run.normal] / run.steps["contact_length"][run.normal]
-    tension = float((p - p_el).min() / scale)
-    # Shear at -x against -shear at x, on the points in contact.
-    order = np.argsort(x)
-    mirrored = -np.interp(-x[order], x[order], t[order])
-    uneven = float(np.linalg.norm(t[order] - mirrored) / np.linalg.norm(t))
-    ridges, d_eq = run.on_ridges(run.normal, "d_eq")
-    central, outer = d_eq[np.abs(ridges) <= 2].mean(), d_eq[np.argsort(np.abs(ridges))[-4:]].mean()
-    both = np.concatenate([d_eq, run.on_ridges(run.slip, "d_eq")[1]])
-    within = float(((both > 1.7e-6) & (both < 3e-6)).mean())
-    gaps = {"share": within, "least": both.min(), "largest": both.max()}
-    xs, ps, ts = (a[f"partial_{name}"][np.nan_to_num(a["partial_p"]) > 0] for name in ("x", "p", "t"))
-    slips, middle = np.abs(ts) >= run.scene.friction * ps * (1 - 1e-6), (xs.min() + xs.max()) / 2
-    leading, trailing = (float(slips[side].mean()) for side in (xs > middle, xs < middle))
-    halves = {"leading": leading, "trailing": trailing}
+    x, _, _, t = map(np.concatenate, zip(*normal, strict=True))
+    even = np.linalg.norm(t + np.interp(-x, x, t)) / np.linalg.norm(t) / 2  # shear at x and at -x
+    shear = {"even": even, "most": np.abs(t).max() / scale}
     return [
-        statement("gaps", gaps, within > 0.9, within > 0.5),
-        statement("central", {"central": central, "outer": outer}, central < outer),
-        statement("tension", {"tension": tension}, tension < 0),
-        statement("symmetric", {"even": uneven / 2}, uneven / 2 < 0.05, uneven / 2 < 0.2),
-        statement("leading", halves, leading > 1.2 * trailing, leading > trailing),
+        _central(run),
+        _tension([*normal, *partial, *slip], scale),
+        statement("symmetric", shear, even < 0.05, even < 0.2),
+        _edges(*([_slips(each, *ridge) for ridge in touching(each, "normal")] for each in (run, stiffer))),
+        _leading(np.concatenate([x for x, *_ in partial]), np.concatenate([_slips(run, *ridge) for ridge in partial])),
     ]
+
+
+def _tension(ridges: list[Ridge], scale: float) -> Statement:
+    """Judge the points under pressure: those in tension are in the outer quarters of their ridges.
+
+    The share of points in tension and a ridge's length give the mean width of the strip at an edge.
+    """
+    stress = np.concatenate([p - p_el for _, p, p_el, _ in ridges])
+    k = [np.arange(len(x)) for x, *_ in ridges]
+    place = np.concatenate([np.minimum(each, each[::-1]) / len(each) for each in k])
+    tensile, near = stress < 0, (stress < 0) & (place < 0.25)
+    width = tensile.mean() * np.mean([x[-1] - x[0] for x, *_ in ridges]) / 2
+    numbers = {"points": tensile.sum(), "near": near.sum(), "least": stress.min() / scale, "width": width}
+    return statement("tension", numbers, tensile.any() and (near == tensile).all(), near.sum() > tensile.sum() / 2)
+
+
+def _slips(run: Run, x: Array, p: Array, p_el: Array, t: Array) -> Which:
+    return np.abs(t) >= run.scene.friction * p * _CONE
+
+
+def _central(run: Run) -> Statement:
+    """Judge normal contact and full slip: the middle third of the ridges in contact, and two on either side."""
+    means, inside = dict[str, float](), list[bool]()
+    for state in ("normal", "slip"):
+        d_eq = run.on_ridges(getattr(run, state), "d_eq")[1]
+        third = len(d_eq) // 3
+        central, outer = d_eq[third:-third], np.r_[d_eq[:2], d_eq[-2:]]
+        means |= {f"{state}_central": central.mean(), f"{state}_outer": outer.mean()}
+        inside.append(central.min() == d_eq.min() and central.mean() < outer.mean())
+    return statement("central", means, all(inside), any(inside))
+
+
+def _edges(*runs: list[Which]) -> Statement:
+    """Judge the points of each ridge from left to right: slip at both ends, and stick at more than half of them.
+
+    Half of the ridges of a run with stiffer springs are enough to hold in part: springs take up small slip.
+    """
+    ends = [np.array([(slips[0], slips[-1]) for slips in ridges]) for ridges in runs]
+    stick = [np.array([slips.mean() < 0.5 for slips in ridges]) for ridges in runs]
+    small = [end.all(axis=1) & inside for end, inside in zip(ends, stick, strict=True)]
+    numbers = {f"ridges_{k}": good.sum() for k, good in enumerate(small)} | {"of": small[0].size}
+    numbers |= {f"ends_{k}": end.sum() for k, end in enumerate(ends)} | {"ends": ends[0].size}
+    return statement("edges", numbers, small[0].all(), max(good.mean() for good in small) > 0.5)
+
+
+def _leading(x: Array, slips: Which) -> Statement:
+    middle = (x.min() + x.max()) / 2
+    leading, trailing = (float(slips[side].mean()) for side in (x > middle, x < middle))
+    halves = {"leading": leading, "trailing": trailing}
+    return statement("leading", halves, leading > 1.2 * trailing, leading > trailing)
 
 
 def microscale() -> list[Statement]:
@@ -50,7 +108,7 @@ def microscale() -> list[Statement]:
     ]
 
 
-# -- Fig. 9 --------------------------------------------------------------------------------------------------
+# -- Fig. 9B -------------------------------------------------------------------------------------------------
 def _ends(run: Run, k: int) -> bool:
     """Whether a step is the last of a load that slides to full slip."""
     last = k + 1 == len(run.loads) or run.loads[k + 1] != run.loads[k]
@@ -61,61 +119,54 @@ def sine(run: Run) -> list[Statement]:
     """Return the statements on the response to a sine."""
     rows = [k for k in range(len(run.loads)) if _ends(run, k)]
     sed, sites = run.receptors["merkel_sed"][rows], run.receptors["ridge"]
-    voltage, mu_app = run.steps["voltage"][rows], run.steps["mu_app"][rows]
-    touching = np.array([np.isin(sites, run.on_ridges(k, "p_c")[0]) for k in rows])
-    top = int(np.argmax(voltage))
+    mu_app, top = run.steps["mu_app"][rows], int(np.argmax(run.steps["voltage"][rows]))
     turned = int((np.diff(np.sign(np.diff(mu_app))) != 0).sum())
-    change, stays = sed[top] / sed[0] - 1, touching.all(axis=0)
-    classes = {
-        "enter": int((touching[top] & ~touching[0]).sum()),
-        "leave": int((touching[0] & ~touching[top]).sum()),
-        "stay and fall by more than 5 %": int((stays & (change < -0.05)).sum()),
-        "stay within 5 %": int((stays & (abs(change) <= 0.05)).sum()),
-        "stay and rise by more than 5 %": int((stays & (change > 0.05)).sum()),
-    }
-    kinds = [n for words, n in classes.items() if "rise" not in words]
-    counts = ", ".join(f"{n} {words}" for words, n in classes.items())
+    before, after = (np.isin(sites, run.on_ridges(rows[k], "p_c")[0]) for k in (0, top))
     return [
         statement("frequency", {"turns": turned}, turned == 1),
-        statement("sites", classes, all(kinds), sum(n > 0 for n in kinds) > 1, peak=voltage[top], counts=counts),
+        _sites(sites, sed[top] / sed[0], before, after, int(np.argmax(sed[0])), run.steps["voltage"][rows[top]]),
     ]
 
 
-def changes(run: Run) -> dict[str, float]:
-    """Return by how much the voltage changes a layer's energy near the contact, in normal contact (relative)."""
-    before, after = run.arrays("finger_press"), run.arrays("finger_charge")
-    centre = (before["x"] + before["u"])[before["triangles"]].mean(axis=1)
-    touching, _ = run.on_ridges(run.normal, "p_c")
-    near = np.abs(centre[:, 0]) < (np.abs(touching).max() + 0.5) * run.scene.geometry.ridge_wavelength
-    found = {}
-    for name in ("stratum corneum", "viable epidermis", "dermis"):
-        mine = near & (before["tag"] == tags.LAYERS[name])
-        corners = before["x"][before["triangles"][mine]]
-        e, f = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-        area = np.abs(e[:, 0] * f[:, 1] - e[:, 1] * f[:, 0]) / 2
-        found[name] = float((area @ np.abs(after["sed"][mine] - before["sed"][mine])) / (area @ before["sed"][mine]))
-    return found
+def _sites(sites: Array, ratio: Array, before: Which, after: Which, highest: int, peak: float) -> Statement:
+    """Judge the sites by what the voltage does to them.
 
-
-def maps(run: Run) -> list[Statement]:
-    """Return the statements on the maps of the energy density, of a run with voltage."""
-    r, normal, slip = run.receptors, run.normal, run.slip
-    in_contact, sliding = (np.isin(r["ridge"], run.on_ridges(row, "p_c")[0]) for row in (normal, slip))
-    both = in_contact & sliding
-    fall = float((r["merkel_sed"][slip][both] < r["merkel_sed"][normal][both]).mean())
-    meissner = (r["meissner_left"] + r["meissner_right"]) / 2
-    papillae = {"normal": meissner[normal][both].mean(), "slip": meissner[slip][both].mean()}
-    sites = np.abs(r["merkel_sed"][normal][both] / r["merkel_sed"][run.pressed][both] - 1)
-    sc, ve, dermis = changes(run).values()
-    layers = {"sc": sc, "ve": ve, "dermis": dermis, "merkel": np.median(sites)}
-    here, away = r["merkel_sed"][normal][in_contact], r["merkel_sed"][normal][~in_contact]
-    means = {"contact": here.mean(), "others": away.mean()}
-    return [
-        statement("layers", layers, ve < 0.1 * sc and sites.max() < 0.05, ve < 0.5 * sc),
-        statement("Merkel", means, here.min() > away.max(), here.mean() > away.max()),
-        statement("fall", {"share": fall}, fall > 0.5, fall > 0.3),
-        statement("papillae", papillae, papillae["slip"] > papillae["normal"]),
-    ]
+    Args:
+        sites: ridge of each, shape (sites,), as all arrays.
+        ratio: energy density at the peak over that at 0 V.
+        before: whether the ridge is in contact at 0 V.
+        after: whether it is at the peak.
+        highest: index of the site with the highest energy density at 0 V.
+        peak: voltage (V).
+    """
+    new, lost, stay = after & ~before, before & ~after, before & after
+    bend, same = stay & (ratio < 0.95), stay & (np.abs(ratio - 1) <= 0.05)
+    rise = stay & (ratio > 1.05)
+    counts = {"enter": new.sum(), "leave": lost.sum(), "bend": bend.sum(), "same": same.sum(), "rise": rise.sum()}
+    kinds = {
+        "enter and rise": new.any() and (ratio[new] > 1).all(),
+        "leave and fall": lost.any() and (ratio[lost] < 1).all(),
+        "bend and fall": bend.any(),
+        "hardly change": same.any(),
+    }
+    failing = ", ".join(kind for kind, there in kinds.items() if not there)
+    still = np.flatnonzero(stay)[np.argmin(np.abs(ratio[stay] - 1))]
+    ours = {"enters": np.flatnonzero(new), "leaves": np.flatnonzero(lost), "changes least": np.array([still])}
+    parts = [f"Highest at 0 V: M{NAMED['highest']}, ridge {sites[highest]:g} (×{ratio[highest]:.2g})"]
+    for kind, found in ours.items():
+        theirs = f"{kind.capitalize()}: M{NAMED[kind]} ({NAMED[kind] - NAMED['highest']:+d})"
+        each = [f"ridge {sites[k]:g} ({sites[k] - sites[highest]:+g}, ×{ratio[k]:.2g})" for k in found]
+        parts.append(f"{theirs}, {' and '.join(each) or 'none'}")
+    changes = {f"ratio_{sites[k]:g}": ratio[k] for k in np.flatnonzero(new | lost)}
+    return statement(
+        "sites",
+        counts | changes,
+        not failing,
+        sum(kinds.values()) > 1,
+        peak=peak,
+        map=". ".join(parts),
+        failing=failing,
+    )
 
 
 # -- section 5 -----------------------------------------------------------------------------------------------

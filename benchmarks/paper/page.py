@@ -8,8 +8,8 @@ import numpy as np
 
 from benchmarks.harness import kept, page, picture, prose, table
 from benchmarks.paper import friction
-from benchmarks.paper.scenes import CENTRE, SITES
-from benchmarks.paper.statement import HOLDS, IN_PART, NOT, Statement
+from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
+from benchmarks.runs import FORCES, VOLTAGES
 
 _PUBLISHED = Path(__file__).parent / "published.csv"
 
@@ -29,14 +29,17 @@ def draw(docs: Path) -> Path:
     numbers = found.numbers
     statements = [Statement(**s) for s in numbers["statements"]]
     count = Counter(s.verdict for s in statements)
-    text, verdict = prose("paper"), {"holds": count[HOLDS], "part": count[IN_PART], "none": count[NOT]}
+    text, verdict = (
+        prose("paper"),
+        {"holds": count[HOLDS], "built": count[BUILT], "part": count[IN_PART], "none": count[NOT]},
+    )
     finding = text["finding"].format(n=len(statements), **verdict)
-    for mu_app in (s.numbers["mu_app"] for s in statements if "mu_app" in s.numbers):
-        finding += " " + text["mu_app"].format(mu_app)
+    for values in (s.numbers for s in statements if "mu_app" in s.numbers):
+        finding += " " + text["mu_app"].format(**values)
     with _PUBLISHED.open(encoding="utf-8", newline="") as file:
         _, *published = csv.reader(file)
     missing = ", ".join(numbers.get("missing", []))
-    how = text["how"].format(contact=1e6 * numbers["contact_size"], sites=1e6 * SITES, centre=CENTRE)
+    how = text["how"].format(runs=len(FORCES) * len(VOLTAGES))
     grid = {key: np.array(values) for key, values in numbers.get("grid", {}).items()}
     path, caption = docs / "paper_friction.png", " ".join(text["caption"].split())
     body = [

@@ -9,6 +9,8 @@ from string import Formatter
 from typing import Any
 
 HOLDS, IN_PART, NOT = "holds", "holds in part", "does not hold"
+BUILT = "holds by construction"
+"""The model's symmetry or equations leave nothing else: such a statement checks the program, not the model."""
 
 
 @dataclass(frozen=True)
@@ -41,9 +43,10 @@ def _texts() -> dict[str, dict[str, str]]:
 def statement(key: str, numbers: Mapping[str, Any], whole: object, part: object = False, **words: Any) -> Statement:
     """Return the statement ``key`` of ``statements.csv``, which holds as a ``whole``, in ``part`` or not at all.
 
-    Its text shows ``numbers``, from which the verdict is made, and other ``words``.
+    Its text shows ``numbers``, from which the verdict is made, and other ``words``. Where the text is marked as
+    ``built``, a statement that holds does so by construction.
     """
-    verdict = HOLDS if whole else IN_PART if part else NOT
     plain, text = {name: float(value) for name, value in numbers.items()}, _texts()[key]
-    ours = _Units().format(text["ours"], **plain, **words)
-    return Statement(text["figure"], text["paper"], ours, plain, verdict, text["why"])
+    verdict = (BUILT if text["built"] else HOLDS) if whole else IN_PART if part else NOT
+    ours, why = (_Units().format(text[name], **plain, **words) for name in ("ours", "why"))
+    return Statement(text["figure"], text["paper"], ours, plain, verdict, why)

@@ -1,6 +1,7 @@
 """The stability map: where the solver converges, at what cost and with what error.
 
 environment/run python3 -m benchmarks.stability [--jobs 2] [--hours 6] [--draw]
+environment/run python3 -m benchmarks.stability --row "ε_n × 10"      one row of a table, with its reference
 
 Cases are run in processes of their own. Outcomes are kept in results/stability/runs.jsonl after each run; started
 again, only what is missing is run. After a change of the solver delete that file. Writes docs/stability.json, and from
@@ -91,13 +92,28 @@ def run_all(cases: Iterable[Case], runs: Runs, jobs: int, limit: float, hours: f
     return Pool[Case, Outcome](lambda case: solve(case, limit), jobs, hours).run(runs.missing(cases), done)
 
 
+def row(name: str, runs: Runs, jobs: int, limit: float, hours: float) -> int:
+    """Run a row of a table and its reference where they are missing, print the row; return how many runs are left."""
+    group = next(group for group in (plan.neighbours(), *plan.named().values()) if name in group.cases)
+    case = group.cases[name]
+    cases = [case, case.reference] if group.referenced else [case]
+    left = run_all(cases, runs, jobs, limit, hours)
+    found = {Case(**each["case"]): each for each in runs.numbers(cases)["runs"]}
+    print(page.named_table(plan.Named({name: case}, group.referenced), found))
+    return left
+
+
 def main(given: Sequence[str] | None = None) -> int:
-    """Run what is missing, keep its numbers and draw the page."""
+    """Run what is missing, keep its numbers and draw the page; or make one row."""
+    rows = [name for group in (plan.neighbours(), *plan.named().values()) for name in group.cases]
     asked = parser(__doc__, "stability")
     asked.add_argument("--limit", type=positive(float), default=120.0, help="seconds of processor time for one run")
     asked.add_argument("--hours", type=positive(float), default=6.0, help="after which no run is started")
+    asked.add_argument("--row", choices=rows, metavar="NAME", help=f"this row alone, printed: {', '.join(rows)}")
     args = asked.parse_args(given)
     left = 0
+    if args.row:
+        return row(args.row, Runs(args.out / "runs.jsonl"), args.jobs, args.limit, args.hours)
     if not args.draw:
         runs, cases = Runs(args.out / "runs.jsonl"), plan.cases()
         print(f"stability map: {len(cases)} solves, {len(runs.missing(cases))} to be run")

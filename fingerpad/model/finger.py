@@ -55,32 +55,10 @@ class Finger:
             on_accept: see :class:`variational.solvers.continuation.Continuation`.
         """
         self.options, self.size, self.profiles = model.options, model.mesh, Profiles(model.geometry)
-        numerics, half = model.numerics, not model.options.both_halves
-        if model.mesh_file is not None:
-            self.mesh = mesh.load(comm, meshfile.file(model.mesh_file))
-        else:
-            build = partial(fingertip.build, model.geometry, model.mesh, model.options.receptors, half)
-            self.mesh = mesh.load(comm, build, tags.LAYERS.values())
-        layers = self.mesh.layers().values()
         self.closure = model.closure
-        attraction = ELECTROSTATIC if model.options.voltage else None
-        made = Body(
-            self.mesh,
-            {tag: solid for tag, solid in model.solids.items() if tag in layers},
-            Interface(model.contact.law(), model.friction, model.h_0, attraction),
-            self.closure,
-            element=numerics.element,
-            points=numerics.quadrature_points,
-            force_scale=max((load.f_ext for load in model.loads if load.f_ext), default=1.0),
-            tolerance=numerics.tolerance,
-            mirror=self.mesh.facets(tags.SYMMETRY) if half else None,
-            coupling_tolerance=numerics.coupling_tolerance,
-            coupling_cap=numerics.coupling_cap,
-            by_gap=model.contact.length == "gap",
-            on_accept=on_accept,
-            step_scale=numerics.step_scale,
-        )
-        self._tolerance = numerics.tolerance
+        half = not model.options.both_halves
+        self.mesh, made = assembled(model, comm, on_accept, half)
+        self._tolerance = model.numerics.tolerance
         self.problem, self.solver, self.observer = made.problem, made.solver, made.observer
         self.coupling, self.continuation = made.coupling, made.continuation
         self.ridges = symmetry.names(made.surface.ridge_numbers) if half else made.surface.ridge_numbers
@@ -142,3 +120,40 @@ class Finger:
         notes = [self.closure.state(float(p), self.voltage) if self.closure else "" for p in loads.p_c]
         more = {"load": load, "load_number": number, "mesh_contact": self.contact_size}
         return Step(contact_state(self.continuation, loads, self.ridges, d_eq, **more), notes, attempt or Attempt())
+
+
+def assembled(
+    model: FingerModel, comm: MPI.Comm, on_accept: Callable[[Target, float, Attempt], bool], half: bool
+) -> tuple[mesh.TaggedMesh, Body]:
+    """Return a finger's mesh, and its solver in the unloaded state; collective.
+
+    Args:
+        model: shape, sizes, laws and numbers.
+        comm: communicator of the mesh.
+        on_accept: see :class:`variational.solvers.continuation.Continuation`.
+        half: of the half at x >= 0, whose mirror image is the other.
+    """
+    numerics = model.numerics
+    if model.mesh_file is not None:
+        tagged = mesh.load(comm, meshfile.file(model.mesh_file))
+    else:
+        build = partial(fingertip.build, model.geometry, model.mesh, model.options.receptors, half)
+        tagged = mesh.load(comm, build, tags.LAYERS.values())
+    layers = tagged.layers().values()
+    body = Body(
+        tagged,
+        {tag: solid for tag, solid in model.solids.items() if tag in layers},
+        Interface(model.contact.law(), model.friction, model.h_0, ELECTROSTATIC if model.options.voltage else None),
+        model.closure,
+        element=numerics.element,
+        points=numerics.quadrature_points,
+        force_scale=max((load.f_ext for load in model.loads if load.f_ext), default=1.0),
+        tolerance=numerics.tolerance,
+        mirror=tagged.facets(tags.SYMMETRY) if half else None,
+        coupling_tolerance=numerics.coupling_tolerance,
+        coupling_cap=numerics.coupling_cap,
+        by_gap=model.contact.length == "gap",
+        on_accept=on_accept,
+        step_scale=numerics.step_scale,
+    )
+    return tagged, body

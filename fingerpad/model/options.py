@@ -44,13 +44,16 @@ class ModelOptions:
     """Receptor sites, and elements small enough for them."""
     both_halves: bool
     """The finger on both sides of x = 0."""
+    symmetric_start: bool
+    """Loads before the bone first moves sideways are reached on one half, and the whole is its mirror image."""
     errors: bool
     """Discretisation errors, from states solved again on other meshes."""
     omitted: tuple[Omission, ...]
 
     def with_both_halves(self) -> "ModelOptions":
-        """Return the options for the whole finger."""
-        return replace(self, both_halves=True, omitted=tuple(o for o in self.omitted if o != _HALF))
+        """Return the options for the whole finger from the start."""
+        omitted = tuple(o for o in self.omitted if o != _HALF)
+        return replace(self, both_halves=True, symmetric_start=False, omitted=omitted)
 
 
 _FILE = "the mesh is of a file"
@@ -80,10 +83,11 @@ def plan(scene: Scene) -> ModelOptions:
             omitted.append(Omission("receptor sites", _FILE))
         if errors:
             omitted.append(Omission("discretisation errors", f"{_FILE} and cannot be refined"))
-        return ModelOptions(voltage, friction, False, True, False, tuple(omitted))
+        return ModelOptions(voltage, friction, False, True, False, False, tuple(omitted))
+    symmetric_start = both_halves and not scene.loads()[0].bone_x
     if not both_halves:
         omitted.append(_HALF)
-    return ModelOptions(voltage, friction, receptors, both_halves, errors, tuple(omitted))
+    return ModelOptions(voltage, friction, receptors, both_halves, symmetric_start, errors, tuple(omitted))
 
 
 class FingerModel:

@@ -10,6 +10,7 @@ from fingerpad.io.states import SLIDE_ON
 from fingerpad.model.contact_zone import ContactZone, FingerExceeded
 from fingerpad.model.finger import Finger, Step
 from fingerpad.model.full_slip import FullSlip
+from fingerpad.model.half import HalfFinger
 from fingerpad.model.options import FingerModel
 from fingerpad.model.stability import StabilityChecks
 from fingerpad.model.state import step_record
@@ -53,7 +54,7 @@ class Simulation:
             on_step: called on every rank after each accepted step with the part of the whole history that is done.
             on_load: called on every rank when a load has been reached.
         """
-        self._model = model
+        self._model, self._comm = model, comm
         self.on_step, self.on_load = on_step, on_load
         self.finger = finger = Finger(model, comm, self._accepted)
         self.energy = finger.book()
@@ -64,6 +65,7 @@ class Simulation:
         count, file = model.geometry.ridge_count, model.mesh_file
         self._zone = ContactZone(finger.mesh, finger.observer, finger.ridges, count, file)
         self._restart: RestartRequired | None = None
+        self._half: HalfFinger | None = None  # while it leads the finger
 
     def run(self) -> RestartRequired | None:
         """Reach every load; collective.
@@ -75,9 +77,17 @@ class Simulation:
         Raises:
             StepFailed: a load that could not be reached; everything accepted before was reported.
         """
-        path = self.finger.continuation
-        for k, load in enumerate(self._model.loads):
+        path, loads = self.finger.continuation, self._model.loads
+        symmetric = 0
+        if self._model.options.symmetric_start:
+            symmetric = next(k for k, load in enumerate(loads) if load.bone_x or load.until_full_slip)
+        for k, load in enumerate(loads):
             self._load, self._loads_done = load.name, k
+            if k == 0 and symmetric:
+                self._half = HalfFinger(self._model, self.finger, self._comm, self._accepted)
+            if k == symmetric and self._half is not None:
+                self._half.end()
+                self._half = None
             self._reach(load)
             while load.until_full_slip and path.slip[1] and self._restart is None:
                 ahead = self._ahead(load)
@@ -93,7 +103,7 @@ class Simulation:
     def _reach(self, load: Load) -> None:
         target = Target(load.name, load.f_ext, load.bone_height, load.voltage, load.bone_x, load.until_full_slip)
         if self._restart is None:
-            self.finger.continuation.run(target)
+            (self._half or self.finger.continuation).run(target)
         if self._restart is None:
             self._restart = self._symmetry_lost()
 
@@ -141,10 +151,10 @@ class Simulation:
         return self.finger.present(loads, "touch" if touches else self._load, self._loads_done + 1, attempt)
 
     def _symmetry_lost(self) -> RestartRequired | None:
-        """Check the stability of the present state; return that the whole finger is needed where a half is unstable."""
+        """Check the stability of the present state; return that a half cannot lead the finger where it is unstable."""
         stable = self.checks.check(self._load).frozen.stable
         options = self._model.options
-        if options.both_halves or stable:
+        if stable or (options.both_halves and self._half is None):
             return None
         reason = "the half of the finger is not stable, so that the whole may not be symmetric"
         return RestartRequired(reason, self._model.changed(options=options.with_both_halves()))

@@ -115,6 +115,7 @@ def _made_of(scene: Scene) -> dict[str, Any]:
         "geometry": {name: parameters["geometry"][name] for name in skin},
         "materials": {name: parameters["materials"][name] for name in layers},
         "contact_size": scene.mesh.contact,
+        "touching_fraction": scene.mesh.touching_fraction,
         **{name: parameters[name] for name in ("electric", "roughness", "contact", "numerics")},
         **({"laws": laws} if laws else {}),
     }
@@ -136,7 +137,10 @@ class _Cell:
         self.clock, self.scene, self.f_max = Stopwatch(), scene, f_max
         finger = flat_junction(scene.geometry)
         top = mean_depth(finger) + finger.sc_thickness + finger.ve_thickness + _DERMIS
-        size = MeshSize(contact=scene.mesh.contact, interface=max(60e-6, scene.mesh.contact), growth=0.4)
+        size = MeshSize(
+            contact=scene.mesh.contact, interface=max(60e-6, scene.mesh.contact), growth=0.4,
+            touching_fraction=scene.mesh.touching_fraction,
+        )  # fmt: skip
         # A rank by itself makes the whole of it: it is small.
         body = load(MPI.COMM_SELF, partial(strip.build, finger, size, 1, top), strip.LAYERS)
         skins = {tag: s for tag, s in scene.solids().items() if tag in strip.LAYERS}

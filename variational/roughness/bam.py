@@ -14,13 +14,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 from scipy.special import erfc
 
 from variational.roughness.closure import AirGap, Closure
 
 Array = NDArray[np.float64]
 _EPS_0 = 8.854e-12  # F/m, Table 3
+_SEPARATION = 1e-15  # error of a separation that is a root, over h_rms
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,8 @@ class BearingArea(Closure):
         rising = np.flatnonzero(np.diff(p) > 0)
         if not len(rising) or rising[0] == 0:
             return None
-        return float(brentq(lambda v: self._external_slope(v, voltage), u[rising[0] - 1], u[rising[0] + 1], xtol=1e-13))
+        ends = u[rising[0] - 1], u[rising[0] + 1]
+        return float(brentq(lambda v: self._external_slope(v, voltage), *ends, xtol=_SEPARATION * self.h_rms))
 
     def _external_slope(self, u_bar: float, voltage: float) -> float:
         _, slope = self._twice_area(u_bar)
@@ -131,8 +133,8 @@ class BearingArea(Closure):
         highest, lowest = self.external_pressure(0.0, voltage), self.external_pressure(end, voltage)
         if not lowest < p_ext <= highest:
             raise ValueError(f"p_ext is {p_ext:g} Pa; at {voltage:g} V contact needs {lowest:.4g} to {highest:.4g} Pa")
-        u_bar = brentq(lambda v: float(self.external_pressure(v, voltage)) - p_ext, 0.0, end, xtol=1e-15)
-        return float(self.air_gap(u_bar))
+        found = brentq(lambda v: self.external_pressure(v, voltage) - p_ext, 0.0, end, xtol=_SEPARATION * self.h_rms)
+        return float(self.air_gap(found))
 
     def threshold(self, approximate: bool = False) -> float:
         """Return the voltage (V) of macroscopic stickiness.
@@ -143,7 +145,12 @@ class BearingArea(Closure):
         if approximate:
             return 1.8 * self.h_rms * float(np.sqrt(self.h_0 * 4 / 3 * self.young / (_EPS_0 * self.wavelength)))
 
-        def least(voltage: float) -> float:
-            return float(self.external_pressure(np.linspace(0, 8 * self.h_rms, 4001), voltage).min())
+        # The least p_ext is zero at the voltage whose square is the least ratio of repulsion to attraction at 1 V.
+        def ratio(u_bar: ArrayLike) -> Array:
+            return np.asarray(self.contact_pressure(u_bar) / self.attraction(u_bar, 1.0))
 
-        return float(brentq(least, 1.0, 1e4, xtol=1e-6))
+        u = np.linspace(0, 8 * self.h_rms, 4001)
+        k = int(np.argmin(ratio(u)))
+        ends, error = (u[max(k - 1, 0)], u[min(k + 1, len(u) - 1)]), {"xatol": 1e-9 * self.h_rms}
+        near = minimize_scalar(ratio, bounds=ends, method="bounded", options=error)
+        return float(np.sqrt(min(near.fun, ratio(u[k]))))

@@ -126,7 +126,8 @@ def _instrument(path: Path) -> Found:
         from SurfaceTopography.Exceptions import ReadFileError
     except ImportError:
         raise ImportError(
-            f"reading {path} needs SurfaceTopography; get it with: pip install fingerpad[topography]"
+            f"reading {path} needs SurfaceTopography; get it with: pip install fingerpad[topography], or in a clone "
+            "environment/wheels"
         ) from None
     if not path.is_file():
         raise FileNotFoundError(f"{path} is not there")

@@ -4,7 +4,7 @@ A step that fails is halved. Where the loop over the scales cycles there may be 
 :mod:`~variational.solvers.coupling`), which halved steps approach and never cross; so a longer step over that range is
 tried first.
 
-History (friction anchors, contact multipliers, air gaps, displacement) is accepted in :meth:`Continuation._accept`
+History (friction anchors, contact multipliers, air gaps, displacement) is accepted in :meth:`Continuation.accept`
 and nowhere else; a rejected attempt restores the last accepted state.
 """
 
@@ -159,7 +159,8 @@ class Continuation:
     def _restore(self) -> None:
         self._now.restore(self.coupling)
 
-    def _accept(self) -> None:
+    def accept(self) -> None:
+        """Accept the present state, an equilibrium; collective."""
         self.surface_state = self.observer.state()
         self.slip = self.observer.slip(self.surface_state)
         s = self.surface_state
@@ -228,7 +229,7 @@ class Continuation:
                     step = over if attempt.stepped_over_fold else within
                     if failure.irrecoverable or pseudo_transient and within < _SMALLEST * largest:
                         raise StepFailed(self._describe(target, part, failure)) from failure
-            self._accept()
+            self.accept()
             part += step
             if self.on_accept(target, part, attempt) is True:
                 return False
@@ -275,7 +276,7 @@ class Continuation:
                     self._relax(0.5)
                 load = replace(self._now.control), self._now.voltage
                 self._try(load, attempt, pseudo_transient=way == "pseudo-transient", on_cone=False)
-                self._accept()
+                self.accept()
                 return attempt
             except NotConverged as failure:
                 self._restore()

@@ -41,7 +41,8 @@ from variational.solvers.secant import Secants
 Array = NDArray[np.float64]
 # Solves at air gaps that change again are not exact: what the first leaves out of balance over the force scale, and the
 _FIRST, _LATER = StopRule(floor=1e-5), StopRule(part=0.03)  # later ones, over what the air gaps' change brought,
-_NEARLY = 1e-3  # until the air gaps' relative error is below this.
+_NEARLY = 1e-3  # until the air gaps' relative error is below this;
+_ON_ITS_WAY = StopRule(part=0.5)  # where a ridge comes down, whose next air gap is known already.
 _HASTE = 2  # iterations in which the residual must fall where a ridge lets go, as there is a remedy then
 
 
@@ -182,8 +183,9 @@ class Coupling:
                 contact_history = formulation.corrected(state, contact_history)
                 problem.correct_history(contact_history)
             if charged:
-                stop = EXACT if secants.settled(_NEARLY) else _LATER
+                settled = secants.settled(_NEARLY)
                 self.set_air_gaps(secants.step())
+                stop = EXACT if settled else _ON_ITS_WAY if secants.closing else _LATER
         ridge, error = self.history.ridges[-1], self.history.errors[-1]
         where = f"a contact error of {error:.2g} m" if scales else f"ridge {ridge}"
         raise NotConverged(f"COUPLING_CAP at {where}", False, cycling=not scales)

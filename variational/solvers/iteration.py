@@ -151,6 +151,11 @@ class Iteration:
             self.equations.residual(x, self.f)
         return reason
 
+    def free(self) -> None:
+        """Free the tangent and its factorisation, the larger part of all memory; nothing can be solved any more."""
+        self.snes.destroy()
+        self.tangent.matrix.destroy()
+
     # -- callbacks -------------------------------------------------------------------------------------
     def _residual(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
         if self._ahead:  # the step's length was found with it

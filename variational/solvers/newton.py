@@ -5,10 +5,10 @@ tangent of a load is that of the state it starts from, so that the first iterate
 it is the last one, which goes on serving while it serves.
 :mod:`~variational.solvers.iteration` has the rules for steps.
 
-Where the iteration fails, points on the friction cone are first taken for slipping instead of sticking, or the other
-way round. Where only friction stays out of balance, its springs are softened and stiffened again step by step. Or, if
-the caller asks for it, a part of the skin is taken to be about to jump on or off the screen, where the tangent has a
-negative direction, and the solve is repeated as pseudo-transient continuation: it moves slowly away from the
+Where the iteration fails and mostly friction stays out of balance, points on the friction cone are first taken for
+slipping instead of sticking, or the other way round; then its springs are softened and stiffened again step by step.
+Or, if the caller asks for it, a part of the skin is taken to be about to jump on or off the screen, where the tangent
+has a negative direction, and the solve is repeated as pseudo-transient continuation: it moves slowly away from the
 equilibrium that is lost and ends in one of the unchanged equations.
 """
 
@@ -26,6 +26,7 @@ from variational.solvers.timing import Counts
 Array = NDArray[np.float64]
 _SIDEWAYS = 0.95  # part of the last residual that is friction's, above which points do not come to stick (0.999 where
 # they did not, at most 0.62 where ridges jumped);
+_MOSTLY = 0.5  # the same, above which the guess for points on the friction cone may be wrong (0.2 where ridges jumped)
 _EASE = 0.01  # part of the tangential stiffness to begin with then,
 _STIFFER, _LEAST_STIFFER = 4.0, 1.05  # by how much it is raised at a time, and at least
 
@@ -176,7 +177,8 @@ class Solver:
         self.equations.inverted, self.equations.not_a_number = False, ""
         reason = -1 if tried else run(self.x)
         friction = self.problem.anchor is not None
-        if reason <= 0 and not pseudo_transient and friction and self._on_cone:  # the other guess, which is then kept
+        guessed = friction and self._on_cone and not pseudo_transient
+        if reason <= 0 and guessed and self._sideways() > _MOSTLY:  # the other guess, which is then kept
             self.x.array_w[:] = start
             self.problem.guess.value = SLIPS if self.problem.guess.value == STICKS else STICKS
             self.iteration.tangent.stale = True

@@ -29,6 +29,7 @@ _FIRST = 0.01  # of d: how far the first step may go beyond r, whose gain is tha
 _OPENING = 0.05  # of d: r of a ridge that lets go, and
 _OPENED, _OPENS = 1.3, 1.02  # its air gap over that at the loop's start; the same of one that may let go
 _NEARLY = 0.9  # gain of a ridge that may
+_DOWN, _UP = 1 / 3, 1 / 2  # of d: longest step
 _JUMP = 0.1  # of d: how far a ridge past its fold goes at least
 
 
@@ -37,6 +38,7 @@ class Secants:
 
     Attributes:
         gain: last secant of each ridge that moved its air gap; NaN where none did yet.
+        closing: whether a ridge comes down on the screen, farther than one step goes.
     """
 
     def __init__(self, d: Array, gain: Array, free: float) -> None:
@@ -51,7 +53,7 @@ class Secants:
         self._opened: NDArray[np.bool_] = np.zeros(len(d), dtype=bool)  # whether a ridge was given that
         self.gain = gain.copy()
         self._start, self._d, self._r = d, d, np.zeros_like(d)
-        self._has_stepped = False
+        self._has_stepped, self.closing = False, False
         self._past: NDArray[np.bool_] = np.zeros(len(d), dtype=bool)  # whether a gain reached one
         self._steep: NDArray[Any] = np.zeros(len(d), dtype=np.int64)  # secants in a row near a gain of one or above
 
@@ -79,7 +81,8 @@ class Secants:
         step = np.clip(self._r * self._amplification(self._steep), -most, most)
         self._has_stepped = True
         lets_go = (self.gain >= 1) & (self._r > _OPENING * self._d) & (self._d > _OPENED * self._start)
-        return self._open(self._d + np.clip(step, -self._d / 3, self._d / 2), lets_go)
+        self.closing = bool((step < -_DOWN * self._d).any())
+        return self._open(self._d + np.clip(step, -_DOWN * self._d, _UP * self._d), lets_go)
 
     def leaving(self, d: Array) -> NDArray[np.bool_]:
         """Return the ridge, if any, that lets go when the skin finds no equilibrium at air gaps ``d`` (m).

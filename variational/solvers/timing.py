@@ -14,6 +14,11 @@ class Timings:
     def __init__(self) -> None:
         self.seconds: defaultdict[str, float] = defaultdict(float)
 
+    def add(self, other: "Timings") -> None:
+        """Add another's."""
+        for name, seconds in other.seconds.items():
+            self.seconds[name] += seconds
+
     @contextmanager
     def phase(self, name: str) -> Iterator[None]:
         """Charge the block to a phase."""
@@ -32,6 +37,12 @@ class Counts:
     factorisations: int = 0
     pseudo_transient: int = 0
     """Solves that full Newton steps did not manage."""
+
+    def add(self, other: "Counts") -> None:
+        """Add another's."""
+        self.newton += other.newton
+        self.factorisations += other.factorisations
+        self.pseudo_transient += other.pseudo_transient
 
 
 def memory_mb() -> float:
