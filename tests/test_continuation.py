@@ -17,7 +17,7 @@ from variational.solvers.failure import NotConverged
 def sliding():
     """Return a function that slides a pressed block by 0.6 mm, where solves in a range of loads fail."""
 
-    def slide(first, last, cycling=False, times=1000, each=0, but_pseudo_transient=False):
+    def slide(first, last, cycling=False, times=1000, each=0, but_pseudo_transient=False, jumps=False):
         run = over(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), MU_F, 1e11, 1e10, held=False).continuation
         solver, run.step_scale = run.solver, 0.5  # of 60 um
         run.run(Target("press", bone_height=-2e-6))
@@ -29,6 +29,7 @@ def sliding():
                 times -= 1
                 raise NotConverged("TEST", False, cycling=cycling)
             solve(pseudo_transient)
+            solver.counts.pseudo_transient += jumps and pseudo_transient
             solver.counts.factorisations += each if solver.control.x > 1e-9 else 0
 
         run.coupling.solve = failing
@@ -81,6 +82,20 @@ def test_jump_is_not_approached_for_ever(sliding):
     cut = [(x / 1e-6, len(attempt.cutbacks)) for x, attempt in reached if attempt.cutbacks]
     assert cut == [(pytest.approx(x), 1) for x in (210, 225, 232.5, 236.25)]
     assert 240 == pytest.approx(next(x for x, _ in reached if x > 0.237e-3) / 1e-6)
+
+
+def test_one_jump_after_the_other_is_let_jump(sliding):
+    """From 235 um on nothing but jumps gets on: a step that is cut twice jumps, and no later one is cut."""
+    reached = sliding(0.235e-3, 0.5e-3, but_pseudo_transient=True, jumps=True)
+    assert reached[-1][0] == pytest.approx(0.6e-3)
+    assert [len(attempt.cutbacks) for _, attempt in reached if attempt.cutbacks] == [1, 2]
+
+
+def test_no_load_is_given_up_before_a_jump_was_tried(sliding, monkeypatch):
+    """The smallest step is as large as the first that is cut, but the third attempt is still made, and jumps."""
+    monkeypatch.setattr(continuation, "_SMALLEST", 0.9)
+    reached = sliding(0.235e-3, 0.245e-3, but_pseudo_transient=True)
+    assert reached[-1][0] == pytest.approx(0.6e-3)
 
 
 def test_other_failures_are_not_stepped_over(sliding):

@@ -92,6 +92,7 @@ class Problem:
         laws, pressures, densities: each group of layers' material with its numbers as fields, volumetric pressure (Pa),
             positive in tension, and strain energy density (J/m^3), UFL.
         residual, jacobian: compiled forms in w and its test function.
+        skin_mass: compiled mass of the touching skin per unit density.
         pressure_residual: the equation of the pressure; with one only.
         pressure_jacobian: compiled blocks of the Jacobian in (v, dp), (q, du), (q, dp); with a pressure only.
     """
@@ -184,7 +185,9 @@ class Problem:
             energy += -attraction.potential(self.y, self.d_eq, self.voltage, h_0) * self.area[1] * dS
         residual = ufl.derivative(energy, w, v) + formulation.virtual_work(skin, self.contact, v) * dS
         du = ufl.TrialFunction(self.V)
-        jacobian = ufl.derivative(residual, w, du) + self.eta * ufl.dot(du, v) * dS
+        skin_mass = ufl.dot(du, v) * dS
+        jacobian = ufl.derivative(residual, w, du) + self.eta * skin_mass
+        self.skin_mass = fem.form(skin_mass, jit_options=jit.OPTIONS)
         self.energy = fem.form(energy, jit_options=jit.OPTIONS)
         self.residual = fem.form(residual, jit_options=jit.OPTIONS)
         self.jacobian = fem.form(jacobian, jit_options=jit.OPTIONS)

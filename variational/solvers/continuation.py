@@ -203,7 +203,7 @@ class Continuation:
         largest = way.largest_step(self.step_scale)
         # A slide begins with a shorter step: under a light load it may be over within one.
         slides = target.bone_x not in (None, self._now.control.x)
-        part, step, uncut, cut = 0.0, largest / 2 if slides else largest, 0, 0
+        part, step, uncut, cut, jumps = 0.0, largest / 2 if slides else largest, 0, 0, False
         first, most = self.steps, _FEW_STEPS + int(np.ceil(_MANY_STEPS / largest))
         while part < 1:
             if self.steps - first >= most:
@@ -215,8 +215,8 @@ class Continuation:
             attempt, within = Attempt(), step
             while True:
                 # One or two failures may be a step too large. More in a row, or one in each of several steps, are a
-                # jump, which no step is small enough for.
-                pseudo_transient = len(attempt.cutbacks) > 1 or cut >= _CUT
+                # jump, which no step is small enough for. One jump comes after the other: of facets, of ridges.
+                pseudo_transient = jumps or len(attempt.cutbacks) > 1 or cut >= _CUT
                 try:
                     self._try(way.at(part + step), attempt, pseudo_transient)
                     break
@@ -227,7 +227,7 @@ class Continuation:
                     attempt.stepped_over_fold = failure.cycling and not attempt.stepped_over_fold and over > within
                     within = within if attempt.stepped_over_fold else within / 2
                     step = over if attempt.stepped_over_fold else within
-                    if failure.irrecoverable or within < _SMALLEST * largest:
+                    if failure.irrecoverable or pseudo_transient and within < _SMALLEST * largest:
                         raise StepFailed(self._describe(target, part, failure)) from failure
             self.accept()
             part += step
@@ -236,6 +236,7 @@ class Continuation:
             if target.until_full_slip and self.slip[1]:
                 return True
             uncut, cut = (0, cut + 1) if attempt.cutbacks else (uncut + 1, 0)
+            jumps |= attempt.pseudo_transient > 0
             step = within
             if attempt.factorisations <= _FEW or uncut >= _UNCUT:
                 step, uncut = min(2 * step, largest), 0

@@ -10,8 +10,15 @@ units of roundoff of the forces that cancel in it is at its floor, and the solve
 :attr:`Iteration.floor` is that residual.
 
 Pseudo-transient continuation (Kelley and Keyes 1998, doi 10.1137/S0036142996304796): the tangent gets a shift
-:math:`\eta` on the touching skin, an implicit Euler step of :math:`\eta \dot u = -r(u)`, and eta falls as the residual
-falls. Every iteration has a tangent of its own then.
+:math:`\eta` on the touching skin, an implicit Euler step of :math:`\eta M \dot u = -r(u)`, M the skin's mass. Every
+iteration has a tangent of its own then. The residual does not control eta: it grows where the skin speeds up towards
+the screen, and falls where a large eta stops the skin. What controls eta is how well one Newton iteration solves the
+Euler step (Deuflhard 2011, doi 10.1007/978-3-642-23899-4, ch. 6),
+
+.. math:: q = \| r(u + \Delta u) + \eta M \Delta u \| / \| r(u) \|.
+
+Where q is small eta falls, else it rises. So the skin is followed from the equilibrium that is lost to the next one,
+which hardly depends on the numbers here.
 """
 
 from dataclasses import dataclass
@@ -46,7 +53,11 @@ _GROWS = 10.0  # make the residual grow more than this
 _ROUNDINGS = 4.0  # units of roundoff of the sum of each node's absolute forces, within which a residual may stall,
 _FLOOR = 1e-6  # if that is less than this part of the force scale
 _SHIFT = 2e9  # Pa/m, eta at the start
-_SHIFT_FALL, _SHIFT_RISE = 0.4, 4.0  # of eta an iteration
+_SHIFT_FALL, _SHIFT_RISE = 0.3, 4.0  # of eta an iteration, the former where
+_FOLLOWED = 0.5  # the Euler step's error q is below this, the latter at most
+_MADE = 1e-6  # of the residual: that of prescribed rows where their displacements are made
+_STEADY = 2.0  # eta at least, over a negative stiffness along the last Euler step
+_SHIFTED_LONGER = 3  # times as many iterations as others: facets of many ridges come down one after the other
 
 
 @dataclass(frozen=True)
@@ -85,12 +96,16 @@ class Iteration:
         self._norms: list[float] = []
         self._stop, self._atol = EXACT, 0.0
         self._shifted = False  # whether the tangent has the shift of pseudo-transient continuation
+        self._skin_mass: PETSc.Mat | None = None
+        self._before, self._moved, self._drag = (self.layout.create_vector() for _ in range(3))
+        self._least_shift = 0.0  # Pa/m, by the stiffness along the last Euler step
         self._refused = False  # whether the present iteration stayed where it was
         self._ahead = False  # whether the residual of the next iterate is known
         self._skin = equations.skin[1]  # vertical displacements of the skin that can touch
         self._skin_height = equations.problem.V.tabulate_dof_coordinates()[self._skin // 2, 1]
         self._nodal = np.zeros_like(equations.problem.w.x.array)
         self.snes = self._create_snes(force_scale * tolerance)
+        self._most = int(self.snes.getTolerances()[3])  # iterations of a run that is not shifted
 
     def _create_snes(self, imbalance: float) -> PETSc.SNES:
         options = PETSc.Options()
@@ -117,6 +132,7 @@ class Iteration:
             stop: when the iteration ends.
         """
         self._shifted, self._stop = shifted, stop
+        self.snes.setTolerances(max_it=self._most * (_SHIFTED_LONGER if shifted else 1))
         self._anderson.interrupt()
         self.tangent.start()
         self.tangent.stale |= shifted
@@ -156,6 +172,8 @@ class Iteration:
             self._norms, self._refused = [], False
             self._atol = max(atol, self._stop.part * norms[2], self._stop.floor * self.force_scale)
             eta.value = _SHIFT if self._shifted else 0.0
+        if self._shifted:
+            eta.value = self._next_shift(float(eta.value))
         previous = self._norms[-1] if self._norms else np.inf
         norm = norms[2]
         if not self._refused:
@@ -173,14 +191,58 @@ class Iteration:
             if slow and norm <= self._roundoff(norm):
                 self.floor = norm / self.force_scale
                 return reason.CONVERGED_SNORM_RELATIVE
-        if self._shifted and iteration > 0:
-            eta.value *= min(norm / previous, _SHIFT_RISE) if norm > previous else _SHIFT_FALL
         # The first norm is left out: it may hold a prescribed displacement not yet made.
         few = self._stop.patience
         late, early = self._norms[1:][-few:], self._norms[1:][-2 * few : -few]
         if not self._shifted and len(early) == few and min(late) > 0.7 * min(early):
             return reason.DIVERGED_LOCAL_MIN  # cycles
         return reason.ITERATING
+
+    def _is_uphill(self, step: PETSc.Vec) -> bool:
+        r"""Return whether eta is too small for the negative stiffness along an Euler step; collective.
+
+        The stiffness is the tangent's, :math:`\lambda = \Delta u^T K \Delta u / \Delta u^T M \Delta u` (Pa/m). Where it
+        is below :math:`-\eta` the step leads back to an unstable equilibrium. A step that makes a prescribed
+        displacement has forces of its own, and is not judged.
+        """
+        moved, drag, eta = self._moved, self._drag, float(self.equations.problem.eta.value)
+        rows = self.equations.local(self.equations.prescribed_rows())
+        self._least_shift = 0.0
+        to_make = float(np.abs(self.f.array_r[rows]).max(initial=0.0))
+        if self.layout.comm.allreduce(to_make, op=MPI.MAX) > _MADE * self._norms[-1]:
+            return False
+        step.copy(moved)
+        self.layout.translate(moved, self.layout.rigid_part(moved))
+        moved.array_w[rows] = 0.0
+        self._mass().mult(moved, drag)
+        along = moved.dot(drag)
+        stiffness = moved.dot(self.f) / along - eta if along > 0 else 0.0
+        self._least_shift = max(-_STEADY * stiffness, 0.0)
+        return stiffness < -eta
+
+    def _next_shift(self, eta: float) -> float:
+        """Return the shift (Pa/m) of the next Euler step by how well the last one, with ``eta``, was solved."""
+        x, drag = self.snes.getSolution(), self._drag
+        if self._norms:
+            moved = self._before
+            moved.aypx(-1.0, x)
+            self.layout.translate(moved, self.layout.rigid_part(moved))
+            self._mass().mult(moved, drag)
+            drag.array_w[self.equations.local(self.equations.prescribed_rows())] = 0.0
+            drag.aypx(eta, self.f)
+            error = drag.norm() / self._norms[-1]
+            eta *= _SHIFT_FALL if error < _FOLLOWED else min(error / _FOLLOWED, _SHIFT_RISE)
+            eta = max(eta, self._least_shift)
+        x.copy(self._before)
+        return eta
+
+    def _mass(self) -> PETSc.Mat:
+        """Return the mass of the touching skin, which is made where it is first needed."""
+        if self._skin_mass is None:
+            self._skin_mass = self.layout.create_matrix()
+            self.layout.add_to_matrix(self._skin_mass, self.equations.problem.skin_mass, (0, 0))
+            self._skin_mass.assemble()
+        return self._skin_mass
 
     def _roundoff(self, norm: float) -> float:
         r"""Return the norm of nodal forces (N/m) that roundoff may leave in the present iterate.
@@ -215,13 +277,14 @@ class Iteration:
                 step.array_w[:] += more
         if len(self._norms) <= _LIMITED_STEPS:
             step.scale(self._until_deep(x, step))
+        uphill = self._shifted and self._is_uphill(step)
         norm = self._look_ahead(x, step)
         for _ in range(_HALVINGS):
             if norm < _GROWS * max(self._norms):
                 break
             step.scale(0.5)
             norm = self._look_ahead(x, step)
-        self._refused = self.tangent.kept and len(self._norms) > 1 and norm > self._norms[-1]
+        self._refused = uphill or self.tangent.kept and len(self._norms) > 1 and norm > self._norms[-1]
         if self._refused:
             self._anderson.interrupt()
             step.set(0.0)

@@ -24,12 +24,9 @@ examined one after the other: the tangent of the whole does not couple the two.
 from dataclasses import dataclass
 
 import numpy as np
-import ufl
-from dolfinx import fem
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from variational import jit
 from variational.problem import SLIPS
 from variational.solvers.failure import NotConverged, linear_failure
 from variational.solvers.newton import Solver
@@ -62,11 +59,8 @@ class StabilityCheck:
     """Examines the solver's present state; leaves solver and problem as they were."""
 
     def __init__(self, solver: Solver) -> None:
-        """Compile the skin's mass."""
-        problem = solver.problem
+        """Examine a solver's states."""
         self.solver = solver
-        u, v = ufl.TrialFunction(problem.V), ufl.TestFunction(problem.V)
-        self._mass = fem.form(ufl.dot(u, v) * problem.surface.measure, jit_options=jit.OPTIONS)
         self._K = solver.layout.create_matrix()  # kept from check to check, since its pattern is
 
     def _tangent(self, eta: float, rows: Rows) -> PETSc.Mat:
@@ -83,7 +77,7 @@ class StabilityCheck:
 
     def _mass_matrix(self, rows: Rows) -> PETSc.Mat:
         A = self.solver.layout.create_matrix()
-        self.solver.layout.add_to_matrix(A, self._mass, (0, 0))
+        self.solver.layout.add_to_matrix(A, self.solver.problem.skin_mass, (0, 0))
         A.assemble()
         A.zeroRowsColumns(rows, diag=0.0)
         return A
