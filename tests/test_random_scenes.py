@@ -77,6 +77,7 @@ def test_table_holds_each_outcome():
     assert text.count("● 50") == (scenes.COUNT - 1) * len(scenes.FORMULATIONS)
     assert f"19 of {scenes.COUNT}" in text and "not run" not in text
     assert page.scenes_table(rows()[: scenes.COUNT]).count("| not run | not run |") == scenes.COUNT
+    assert page.full_slips(rows()[:5], "penalty") == f"5 of 5 ({scenes.COUNT - 5} not run)"
     assert "▲ 15 µm, 50" in page.scenes_table(rows(contact=15e-6))
 
 

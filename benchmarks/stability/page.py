@@ -80,7 +80,8 @@ def scenes_table(runs: Iterable[Row]) -> str:
 def full_slips(runs: Iterable[Row], formulation: str) -> str:
     """Return how many of the random scenes that were run a formulation leads to full slip, on whatever elements."""
     ends = [row["full_slip"] for row in runs if row["formulation"] == formulation]
-    return f"{sum(ends)} of {len(ends)}"
+    missing = scenes.COUNT - len(ends)
+    return f"{sum(ends)} of {len(ends)}" + (f" ({missing} not run)" if missing else "")
 
 
 def dearer(runs: Iterable[Row], formulation: str) -> float:
