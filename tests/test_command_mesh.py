@@ -20,6 +20,14 @@ def test_check(tmp_path, capsys):
     assert (tmp_path / "mesh.png").stat().st_size > 10_000
 
 
+@pytest.mark.parametrize(("formulation", "told"), [("augmented", 1), ("penalty", 0), ("nitsche", 0)])
+def test_method_for_comparison_is_named_before_a_run(tmp_path, capsys, formulation, told):
+    """One line of the model, for the augmented Lagrangian alone."""
+    argv = ["check", "--set", f"contact.formulation={formulation}", "--out", str(tmp_path)]
+    assert main([*argv, *(word for text in COARSE for word in ("--set", text))]) == 0
+    assert capsys.readouterr().out.count("contact by a method for comparison") == told
+
+
 def test_rule_of_the_cost_is_that_of_kept_runs():
     """Shares, factors and time are the default run's of docs/chart.json; factorisations fit docs/models.json."""
     points = {point["label"]: point for point in kept("chart.json")["points"]}

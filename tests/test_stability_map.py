@@ -296,7 +296,7 @@ def test_page_is_drawn_from_the_kept_numbers(tmp_path):
     text = page.draw(tmp_path).read_text(encoding="utf-8")
     assert imread(tmp_path / "stability.png").std() > 0.05
     blocks = [b.splitlines() for b in text.split("\n\n") if b.startswith("|")]
-    assert len(blocks) == 2 + len(plan.named())  # the default's and the counts'
+    assert len(blocks) == 3 + len(plan.named())  # the default's, the counts' and the random scenes'
     for block in blocks:
         assert len({line.count("|") for line in block}) == 1
     shown = {case for panels in plan.charts().values() for panel in panels for case in panel.cases()}

@@ -1,11 +1,11 @@
-"""The stability map: where the solver converges, at what cost and with what error.
+"""The stability map and random scenes: where the solver converges, at what cost and with what error.
 
-environment/run python3 -m benchmarks.stability [--jobs 2] [--hours 6] [--draw]
+environment/run python3 -m benchmarks.stability [--part map | random] [--jobs 2] [--hours 6] [--draw]
 environment/run python3 -m benchmarks.stability --row "ε_n × 10"      one row of a table, with its reference
 
-Cases are run in processes of their own. Outcomes are kept in results/stability/runs.jsonl after each run; started
-again, only what is missing is run. After a change of the solver delete that file. Writes docs/stability.json, and from
-it docs/stability.md and its picture.
+Cases are run in processes of their own. Outcomes of the map are kept in results/stability/runs.jsonl after each run,
+random scenes (benchmarks/stability/scenes.py) in folders beside it; started again, only what is missing is run. After a
+change of the solver delete that folder. Writes docs/stability.json, and from it docs/stability.md and its picture.
 """
 
 import json
@@ -15,8 +15,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from benchmarks.harness import keep, made, parser
-from benchmarks.stability import page, plan
+from benchmarks.harness import keep, kept, made, parser
+from benchmarks.stability import page, plan, scenes
 from benchmarks.stability.plan import Case, Outcome
 from fingerpad.cli.arguments import positive
 from fingerpad.runs import processes
@@ -108,17 +108,21 @@ def main(given: Sequence[str] | None = None) -> int:
     rows = [name for group in (plan.neighbours(), *plan.named().values()) for name in group.cases]
     asked = parser(__doc__, "stability")
     asked.add_argument("--limit", type=positive(float), default=120.0, help="seconds of processor time for one run")
-    asked.add_argument("--hours", type=positive(float), default=6.0, help="after which no run is started")
+    asked.add_argument("--hours", type=positive(float), default=6.0, help="after which no run of the map is started")
+    asked.add_argument("--part", choices=("map", "random"), help="run this part alone, and keep the other's numbers")
     asked.add_argument("--row", choices=rows, metavar="NAME", help=f"this row alone, printed: {', '.join(rows)}")
     args = asked.parse_args(given)
     left = 0
     if args.row:
         return row(args.row, Runs(args.out / "runs.jsonl"), args.jobs, args.limit, args.hours)
-    if not args.draw:
+    if not args.draw and args.part != "random":
         runs, cases = Runs(args.out / "runs.jsonl"), plan.cases()
         print(f"stability map: {len(cases)} solves, {len(runs.missing(cases))} to be run")
         left = run_all(cases, runs, args.jobs, args.limit, args.hours)
-        keep("stability", runs.numbers(cases), made(), args.docs)
+        keep("stability", kept("stability", args.docs).numbers | runs.numbers(cases), made(), args.docs)
+    if not args.draw and args.part != "map":
+        old = kept("stability", args.docs)
+        keep("stability", old.numbers | {"random": scenes.numbers(args)}, old.made, args.docs)
     print(f"{page.draw(args.docs)}" + (f"; {left} runs are missing" if left else ""))
     return 1 if left else 0
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
 from benchmarks.harness import kept, page, picture, prose, table
-from benchmarks.stability import plan
+from benchmarks.stability import plan, scenes
 from benchmarks.stability.plan import DEFAULT, Axis, Case, Named, Panel
 from fingerpad.io.style import MAGNITUDE, ORANGE, SKY, VERMILION
 
@@ -63,6 +63,49 @@ def counts_table(charts: Mapping[str, Iterable[Panel]], rows: Rows) -> str:
         count = Counter(rows[case]["status"] if case in rows else "not run" for case in panel.cases())
         lines.append([title, panel.title, count.total(), *(count[status] for status in (*NAMES, "not run"))])
     return table(["varied", "formulation or element", "runs", *NAMES.values(), "not run"], lines)
+
+
+def scenes_table(runs: Iterable[Row]) -> str:
+    """Return random scenes, one a row, with what became of each by each formulation; the last row counts full slips."""
+    found = {(row["number"], row["formulation"]): row for row in runs}
+    lines: list[list[Any]] = []
+    for number in range(scenes.COUNT):
+        data = scenes.drawn(number)
+        lines.append([number, data["f_ext"], data["voltage"], data["friction"], data["materials"]["exponent"]])
+        lines[-1] += [_scene_cell(found.get((number, name))) for name in scenes.FORMULATIONS]
+    lines.append(["full slip", None, None, None, None, *(full_slips(runs, name) for name in scenes.FORMULATIONS)])
+    return table(["scene", "f_ext (N/m)", "U (V)", "friction", "exponent", *scenes.FORMULATIONS], lines)
+
+
+def full_slips(runs: Iterable[Row], formulation: str) -> str:
+    """Return how many of the random scenes that were run a formulation leads to full slip, on whatever elements."""
+    ends = [row["full_slip"] for row in runs if row["formulation"] == formulation]
+    missing = scenes.COUNT - len(ends)
+    return f"{sum(ends)} of {len(ends)}" + (f" ({missing} not run)" if missing else "")
+
+
+def dearer(runs: Iterable[Row], formulation: str) -> float:
+    """Return a formulation's factorisations over the penalty's, in the random scenes that both lead to full slip."""
+    work = {(row["formulation"], row["number"]): row["factorisations"] for row in runs if row["full_slip"]}
+    both = [number for name, number in work if name == formulation and ("penalty", number) in work]
+    return sum(work[formulation, k] for k in both) / max(sum(work["penalty", k] for k in both), 1)
+
+
+def _random_part(text: str, random: Mapping[str, Any]) -> str:
+    ratios = {name: dearer(random["runs"], name) for name in scenes.FORMULATIONS[1:]}
+    said = text.format(made=random["made"], limit=scenes.LIMIT, **ratios)
+    return f"{said}\n\n{scenes_table(random['runs'])}"
+
+
+def _scene_cell(row: Row | None) -> str:
+    if row is None:
+        return "not run"
+    work = row["factorisations"] or "–"
+    if not row["full_slip"]:
+        return f"{SYMBOLS['failed']} {row['failure']}, {work}"
+    if row["contact"] < scenes.MESH["contact"]:
+        return f"{SYMBOLS['continuation']} {1e6 * row['contact']:g} µm, {work}; {row['failure']}"
+    return f"{SYMBOLS['converged']} {work}"
 
 
 # -- picture -------------------------------------------------------------------------------------------------
@@ -145,13 +188,17 @@ def draw(docs: Path) -> Path:
     rows = {Case(**row["case"]): row for row in numbers["runs"]}
     charts = plan.charts()
     ends = Counter(rows[c]["status"] for c in charts["Voltage and force"][0].cases() if c in rows)
+    random = numbers["random"]
     text, followed = prose("stability"), ends["converged"] + ends["continuation"]
-    finding = text["finding"].format(followed=followed, total=ends.total(), continued=ends["continuation"])
+    slips = {name: full_slips(random["runs"], name) for name in scenes.FORMULATIONS}
+    total, continued = ends.total(), ends["continuation"]
+    finding = text["finding"].format(followed=followed, total=total, continued=continued, **slips)
     symbols = ", ".join(f"{SYMBOLS[s]} {NAMES[s]}" for s in NAMES)
     body = [
         picture(docs / "stability.png", (17, 9), lambda figure: paint(figure, rows), text["caption"]),
         f"## The default and its neighbours\n\n{text['default']}\n\n{named_table(plan.neighbours(), rows)}",
         f"## How many runs ended how\n\n{counts_table(charts, rows)}",
+        f"## Random scenes of the whole finger\n\n{_random_part(text['random'], random)}",
         "## Known failures, reproduced",
         *(f"### {n.capitalize()}\n\n{text[n]}\n\n{named_table(each, rows)}" for n, each in plan.named().items()),
     ]

@@ -64,6 +64,9 @@ def _aims(load: Load) -> Iterator[str]:
 def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
     found, touching = estimate(scene, needed), by_rule(scene)
     ridges = touching_ridges(touching.geometry, touching.mesh)
+    if scene.contact.formulation == "augmented":
+        times = f"some {cost.FORMULATIONS['augmented']:.0f} times the factorisations of the penalty"
+        yield f"contact by a method for comparison, which takes {times} and may miss equilibria that it finds"
     given = scene.mesh.touching_half_arc is not None
     how = "as mesh.touching_half_arc gives" if given else "by a rule of thumb; a run takes more where they come near"
     yield f"some {_about(found.triangles)} triangles of element {scene.numerics.element}"

@@ -102,7 +102,8 @@ class Contact(Part):
 
     formulation: Literal["penalty", "nitsche", "augmented"] = "penalty"
     """Penalty (springs of the screen), Nitsche's method or an augmented Lagrangian; see
-    :mod:`variational.contact.formulation`."""
+    :mod:`variational.contact.formulation`. The augmented Lagrangian is a method for comparison: it takes several times
+    the factorisations of the penalty and finds full slip in fewer scenes (``docs/stability.md``)."""
     eps_n: Annotated[Finite, within(1e7, 1e17, "Pa/m")] = 1.5e12
     """Normal stiffness of the penalty and of the augmented Lagrangian (Pa/m of reference area). *Assumption*: the
     default keeps the penetration below a tenth of d_eq. The augmented Lagrangian's default is ten times as large,

@@ -5,8 +5,11 @@ are in contact, and backtracking on the residual only slows it. But the first st
 they would drive open skin deep through the screen, which the tangent of open skin does not resist, and any step is
 halved that would turn elements inside out or send the residual up tenfold. A factorisation serves as long as the
 residual falls to half an iteration, accelerated by :mod:`~variational.solvers.anderson`; a step it proposes is refused
-when the residual would rise, and made anew with the tangent of the present iterate. A residual that stalls within some
-units of roundoff of the forces that cancel in it is at its floor, and the solve ends as converged there;
+when the residual would rise, and made anew with the tangent of the present iterate. Where the right points are not yet
+in contact, a kept factorisation may lower the residual and bring the wrong points into contact, the more so the stiffer
+the penalty: without voltage an iteration that cycles starts again, with a tangent of its own for each step. (With one
+it mostly cycles because the skin jumps, where no tangent helps.) A residual that stalls within some units of roundoff
+of the forces that cancel in it is at its floor, and the solve ends as converged there;
 :attr:`Iteration.floor` is that residual.
 
 Pseudo-transient continuation (Kelley and Keyes 1998, doi 10.1137/S0036142996304796): the tangent gets a shift
@@ -99,6 +102,7 @@ class Iteration:
         self._skin_mass: PETSc.Mat | None = None
         self._before, self._moved, self._drag = (self.layout.create_vector() for _ in range(3))
         self._least_shift = 0.0  # Pa/m, by the stiffness along the last Euler step
+        self._keeps = _CONTRACTS  # as the constant, or zero where each iteration has a tangent of its own
         self._refused = False  # whether the present iteration stayed where it was
         self._ahead = False  # whether the residual of the next iterate is known
         self._skin = equations.skin[1]  # vertical displacements of the skin that can touch
@@ -138,10 +142,20 @@ class Iteration:
         self.tangent.stale |= shifted
         seconds = self.equations.timings.seconds
         assembly = seconds["assembly"]
+        start, made = x.array_r.copy(), self.counts.factorisations
+        self._keeps = 0.0 if shifted else _CONTRACTS
         with self.equations.timings.phase("factorisation"):
             self.snes.solve(None, x)
+            iterations = self.snes.getIterationNumber()
+            cycles = self.snes.getConvergedReason() == PETSc.SNES.ConvergedReason.DIVERGED_LOCAL_MIN
+            uncharged = float(self.equations.problem.voltage.value) == 0.0
+            if cycles and uncharged and self.counts.factorisations - made < iterations:
+                self._keeps, self._ahead, self.tangent.stale = 0.0, False, True
+                x.array_w[:] = start
+                self.snes.solve(None, x)
+                iterations += self.snes.getIterationNumber()
+        self.counts.newton += iterations
         seconds["factorisation"] -= seconds["assembly"] - assembly
-        self.counts.newton += self.snes.getIterationNumber()
         self.tangent.stale |= shifted
         self.equations.problem.eta.value = 0.0
         reason = int(self.snes.getConvergedReason())
@@ -187,7 +201,7 @@ class Iteration:
             return reason.DIVERGED_MAX_IT
         if iteration > 0:
             slow = self._refused or norm > _CONTRACTS * previous
-            self.tangent.stale = slow or self._shifted
+            self.tangent.stale = slow or norm > self._keeps * previous
             if slow and norm <= self._roundoff(norm):
                 self.floor = norm / self.force_scale
                 return reason.CONVERGED_SNORM_RELATIVE
