@@ -150,9 +150,8 @@ class Continuation:
         self.coupling, self.solver = coupling, coupling.solver
         self.problem, self.observer = self.solver.problem, coupling.observer
         self.on_accept, self.touch_depth, self.step_scale = on_accept, touch_depth, step_scale
-        self.steps = 0
+        self.steps, self.slip = 0, (0.0, False)
         self.surface_state = self.observer.state()
-        self.slip = (0.0, False)
         self._now = AcceptedState.of(self.coupling)
 
     # -- accepted states -------------------------------------------------------------------------------

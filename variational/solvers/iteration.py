@@ -12,16 +12,7 @@ it mostly cycles because the skin jumps, where no tangent helps.) A residual tha
 of the forces that cancel in it is at its floor, and the solve ends as converged there;
 :attr:`Iteration.floor` is that residual.
 
-Pseudo-transient continuation (Kelley and Keyes 1998, doi 10.1137/S0036142996304796): the tangent gets a shift
-:math:`\eta` on the touching skin, an implicit Euler step of :math:`\eta M \dot u = -r(u)`, M the skin's mass. Every
-iteration has a tangent of its own then. The residual does not control eta: it grows where the skin speeds up towards
-the screen, and falls where a large eta stops the skin. What controls eta is how well one Newton iteration solves the
-Euler step (Deuflhard 2011, doi 10.1007/978-3-642-23899-4, ch. 6),
-
-.. math:: q = \| r(u + \Delta u) + \eta M \Delta u \| / \| r(u) \|.
-
-Where q is small eta falls, else it rises. So the skin is followed from the equilibrium that is lost to the next one,
-which hardly depends on the numbers here.
+In pseudo-transient continuation (:mod:`~variational.solvers.transient`) every iteration has a tangent of its own.
 """
 
 from dataclasses import dataclass
@@ -34,6 +25,7 @@ from variational.solvers.anderson import Anderson
 from variational.solvers.equations import OUTSIDE, Equations
 from variational.solvers.tangent import Tangent
 from variational.solvers.timing import Counts
+from variational.solvers.transient import EulerShift
 
 PREFIX = "fingerpad_"
 # MUMPS, an LU of an unsymmetric matrix; full Newton steps, see above.
@@ -55,11 +47,6 @@ _HALVINGS = 5  # of a step that would turn elements inside out or
 _GROWS = 10.0  # make the residual grow more than this
 _ROUNDINGS = 4.0  # units of roundoff of the sum of each node's absolute forces, within which a residual may stall,
 _FLOOR = 1e-6  # if that is less than this part of the force scale
-_SHIFT = 2e9  # Pa/m, eta at the start
-_SHIFT_FALL, _SHIFT_RISE = 0.3, 4.0  # of eta an iteration, the former where
-_FOLLOWED = 0.5  # the Euler step's error q is below this, the latter at most
-_MADE = 1e-6  # of the residual: that of prescribed rows where their displacements are made
-_STEADY = 2.0  # eta at least, over a negative stiffness along the last Euler step
 _SHIFTED_LONGER = 3  # times as many iterations as others: facets of many ridges come down one after the other
 
 
@@ -99,9 +86,7 @@ class Iteration:
         self._norms: list[float] = []
         self._stop, self._atol = EXACT, 0.0
         self._shifted = False  # whether the tangent has the shift of pseudo-transient continuation
-        self._skin_mass: PETSc.Mat | None = None
-        self._before, self._moved, self._drag = (self.layout.create_vector() for _ in range(3))
-        self._least_shift = 0.0  # Pa/m, by the stiffness along the last Euler step
+        self._shift = EulerShift(equations)
         self._keeps = _CONTRACTS  # as the constant, or zero where each iteration has a tangent of its own
         self._refused = False  # whether the present iteration stayed where it was
         self._ahead = False  # whether the residual of the next iterate is known
@@ -180,14 +165,15 @@ class Iteration:
 
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> int:
         """Judge an iterate by its residual alone, and set the next shift."""
-        reason, eta = PETSc.SNES.ConvergedReason, self.equations.problem.eta
+        reason = PETSc.SNES.ConvergedReason
         _, atol, _, most = snes.getTolerances()
         if iteration == 0:
             self._norms, self._refused = [], False
             self._atol = max(atol, self._stop.part * norms[2], self._stop.floor * self.force_scale)
-            eta.value = _SHIFT if self._shifted else 0.0
-        if self._shifted:
-            eta.value = self._next_shift(float(eta.value))
+            if self._shifted:
+                self._shift.begin(snes.getSolution())
+        elif self._shifted:
+            self._shift.adapt(snes.getSolution(), self.f, self._norms[-1])
         previous = self._norms[-1] if self._norms else np.inf
         norm = norms[2]
         if not self._refused:
@@ -211,52 +197,6 @@ class Iteration:
         if not self._shifted and len(early) == few and min(late) > 0.7 * min(early):
             return reason.DIVERGED_LOCAL_MIN  # cycles
         return reason.ITERATING
-
-    def _is_uphill(self, step: PETSc.Vec) -> bool:
-        r"""Return whether eta is too small for the negative stiffness along an Euler step; collective.
-
-        The stiffness is the tangent's, :math:`\lambda = \Delta u^T K \Delta u / \Delta u^T M \Delta u` (Pa/m). Where it
-        is below :math:`-\eta` the step leads back to an unstable equilibrium. A step that makes a prescribed
-        displacement has forces of its own, and is not judged.
-        """
-        moved, drag, eta = self._moved, self._drag, float(self.equations.problem.eta.value)
-        rows = self.equations.local(self.equations.prescribed_rows())
-        self._least_shift = 0.0
-        to_make = float(np.abs(self.f.array_r[rows]).max(initial=0.0))
-        if self.layout.comm.allreduce(to_make, op=MPI.MAX) > _MADE * self._norms[-1]:
-            return False
-        step.copy(moved)
-        self.layout.translate(moved, self.layout.rigid_part(moved))
-        moved.array_w[rows] = 0.0
-        self._mass().mult(moved, drag)
-        along = moved.dot(drag)
-        stiffness = moved.dot(self.f) / along - eta if along > 0 else 0.0
-        self._least_shift = max(-_STEADY * stiffness, 0.0)
-        return stiffness < -eta
-
-    def _next_shift(self, eta: float) -> float:
-        """Return the shift (Pa/m) of the next Euler step by how well the last one, with ``eta``, was solved."""
-        x, drag = self.snes.getSolution(), self._drag
-        if self._norms:
-            moved = self._before
-            moved.aypx(-1.0, x)
-            self.layout.translate(moved, self.layout.rigid_part(moved))
-            self._mass().mult(moved, drag)
-            drag.array_w[self.equations.local(self.equations.prescribed_rows())] = 0.0
-            drag.aypx(eta, self.f)
-            error = drag.norm() / self._norms[-1]
-            eta *= _SHIFT_FALL if error < _FOLLOWED else min(error / _FOLLOWED, _SHIFT_RISE)
-            eta = max(eta, self._least_shift)
-        x.copy(self._before)
-        return eta
-
-    def _mass(self) -> PETSc.Mat:
-        """Return the mass of the touching skin, which is made where it is first needed."""
-        if self._skin_mass is None:
-            self._skin_mass = self.layout.create_matrix()
-            self.layout.add_to_matrix(self._skin_mass, self.equations.problem.skin_mass, (0, 0))
-            self._skin_mass.assemble()
-        return self._skin_mass
 
     def _roundoff(self, norm: float) -> float:
         r"""Return the norm of nodal forces (N/m) that roundoff may leave in the present iterate.
@@ -291,7 +231,7 @@ class Iteration:
                 step.array_w[:] += more
         if len(self._norms) <= _LIMITED_STEPS:
             step.scale(self._until_deep(x, step))
-        uphill = self._shifted and self._is_uphill(step)
+        uphill = self._shifted and self._shift.leads_uphill(self.f, self._norms[-1], step)
         norm = self._look_ahead(x, step)
         for _ in range(_HALVINGS):
             if norm < _GROWS * max(self._norms):
