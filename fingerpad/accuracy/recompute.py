@@ -140,4 +140,5 @@ def solve_again(model: FingerModel, states: Mapping[str, State], comm: MPI.Comm,
         recorder.keep(name)
         if views:
             recorder.views[name] = Viewer(finger).view(simulation.present(finger.ridge_loads()))
+    finger.solver.iteration.free()
     return recorder.solve()
