@@ -1,18 +1,19 @@
-"""A whole finger led by its half until the bone moves sideways: the same states, and a restart where it turns over."""
+"""A whole finger led by its half until the bone moves sideways: the same states, and where there is none."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+import ufl
 from mpi4py import MPI
 
 from fingerpad.model import simulation
 from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.simulation import RestartRequired, Simulation
+from fingerpad.model.simulation import Simulation
 from fingerpad.model.touching import by_rule
-from fingerpad.runs import full
 from fingerpad.scene import from_data
 from tests.test_demo import MESH, NINE
+from variational.materials.neo_hooke import NeoHooke
 from variational.state import ContactState
 
 CLOSE = 1e-5  # relative: air gaps are within 1e-6
@@ -24,12 +25,17 @@ HISTORY = [
 ]
 
 
-def follow(history, led: bool) -> list[ContactState]:
-    """Return the states of a small finger's path, led by its half or not."""
+def model(history, led: bool = True) -> FingerModel:
+    """Return a small finger's model, led by its half or not."""
     scene = by_rule(from_data(NINE | {"history": history, "mesh": MESH}))
     needed = plan(scene)
     assert needed.symmetric_start
-    path = Simulation(FingerModel(scene, replace(needed, symmetric_start=led)), MPI.COMM_WORLD)
+    return FingerModel(scene, replace(needed, symmetric_start=led))
+
+
+def follow(history, led: bool) -> list[ContactState]:
+    """Return the states of a small finger's path, led by its half or not."""
+    path = Simulation(model(history, led), MPI.COMM_WORLD)
     assert path.run() is None
     return path.states
 
@@ -61,26 +67,60 @@ def test_state_that_the_half_leads_to_is_symmetric():
     assert np.array_equal(last.ridges.d_eq, last.ridges.d_eq[::-1])
 
 
-def test_whole_finger_from_the_start_where_the_symmetric_state_is_not_stable(monkeypatch):
-    """Stability is examined on the whole finger, which a half may not lead where it turns over."""
-    checks = simulation.StabilityChecks.check
+def test_stability_is_examined_on_the_whole_finger(monkeypatch):
+    """Where the symmetric state is not stable the result says so; a whole finger's would be symmetric, too."""
+    checks, examined = simulation.StabilityChecks.check, []
 
     def unstable(self, load):
         found = checks(self, load)
         assert self._finger.options.both_halves
+        examined.append(load)
         return replace(found, frozen=replace(found.frozen, lambda_min=-1.0))
 
     monkeypatch.setattr(simulation.StabilityChecks, "check", unstable)
-    result = full.run(from_data(NINE | {"history": HISTORY[:3], "mesh": MESH}), None, MPI.COMM_WORLD, lines=False)
-    assert not result.failure
-    (restart,) = result.record["restarts"]
-    assert restart["load"] == "press"
-    assert restart["both_halves"]
-    assert "not stable" in restart["reason"]
+    path = Simulation(model(HISTORY[:3]), MPI.COMM_SELF)
+    assert path.run() is None
+    assert examined[:2] == ["press", "charge"]
 
 
-def test_restart_does_not_lead_by_half_again():
-    scene = by_rule(from_data(NINE | {"history": HISTORY, "mesh": MESH}))
-    again = RestartRequired("", FingerModel(scene, plan(scene).with_both_halves())).model.options
-    assert again.both_halves
-    assert not again.symmetric_start
+def test_work_of_the_half_is_counted(monkeypatch):
+    path = Simulation(model(HISTORY[:3]), MPI.COMM_SELF)
+    path.run()
+    counted = path.finger.solver.counts.newton
+    assert counted >= sum(state.record.newton_iterations for state in path.states)
+
+
+@dataclass(frozen=True)
+class Fibres(NeoHooke):
+    """Fibres at an angle, which the mirror turns round."""
+
+    stiffness: float = 1e3
+
+    def energy(self, F):
+        along = F * ufl.as_vector([0.6, 0.8, 0.0])
+        return super().energy(F) + self.stiffness / 2 * (ufl.inner(along, along) - 1) ** 2
+
+
+@pytest.mark.parametrize(("history", "moves"), [(HISTORY, True), (HISTORY[:2], False)])
+def test_no_half_where_the_finger_is_not_its_own_mirror_image(history, moves):
+    """An own material may have fibres at an angle; one of the program's may not."""
+    scene = from_data(NINE | {"history": history, "mesh": MESH})
+    straight, inclined = (
+        plan(scene.with_laws(materials={"dermis": solid})) for solid in (NeoHooke(2.5e3), Fibres(2.5e3))
+    )
+    assert (straight.both_halves, straight.symmetric_start) == (moves, moves)
+    assert (inclined.both_halves, inclined.symmetric_start) == (True, False)
+
+
+def test_no_half_with_multipliers_that_a_step_corrects():
+    scene = from_data(NINE | {"history": HISTORY, "contact": {"formulation": "augmented"}})
+    assert not plan(scene).symmetric_start
+    assert plan(scene.replace(contact={"formulation": "nitsche"})).symmetric_start
+
+
+def test_half_leads_a_path_that_ends_before_sliding():
+    """As the accuracy's paths with other steps do."""
+    charged = model(HISTORY).changed(loads=model(HISTORY).loads[:2])
+    path = Simulation(charged, MPI.COMM_SELF)
+    assert path.run() is None
+    assert path.states[-1].load == "charge"

@@ -15,8 +15,8 @@ which may bring a pressure p and a second equation, p = K (J - 1) weakly; p_n an
 :mod:`~variational.contact.augmented`; p_el: :mod:`~variational.attraction.electroadhesion`, written as the derivative
 of its potential. Without a voltage the attraction is left out, without a law of friction t_t is. Friction makes the
 derivative unsymmetric. The derivative may carry a shift :math:`\int \eta\, du \cdot v \,dS`, which is no part of the
-equations but of pseudo-transient continuation (:mod:`~variational.solvers.newton`). This module adds up forms and never
-solves.
+equations but of pseudo-transient continuation (:mod:`~variational.solvers.transient`). This module adds up forms and
+never solves.
 """
 
 from collections.abc import Mapping

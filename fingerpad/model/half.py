@@ -44,20 +44,24 @@ class HalfFinger:
         self._own = np.arange(self._body.problem.V.dofmap.index_map.size_local)
         here = self._body.problem.V.tabulate_dof_coordinates()[self._own, :2]
         there = finger.problem.V.tabulate_dof_coordinates()[:, :2]
-        far, self._nodes = cKDTree(self._together(here)).query(np.abs(there), distance_upper_bound=_SAME)
-        assert np.isfinite(far).all(), "the finger's mesh is not its own mirror image"
         self._flip = np.where(there[:, :1] < 0, [-1.0, 1.0], [1.0, 1.0])
+        far, self._nodes = cKDTree(self._together(here)).query(self._flip * there)
+        if not comm.allreduce(float(np.max(far, initial=0.0)), op=MPI.MAX) < _SAME:
+            raise RuntimeError("the finger's mesh is not its own mirror image")
 
     def run(self, target: Target) -> None:
         """Reach a target, see :meth:`variational.solvers.continuation.Continuation.run`; collective."""
         self._body.continuation.run(target)
 
-    def end(self) -> None:
-        """Count the half's work as the finger's, and free the memory it took."""
+    def free(self) -> None:
+        """Free the memory that the half's solver takes, which cannot be used any more; collective."""
+        self._body.solver.iteration.free()
+
+    def count(self) -> None:
+        """Count the half's work as the finger's."""
         whole, half = self._finger.solver, self._body.solver
         whole.counts.add(half.counts)
         whole.timings.add(half.timings)
-        half.iteration.free()
 
     def _together(self, mine: Array) -> Array:
         return np.concatenate(self._comm.allgather(mine))
@@ -72,5 +76,6 @@ class HalfFinger:
         u = self._flip * self._together(self._body.problem.displacement()[self._own])[self._nodes]
         solver.set_displacement(u, half.solver.bone)
         solver.equations.residual(solver.x, solver.iteration.f)
+        solver.iteration.floor = 2 * half.solver.floor
         self._finger.continuation.accept()
         return self._on_accept(target, part, attempt)

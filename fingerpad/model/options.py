@@ -77,14 +77,16 @@ def plan(scene: Scene) -> ModelOptions:
     errors = scene.output.errors or scene.accuracy is not None
     if not errors:
         omitted.append(Omission("discretisation errors", "output.errors is false"))
-    both_halves = any(load.bone_x for load in scene.loads())
+    symmetric = all(solid.keeps_symmetry() for solid in scene.laws.materials.values())
+    both_halves = any(load.bone_x for load in scene.loads()) or not symmetric
     if scene.laws.mesh is not None:  # the whole of it, and no other mesh of the same finger
         if receptors:
             omitted.append(Omission("receptor sites", _FILE))
         if errors:
             omitted.append(Omission("discretisation errors", f"{_FILE} and cannot be refined"))
         return ModelOptions(voltage, friction, False, True, False, False, tuple(omitted))
-    symmetric_start = both_halves and not scene.loads()[0].bone_x
+    # The half's multipliers, which an augmented Lagrangian corrects within a step, are not put on the whole.
+    symmetric_start = both_halves and symmetric and scene.contact.formulation != "augmented"
     if not both_halves:
         omitted.append(_HALF)
     return ModelOptions(voltage, friction, receptors, both_halves, symmetric_start, errors, tuple(omitted))

@@ -77,28 +77,36 @@ class Simulation:
         Raises:
             StepFailed: a load that could not be reached; everything accepted before was reported.
         """
-        path, loads = self.finger.continuation, self._model.loads
-        symmetric = 0
-        if self._model.options.symmetric_start:
-            symmetric = next(k for k, load in enumerate(loads) if load.bone_x or load.until_full_slip)
-        for k, load in enumerate(loads):
-            self._load, self._loads_done = load.name, k
-            if k == 0 and symmetric:
-                self._half = HalfFinger(self._model, self.finger, self._comm, self._accepted)
-            if k == symmetric and self._half is not None:
-                self._half.end()
-                self._half = None
-            self._reach(load)
-            while load.until_full_slip and path.slip[1] and self._restart is None:
-                ahead = self._ahead(load)
-                steady = self._slip.slides_on(load.name, np.sign(ahead) or 1.0)
-                if steady or ahead * self._ahead(load) <= 0:  # or at the end of the slide
-                    break
-                self._reach(load)
-            if self._restart is not None:
-                return self._restart
-            self.on_load()
+        loads = self._model.loads
+        moves = next((k for k, load in enumerate(loads) if load.bone_x), len(loads))
+        half = None
+        if moves > 0 and self._model.options.symmetric_start:
+            self._half = half = HalfFinger(self._model, self.finger, self._comm, self._accepted)
+        try:
+            for k, load in enumerate(loads):
+                if k == moves and half is not None:
+                    self._half = None
+                    half.free()
+                self._load, self._loads_done = load.name, k
+                self._follow(load)
+                if self._restart is not None:
+                    return self._restart
+                self.on_load()
+        finally:
+            if half is not None:
+                half.count()
         return None
+
+    def _follow(self, load: Load) -> None:
+        """Reach a load, and slide on where it ends at full slip."""
+        path = self.finger.continuation
+        self._reach(load)
+        while load.until_full_slip and path.slip[1] and self._restart is None:
+            ahead = self._ahead(load)
+            steady = self._slip.slides_on(load.name, np.sign(ahead) or 1.0)
+            if steady or ahead * self._ahead(load) <= 0:  # or at the end of the slide
+                break
+            self._reach(load)
 
     def _reach(self, load: Load) -> None:
         target = Target(load.name, load.f_ext, load.bone_height, load.voltage, load.bone_x, load.until_full_slip)
@@ -151,10 +159,10 @@ class Simulation:
         return self.finger.present(loads, "touch" if touches else self._load, self._loads_done + 1, attempt)
 
     def _symmetry_lost(self) -> RestartRequired | None:
-        """Check the stability of the present state; return that a half cannot lead the finger where it is unstable."""
+        """Check the stability of the present state; return that the whole finger is needed where a half is unstable."""
         stable = self.checks.check(self._load).frozen.stable
         options = self._model.options
-        if stable or (options.both_halves and self._half is None):
+        if options.both_halves or stable:
             return None
         reason = "the half of the finger is not stable, so that the whole may not be symmetric"
         return RestartRequired(reason, self._model.changed(options=options.with_both_halves()))

@@ -37,11 +37,8 @@ class Restarts:
         """
         mesh = restart.model.mesh
         step, load = (states[-1].step, states[-1].load) if states else (0, "start")
-        now, before, seconds = restart.model.options, finger.options, clock.processor_seconds()
-        whole = now.both_halves and not now.symmetric_start
-        halves = (
-            " and both halves of the finger" if whole and (before.symmetric_start or not before.both_halves) else ""
-        )
+        whole, seconds = restart.model.options.both_halves, clock.processor_seconds()
+        halves = " and both halves of the finger" if whole and not finger.options.both_halves else ""
         added = f"mesh.touching_half_arc {mesh.touching_half_arc:g} m{halves}"
         if mesh.contact < finger.size.contact:
             added = f"mesh.contact {mesh.contact:g} m"

@@ -102,6 +102,15 @@ class Material(Law):
             return self.distortion(H)
         return self.distortion(H) + (self.pressure(H) if p is None else p) ** 2 / (2 * bulk)
 
+    def keeps_symmetry(self) -> bool:
+        """Return whether a body of it, its own mirror image at x = 0, may stay so: fibres at an angle would not let it.
+
+        The energy of a sheared state is compared with that of its mirror image, to roundoff.
+        """
+        sheared = [[1.1, 0.2], [0.05, 0.95]], [[1.1, -0.2], [-0.05, 0.95]]
+        one, other = (_value(self.density(ufl.as_matrix(F) + 0 * ufl.Identity(2))) for F in sheared)
+        return bool(np.isclose(one, other, rtol=1e-9, atol=0.0))
+
     # -- refusals --------------------------------------------------------------------------------------
     def check(self) -> None:
         """Refuse what is no solid.
@@ -153,7 +162,12 @@ def _unloaded(solid: Material) -> list[float]:
     F = ufl.variable(ufl.Identity(2) + 0 * ufl.Identity(2))
     P = ufl.diff(solid.distortion(kinematics.displacement_gradient(F)), F)
     parts = [P[0, 0], P[0, 1], P[1, 0], P[1, 1], solid.distortion_zz(F)]
-    return [float(apply_derivatives(apply_algebra_lowering(part))) for part in parts]
+    return [_value(part) for part in parts]
+
+
+def _value(expression) -> float:
+    """Return the number that an expression without coefficients is."""
+    return float(apply_derivatives(apply_algebra_lowering(expression)))
 
 
 def _hashable(solid: Material) -> bool:

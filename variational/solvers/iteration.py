@@ -229,9 +229,9 @@ class Iteration:
             more = self._anderson.correction(x.array_r, self.f.array_r, step.array_r)
             if more is not None:
                 step.array_w[:] += more
+        uphill = self._shifted and self._shift.leads_uphill(self.f, self._norms[-1], step)
         if len(self._norms) <= _LIMITED_STEPS:
             step.scale(self._until_deep(x, step))
-        uphill = self._shifted and self._shift.leads_uphill(self.f, self._norms[-1], step)
         norm = self._look_ahead(x, step)
         for _ in range(_HALVINGS):
             if norm < _GROWS * max(self._norms):

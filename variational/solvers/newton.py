@@ -6,7 +6,8 @@ it is the last one, which goes on serving while it serves.
 :mod:`~variational.solvers.iteration` has the rules for steps.
 
 Where the iteration fails and mostly friction stays out of balance, points on the friction cone are first taken for
-slipping instead of sticking, or the other way round; then its springs are softened and stiffened again step by step.
+slipping instead of sticking, or the other way round. Where hardly anything else stays, friction's springs are softened
+and stiffened again step by step.
 Or, if the caller asks for it, a part of the skin is taken to be about to jump on or off the screen, where the tangent
 has a negative direction, and the solve is repeated as pseudo-transient continuation: it moves slowly away from the
 equilibrium that is lost and ends in one of the unchanged equations.
@@ -160,8 +161,7 @@ class Solver:
         """Find the equilibrium near ``x`` for the current loads and leave it in ``x`` and the problem's u.
 
         Args:
-            pseudo_transient: repeat as pseudo-transient continuation what full Newton steps do not manage, instead of
-                with the other guess for the points on the friction cone.
+            pseudo_transient: repeat as pseudo-transient continuation what full Newton steps do not manage.
             stop: when full Newton steps end.
             tried: whether full Newton steps from ``x`` have just failed, see :meth:`attempt`.
 
@@ -177,7 +177,7 @@ class Solver:
         self.equations.inverted, self.equations.not_a_number = False, ""
         reason = -1 if tried else run(self.x)
         friction = self.problem.anchor is not None
-        guessed = friction and self._on_cone and not pseudo_transient
+        guessed = friction and self._on_cone and not tried
         if reason <= 0 and guessed and self._sideways() > _MOSTLY:  # the other guess, which is then kept
             self.x.array_w[:] = start
             self.problem.guess.value = SLIPS if self.problem.guess.value == STICKS else STICKS

@@ -34,29 +34,33 @@ class EulerShift:
         self._skin_mass: PETSc.Mat | None = None
         self._before, self._moved, self._drag = (self._layout.create_vector() for _ in range(3))
         self._least = 0.0  # Pa/m, by the stiffness along the last step
+        self._judged = False  # whether that was all the step did
 
     def begin(self, x: PETSc.Vec) -> None:
         """Set the shift of the first step, from unknowns ``x``."""
-        self._eta.value, self._least = _START, 0.0
+        self._eta.value, self._least, self._judged = _START, 0.0, False
         x.copy(self._before)
 
     def adapt(self, x: PETSc.Vec, f: PETSc.Vec, norm: float) -> None:
         """Set the shift of the next step by how well the last one was solved; collective.
+
+        It stays where the last step made a prescribed displacement.
 
         Args:
             x: unknowns to which it led.
             f: their residual (N/m).
             norm: of the residual (N/m) where it began.
         """
-        drag = self._drag
-        self._before.aypx(-1.0, x)
-        self._layout.translate(self._before, self._layout.rigid_part(self._before))
-        self._mass().mult(self._before, drag)
-        drag.array_w[self._prescribed()] = 0.0
-        drag.aypx(float(self._eta.value), f)
-        error = drag.norm() / norm
-        factor = _FALL if error < _FOLLOWED else min(error / _FOLLOWED, _RISE)
-        self._eta.value = max(factor * float(self._eta.value), self._least)
+        if self._judged:
+            drag = self._drag
+            self._before.aypx(-1.0, x)
+            self._layout.translate(self._before, self._layout.rigid_part(self._before))
+            self._mass().mult(self._before, drag)
+            drag.array_w[self._prescribed()] = 0.0
+            drag.aypx(float(self._eta.value), f)
+            error = drag.norm() / norm
+            factor = _FALL if error < _FOLLOWED else min(error / _FOLLOWED, _RISE)
+            self._eta.value = max(factor * float(self._eta.value), self._least)
         x.copy(self._before)
 
     def leads_uphill(self, f: PETSc.Vec, norm: float, step: PETSc.Vec) -> bool:
@@ -72,10 +76,11 @@ class EulerShift:
             step: which PETSc subtracts from the unknowns.
         """
         moved, rows, eta = self._moved, self._prescribed(), float(self._eta.value)
-        self._least = 0.0
+        self._least, self._judged = 0.0, False
         to_make = float(np.abs(f.array_r[rows]).max(initial=0.0))
         if self._layout.comm.allreduce(to_make, op=MPI.MAX) > _MADE * norm:
             return False
+        self._judged = True
         step.copy(moved)
         self._layout.translate(moved, self._layout.rigid_part(moved))
         moved.array_w[rows] = 0.0
