@@ -1,12 +1,15 @@
 """The fingertip's cross-section as a gmsh model: layers, nail, nail bed, the bone as a hole, ridges, sites."""
 
+from functools import lru_cache
+
 import gmsh
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry import reflection, tags
+from geometry import tags
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
+from geometry.reflection import HalfMesh
 from geometry.shape import shape
 from geometry.sizing import check, growth_from_tips, touching_ridges
 
@@ -31,15 +34,20 @@ def build(finger: Fingertip, size: MeshSize, receptors: bool = True, half: bool 
     Raises:
         GeometryError: see :mod:`geometry.sizing`.
     """
+    _half(finger, size, receptors).put("meshed finger", whole=not half)
+    return 1 / _MM
+
+
+@lru_cache(maxsize=4)  # a path's half and whole, and after meshes for three errors the one for the penalty's effect
+def _half(finger: Fingertip, size: MeshSize, receptors: bool) -> HalfMesh:
+    """Mesh the half at x >= 0 in the current gmsh session; arguments as of :func:`build`."""
     profiles = check(finger, size)
     touching = [j for j in touching_ridges(finger, size) if j >= 0]
     curves = _curves(profiles, touching)
     _surfaces(curves)
     _sizes(profiles, size, curves, touching, receptors)
     gmsh.model.mesh.generate(2)
-    if not half:
-        reflection.complete()
-    return 1 / _MM
+    return HalfMesh.read()
 
 
 @shape(tags.LAYERS.values())

@@ -1,4 +1,6 @@
-"""A gmsh mesh and its mirror image at x = 0 as one: exactly symmetric, for the price of the half."""
+"""The mesh of a body's half at x >= 0, put into a gmsh model alone or with its mirror image, which is exact then."""
+
+from dataclasses import dataclass
 
 import gmsh
 import numpy as np
@@ -10,37 +12,55 @@ _ON_LINE = 1e-9  # gmsh's unit from x = 0, within which a node is its own image
 _NODES = {1: 2, 2: 3}  # of a straight facet and of a triangle, by dimension
 
 
-def complete() -> None:
-    """Put the whole body in the place of the current model, which is its half at x >= 0, under the same groups.
+@dataclass(frozen=True)
+class HalfMesh:
+    """Straight facets and triangles by group."""
 
-    Ridge -j is the image of ridge j. The group of the line of symmetry is gone.
-    """
-    groups = {
-        (dimension, tag): (_elements(dimension, tag), gmsh.model.getPhysicalName(dimension, tag))
-        for dimension, tag in gmsh.model.getPhysicalGroups()
-        if tag != tags.SYMMETRY
-    }
-    numbers, coordinates, _ = gmsh.model.mesh.getNodes()
-    order = np.argsort(numbers)
-    used = np.unique(np.concatenate([elements.ravel() for elements, _ in groups.values()]))  # others guide the size
-    points = coordinates.reshape(-1, 3)[order[np.searchsorted(numbers[order], used)]]
-    off = np.abs(points[:, 0]) > _ON_LINE
-    own = np.arange(1, len(used) + 1)  # without gaps
-    image = np.where(off, len(used) + np.cumsum(off), own)
-    half = gmsh.model.getCurrent()
-    gmsh.model.add(f"{half}, whole")
-    body = gmsh.model.addDiscreteEntity(2)
-    gmsh.model.mesh.addNodes(2, body, own, points.ravel())
-    gmsh.model.mesh.addNodes(2, body, image[off], (points[off] * [-1, 1, 1]).ravel())
-    for (dimension, tag), (elements, name) in groups.items():
-        here = np.searchsorted(used, elements)
-        there = image[here][:, ::-1]
-        if tags.is_ridge(tag) and tag != tags.ridge(0):
-            j = -tags.ridge_index(tag)
-            _add(dimension, tags.ridge(j), f"ridge {j}", there)
-            _add(dimension, tag, name, own[here])
-        else:
-            _add(dimension, tag, name, np.concatenate([own[here], there]))
+    points: NDArray[np.float64]
+    """Nodes in gmsh's unit, shape (nodes, 3)."""
+    groups: dict[tuple[int, int], tuple[NDArray[np.int64], str]]
+    """By dimension and tag: nodes of each element, shape (elements, nodes of each), from 1; and the group's name."""
+
+    @classmethod
+    def read(cls) -> "HalfMesh":
+        """Return the mesh of the current gmsh model, without nodes that belong to no element of a group."""
+        groups = {
+            (dimension, tag): (_elements(dimension, tag), gmsh.model.getPhysicalName(dimension, tag))
+            for dimension, tag in gmsh.model.getPhysicalGroups()
+        }
+        numbers, coordinates, _ = gmsh.model.mesh.getNodes()
+        order = np.argsort(numbers)
+        used = np.unique(np.concatenate([elements.ravel() for elements, _ in groups.values()]))
+        points = coordinates.reshape(-1, 3)[order[np.searchsorted(numbers[order], used)]]
+        found = {key: (1 + np.searchsorted(used, elements), name) for key, (elements, name) in groups.items()}
+        return cls(points, found)
+
+    def put(self, name: str, whole: bool) -> None:
+        """Make a gmsh model of the mesh, the current one.
+
+        Args:
+            name: of the model.
+            whole: with the mirror image, under the same groups, where ridge -j is the image of ridge j; the group of
+                the line of symmetry is left out then.
+        """
+        off = np.abs(self.points[:, 0]) > _ON_LINE
+        own = np.arange(1, len(off) + 1)
+        image = np.where(off, len(off) + np.cumsum(off), own)
+        gmsh.model.add(name)
+        body = gmsh.model.addDiscreteEntity(2)
+        gmsh.model.mesh.addNodes(2, body, own, self.points.ravel())
+        if whole:
+            gmsh.model.mesh.addNodes(2, body, image[off], (self.points[off] * [-1, 1, 1]).ravel())
+        for (dimension, tag), (here, word) in self.groups.items():
+            there = image[here - 1][:, ::-1]
+            if not whole:
+                _add(dimension, tag, word, here)
+            elif tags.is_ridge(tag) and tag != tags.ridge(0):
+                j = tags.ridge_index(tag)
+                _add(dimension, tags.ridge(-j), f"ridge {-j}", there)
+                _add(dimension, tag, word, here)
+            elif tag != tags.SYMMETRY:
+                _add(dimension, tag, word, np.concatenate([here, there]))
 
 
 def _elements(dimension: int, tag: int) -> NDArray[np.int64]:
