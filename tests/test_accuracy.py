@@ -292,7 +292,7 @@ def test_small_finger_tells_what_its_penalty_changes(tmp_path: Path):
         assert 0 < summary[f"{name}_error"] == quantities[name]["error"]
     for state in ("normal", "slip"):
         assert -0.05 < summary[f"{state}_contact_length_penalty"] / summary[f"{state}_contact_length"] < -0.003
-    assert abs(summary["slip_mu_app_penalty"]) < 0.01 * summary["slip_mu_app"]
+    assert abs(summary["slip_mu_app_penalty"]) < 0.03 * summary["slip_mu_app"]
     spent = summary["accuracy"]["solves"]
     assert spent[-1]["mesh"] == spent[0]["mesh"], "on the same mesh"
     assert spent[-1]["factorisations"] < spent[0]["factorisations"] / 2
