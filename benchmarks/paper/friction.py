@@ -27,7 +27,7 @@ def gather(runs: Mapping[tuple[float, float], Run]) -> dict[str, Array]:
     """Return the grid of all runs by force and voltage, before sliding (``normal_…``) and at full slip (``slip_…``).
 
     ``gaps`` counts the ridges in contact in both states, and ``gaps_within`` those with the paper's air gaps; there
-    is no air gap without voltage.
+    is no air gap without voltage. ``moved`` counts the ridges that come or leave in sliding.
     """
     forces, voltages = (np.array(sorted(set(values))) for values in zip(*runs, strict=True))
     found = {"f_ext": forces, "voltage": voltages}
@@ -39,7 +39,17 @@ def gather(runs: Mapping[tuple[float, float], Run]) -> dict[str, Array]:
     every = np.concatenate([d_eq for row in gaps for d_eq in row])
     found["gaps"] = np.array([[float(len(d_eq)) for d_eq in row] for row in gaps])
     found["gaps_within"] = np.array([[float(within(d_eq).sum()) for d_eq in row] for row in gaps])
+    found["moved"] = np.array([[_moved(runs[f, u]) for u in voltages] for f in forces])
     return found | {"gaps_range": np.array([every.min(), every.max()])}
+
+
+def _ridges(run: Run) -> list[set[float]]:
+    return [set(run.on_ridges(getattr(run, state), "p_c")[0]) for state in STATES]
+
+
+def _moved(run: Run) -> float:
+    before, after = _ridges(run)
+    return float(len(before ^ after))
 
 
 def _gaps(run: Run) -> Array:
@@ -54,15 +64,15 @@ def within(d_eq: Array) -> NDArray[np.bool_]:
 def paths(runs: Mapping[tuple[float, float], Run]) -> dict[str, float]:
     """Return what happens on the paths to full slip at ``TRANSITION``, by voltage.
 
-    ``rises``: steps in which the contact length rises; ``left``: ridges of the trailing half that leave the contact;
-    ``new``: ridges of the leading half that come.
+    ``rise``: largest rise of the contact length in a step, over that before sliding; ``left``: ridges of the trailing
+    half that leave the contact; ``new``: ridges of the leading half that come.
     """
     found = {}
     for (force, voltage), run in runs.items():
         if force == TRANSITION:
             lengths = run.steps["contact_length"][run.normal : run.slip + 1]
-            before, after = (set(run.on_ridges(row, "p_c")[0]) for row in (run.normal, run.slip))
-            found[f"rises_{voltage:g}"] = float((np.diff(lengths) > 0).sum())
+            before, after = _ridges(run)
+            found[f"rise_{voltage:g}"] = float(np.diff(lengths).max(initial=0) / lengths[0])
             found[f"left_{voltage:g}"] = float(sum(ridge < 0 for ridge in before - after))
             found[f"new_{voltage:g}"] = float(sum(ridge > 0 for ridge in after - before))
     return found
@@ -156,10 +166,11 @@ def _friction(grid: Grid, limit: Limit) -> list[Statement]:
     mu_app = {"mu_app": limit.value, "bar": limit.bar, "coarse": coarse}
     doubled, few, falls = gain > 2, little < 1.05, np.diff(gain) < 0
     rise = {"up_to": f[doubled].max(initial=0)} | _range(gain - 1)
+    small = {"up_to": f[~few].max(initial=0)} | _range(little - 1)
     return [
         statement("mu_app", mu_app, off < 0.05, off < 0.2, off=limit.value / 0.55 - 1, near=coarse / 0.55 - 1),
         statement("raise", _range(gain, "least", "largest"), doubled.all(), doubled.any(), **rise),
-        statement("little", {"largest": little.max()}, few.all(), few.any(), **_range(little - 1)),
+        statement("little", {"largest": little.max()}, few.all(), few.any(), **small),
         statement("small forces", {"first": gain[0], "last": gain[-1]}, falls.all(), gain[0] > gain[-1], **ends),
     ]
 
@@ -178,33 +189,77 @@ def _lengths(grid: Grid) -> list[Statement]:
     sources = {"new": new.sum(), "longer": longer.sum(), "both": (new & longer).sum(), "of": new.size}
     lost = (ridges["normal"] - ridges["slip"])[:, [low, high]]
     change = (average["slip"] / average["normal"] - 1)[:, [low, high]]
-    same, one_or_two = abs(change) < 0.05, (lost == 1) | (lost == 2)
+    same, one_or_two, moved = abs(change) < 0.05, (lost == 1) | (lost == 2), grid["moved"][:, [low, high]] > 0
+    pairs = [f"{grid['f_ext'][k]:g} N/m and {(0.0, _HIGH)[n]:g} V" for k, n in np.argwhere(~same & ~moved)]
+    over = {"over": (~same).sum(), "of": same.size, "moving": (~same & moved).sum(), "still": ", ".join(pairs)}
+    short = gains["slip"] <= 1.2
+    ranges |= {"shorter": gains["slip"][short].max(initial=1) - 1}
+    which = " and ".join(f"{f:g}" for f in grid["f_ext"][short])
+    fewer = _range(lost, "least", "largest")
     return [
         statement("less", _range(of_friction), (of_friction < 0.5).all() and (both > 1.05).all(), both.max() > 1.05),
-        statement("longer", counts, (both > 1.2).all(), (both > 1.2).any(), **ranges),
+        statement("longer", counts, (both > 1.2).all(), (both > 1.2).any(), short=which, **ranges),
         statement("new", sources, sources["both"] == new.size, sources["both"] > 0),
-        statement("average", _range(change, "least", "largest"), same.all(), same.mean() > 0.5),
-        statement("fewer", _range(lost, "least", "largest"), one_or_two.all(), one_or_two.mean() > 0.5),
+        statement("average", _range(change, "least", "largest"), same.all(), same.mean() > 0.5, **over),
+        statement("fewer", fewer, one_or_two.all(), one_or_two.mean() > 0.5, more=max(0.0, -lost.min())),
     ]
 
 
 def _reductions(grid: Grid, paths: Mapping[str, float]) -> list[Statement]:
-    found, f = reduction(grid), grid["f_ext"]
-    most, grown, r_squared = float(found.lost.max()), int((found.lost < 0).sum()), found.r_squared
-    near, runs = abs(most - 0.12) < 0.02, found.lost.size
-    fit, per_kpa = {"slope": found.slope, "r_squared": r_squared}, 1e3 * found.slope
-    plain, charged = (found.lost[:, _column(grid, u)] for u in (0.0, _HIGH))
-    loss = {"most": most, "grown": grown, "of": runs, "plain": plain.max()}
-    more, small = charged - plain, f < np.median(f)
-    area = _range(more[small], "small_low", "small_high") | _range(more[~small], "large_low", "large_high")
-    words = {"up_to": f[small].max(), "least_small": f[0], "least_large": f[~small].min(), "most": f[-1]}
-    kinds = {kind: [n for name, n in paths.items() if name.startswith(kind)] for kind in ("rises", "left", "new")}
-    steps = {kind: ", ".join(f"{n:g}" for n in numbers) for kind, numbers in kinds.items()}
-    voltages = ", ".join(name.removeprefix("rises_") for name in paths if name.startswith("rises_"))
-    enhanced, larger = (more > 0).all(), more[small].mean() > more[~small].mean()
+    found = reduction(grid)
+    fit, per_kpa = {"slope": found.slope, "r_squared": found.r_squared}, 1e3 * found.slope
+    part = found.r_squared > 0.5
     return [
-        statement("falls", loss, near and not grown, near),
-        statement("linear", fit, r_squared > 0.9, r_squared > 0.5, per_kpa=per_kpa, runs=runs),
-        statement("wavy", paths, all(map(all, kinds.values())), any(kinds["rises"]), voltages=voltages, **steps),
-        statement("area", area, enhanced and more[small].min() > more[~small].max(), enhanced and larger, **words),
+        _falls(grid, found.lost),
+        statement("linear", fit, found.r_squared > 0.9, part, per_kpa=per_kpa, runs=found.lost.size),
+        _wavy(paths),
+        _area(grid, found.lost),
+        _uncharged(grid, found.lost[:, _column(grid, 0.0)]),
     ]
+
+
+def _falls(grid: Grid, lost: Array) -> Statement:
+    """Judge the loss of all runs: up to 12 % and no contact that grows; in part where most lose contact."""
+    row, column = np.unravel_index(np.argmax(lost), lost.shape)
+    second, most = np.sort(lost, axis=None)[-2:]
+    plain, grown = lost[:, _column(grid, 0.0)].max(), (lost < 0).sum()
+    loss = {"most": most, "second": second, "grown": grown, "of": lost.size, "plain": plain}
+    ridges = (grid[f"{state}_ridges_in_contact"][row, column] for state in STATES)
+    words = {"force": grid["f_ext"][row], "voltage": grid["voltage"][column], "fewer": -np.diff(list(ridges))[0]}
+    whole = abs(most - 0.12) < 0.02 and grown == 0
+    return statement("falls", loss, whole, (lost > 0).mean() > 0.5, **words)
+
+
+def _uncharged(grid: Grid, lost: Array) -> Statement:
+    """Judge the loss without voltage, by force: considerable is more than 5 %."""
+    more, others = lost > 0.05, np.array([0.0, *lost[lost <= 0.05]])
+    numbers = {"least": lost.min(), "most": lost.max(), "more": more.sum(), "of": more.size}
+    words = {"others": others.max(), "grown": ", ".join(f"{f:g}" for f in grid["f_ext"][lost < 0])}
+    return statement("uncharged", numbers, more.all(), more.any(), **words)
+
+
+def _wavy(paths: Mapping[str, float]) -> Statement:
+    """Judge the waves at each voltage: a rise of more than 1 %, a ridge that leaves and one that comes."""
+    voltages = [name.removeprefix("rise_") for name in paths if name.startswith("rise_")]
+    rise, left, new = ([paths[f"{kind}_{u}"] for u in voltages] for kind in ("rise", "left", "new"))
+    waves = [high > 0.01 and go > 0 and come > 0 for high, go, come in zip(rise, left, new, strict=True)]
+    words = {"voltages": ", ".join(voltages), "rise": ", ".join(f"{100 * high:.2f}" for high in rise)}
+    words |= {kind: ", ".join(f"{n:g}" for n in counts) for kind, counts in (("left", left), ("new", new))}
+    words["flat"] = ", ".join(u for u, high in zip(voltages, rise, strict=True) if high <= 0.01)
+    return statement("wavy", paths, all(waves), any(waves), **words)
+
+
+def _area(grid: Grid, lost: Array) -> Statement:
+    """Judge what the voltage adds to the loss, in points and as a ratio; there is none where 0 V loses nothing."""
+    f, (plain, charged) = grid["f_ext"], (lost[:, _column(grid, u)] for u in (0.0, _HIGH))
+    more, ratio, small = charged - plain, charged / np.where(plain > 0, plain, np.nan), f < np.median(f)
+    numbers = dict[str, float]()
+    for name, mine in (("small", small), ("large", ~small)):
+        numbers |= _range(more[mine], f"{name}_low", f"{name}_high")
+        numbers |= {f"{name}_least": np.fmin.reduce(ratio[mine]), f"{name}_most": np.fmax.reduce(ratio[mine])}
+    words = {"first": f[0], "up_to": f[small].max(), "above": f[~small].min(), "last": f[-1]}
+    words |= {"outlier": f[np.argmax(more)], "grown": ", ".join(f"{force:g}" for force in f[plain <= 0])}
+    times = numbers["small_least"] > numbers["large_most"]
+    points, average = numbers["small_low"] > numbers["large_high"], more[small].mean() > more[~small].mean()
+    enhanced = (more > 0).all()
+    return statement("area", numbers, enhanced and times and points, enhanced and (times or average), **words)

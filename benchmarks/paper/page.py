@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.harness import kept, page, picture, prose, table
-from benchmarks.paper import friction
+from benchmarks.paper import friction, scenes
 from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
 from benchmarks.runs import FORCES, VOLTAGES
 
@@ -21,6 +21,24 @@ def verdicts(statements: list[Statement]) -> str:
         because = f": {s.why}" if s.verdict != HOLDS and s.why else ""
         rows.append([s.figure, s.paper, s.ours, f"**{s.verdict}**{because}"])
     return table(["figure", "the paper", "this model", "verdict"], rows)
+
+
+def sites(statements: list[Statement]) -> str:
+    """Return the table of the sites that the paper names, empty without a run of Fig. 9B."""
+    named = [n for s in statements for name in s.numbers.items() if (n := _site(*name))]
+    start = next((ridge for kind, ridge, _ in named if kind == "highest"), 0.0)
+    rows = []
+    for kind, ridge, ratio in named:
+        theirs, site = scenes.NAMED[kind], f"{kind} at 0 V" if kind == "highest" else kind
+        places = f"{theirs - scenes.NAMED['highest']:+d}", f"{ridge - start:+g}"
+        rows.append([site, f"M{theirs}", places[0], f"{ridge:g}", places[1], f"{ratio:.2g}"])
+    return table(["site", "the paper", "its place", "ridge here", "its place", "ratio of SED"], rows) if rows else ""
+
+
+def _site(name: str, ratio: float) -> tuple[str, float, float] | None:
+    """Return kind, ridge and ratio of one of the numbers of Fig. 9B's sites, None for other numbers."""
+    kind, _, ridge = name.rpartition(" ")
+    return (kind, float(ridge), ratio) if kind in scenes.NAMED else None
 
 
 def draw(docs: Path) -> Path:
@@ -42,10 +60,13 @@ def draw(docs: Path) -> Path:
     how = text["how"].format(runs=len(FORCES) * len(VOLTAGES))
     grid = {key: np.array(values) for key, values in numbers.get("grid", {}).items()}
     path, caption = docs / "paper_friction.png", " ".join(text["caption"].split())
+    gaps = text["gaps"].format(*(1e6 * grid["gaps_range"])) if grid else ""
     body = [
         f"**Not run yet:** {missing}." if missing else "",
         f"## Statements\n\n{verdicts(statements)}",
+        f"## Sites of Fig. 9B\n\n{text['sites']}\n\n{named}" if (named := sites(statements)) else "",
         picture(path, (10, 4), lambda figure: friction.paint(figure, grid), caption) if grid else "",
         f"## Published measurements\n\n{table(['quantity', 'from', 'to', 'unit (SI)', 'source'], published)}",
+        gaps,
     ]
     return page(docs / "paper.md", "The paper, reproduced", finding, how, body, "make paper", found.made, ["paper"])
