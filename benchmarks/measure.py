@@ -133,6 +133,7 @@ def run(scene: str = "") -> Numbers:
         "newton": result.cost.newton_iterations,
         "factorisations": result.cost.factorisations,
         "steps": len(result.steps),
+        "led": sum(state.record.factorisations for state in result.steps if abs(state.bone_x) < 1e-12 and state.record),
         "processor": time.process_time(),
         "path": parts.of(_PATH, parts.seconds),
         "beside": {"start of the program": started, "errors": errors} | parts.of("beside", parts.seconds),

@@ -90,9 +90,12 @@ def exponent(x: Sequence[float], y: Sequence[float]) -> float:
 
 
 def unit(run: Mapping[str, Any]) -> float:
-    """Return the processor seconds of one factorisation with its tangent on the path of a run."""
+    """Return the processor seconds of one factorisation with its tangent on the path of a run.
+
+    It is one of the whole finger: those of the half that leads it until the bone moves sideways count half.
+    """
     seconds, calls = run["path"], run["calls"]
-    return float(seconds["tangent"] / calls["tangent"] + seconds["factorisation"] / calls["factorisation"])
+    return float(sum(seconds[name] / (calls[name] - run["led"] / 2) for name in ("tangent", "factorisation")))
 
 
 def cluster(one: Mapping[str, Any], ranks: int) -> tuple[float, float, float]:
@@ -120,6 +123,7 @@ def _work(run: Mapping[str, Any]) -> str:
     path = sum(run["path"].values())
     rows = [
         ["LU factorisations, those of stability checks included", BEFORE["factorisations"], run["factorisations"]],
+        ["of these with half of the finger, before the bone moves sideways", 0, run["led"]],
         ["Newton iterations", BEFORE["newton"], run["newton"]],
         ["accepted steps", None, run["steps"]],
         ["path, in units of one factorisation with its tangent", None, path / unit(run)],
