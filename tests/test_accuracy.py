@@ -282,8 +282,12 @@ SMALL = {
 
 
 def test_small_finger_tells_what_its_penalty_changes(tmp_path: Path):
-    """Springs make a contact longer, here by some hundredths of it; meshes of twice the sizes have no part in that."""
-    summary = run(from_data(SMALL), tmp_path, MPI.COMM_WORLD)
+    """Springs make a contact longer, here by a hundredth of it; meshes of twice the sizes have no part in that.
+
+    Facets of 15 um: where a ridge's contact is two or three facets long, springs move its edge by one or by none.
+    """
+    mesh = SMALL["mesh"] | {"contact": 15e-6}
+    summary = run(from_data(SMALL | {"f_ext": 3.0, "mesh": mesh}), tmp_path, MPI.COMM_WORLD)
     quantities = summary["accuracy"]["quantities"]
     assert {"normal_contact_length", "slip_contact_length", "slip_f_t", "slip_mu_app", "slip_sed_0"} <= set(quantities)
     for name in ("slip_f_t", "slip_mu_app"):
@@ -291,8 +295,8 @@ def test_small_finger_tells_what_its_penalty_changes(tmp_path: Path):
     for name in ("normal_contact_length", "slip_contact_length"):  # of few facets; below the value in test_results
         assert 0 < summary[f"{name}_error"] == quantities[name]["error"]
     for state in ("normal", "slip"):
-        assert -0.05 < summary[f"{state}_contact_length_penalty"] / summary[f"{state}_contact_length"] < -0.003
-    assert abs(summary["slip_mu_app_penalty"]) < 0.03 * summary["slip_mu_app"]
+        assert -0.03 < summary[f"{state}_contact_length_penalty"] / summary[f"{state}_contact_length"] < -0.003
+    assert abs(summary["slip_mu_app_penalty"]) < 0.01 * summary["slip_mu_app"]
     spent = summary["accuracy"]["solves"]
     assert spent[-1]["mesh"] == spent[0]["mesh"], "on the same mesh"
     assert spent[-1]["factorisations"] < spent[0]["factorisations"] / 2
