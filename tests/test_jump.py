@@ -7,6 +7,7 @@ from scipy.optimize import brentq
 
 from tests import spring
 from variational.solvers.equations import Control
+from variational.solvers.transient import EulerShift
 
 
 def height(solver) -> float:
@@ -46,3 +47,27 @@ def test_skin_is_torn_off_at_the_kink_of_the_attraction(raised):
 
     assert height(solver) == pytest.approx(brentq(imbalance, spring.FOLD, spring.GAP, xtol=1e-15), rel=1e-3)
     assert solver.counts.pseudo_transient >= 1
+
+
+@pytest.mark.mpi
+def test_shift_is_twice_a_negative_stiffness():
+    """A step along a stiffness of -3e9 Pa/m at a shift of 2e9 Pa/m is uphill; the next shift is 6e9, not 4e9 Pa/m."""
+    solver = spring.charged()
+    equations, shift = solver.equations, EulerShift(solver.equations)
+    x, step, f = (solver.layout.create_vector() for _ in range(3))
+    rows = equations.local(equations.prescribed_rows())
+    step.array_w[:] = 1e-9
+    for own in (rows, equations.local(equations.layout.rigid_rows) if equations.layout.owns_rigid else rows):
+        step.array_w[own] = 0.0
+    mass = solver.layout.create_matrix()
+    solver.layout.add_to_matrix(mass, solver.problem.skin_mass, (0, 0))
+    mass.assemble()
+    mass.mult(step, f)
+    f.array_w[rows] = 0.0
+    shift.begin(x)
+    eta = float(solver.problem.eta.value)
+    f.scale(-eta / 2)
+    assert shift.leads_uphill(f, f.norm(), step)
+    shift.adapt(x, f, f.norm())
+    assert float(solver.problem.eta.value) == pytest.approx(3 * eta, rel=1e-9)
+    solver.problem.eta.value = 0.0
