@@ -56,7 +56,7 @@
     refused.setAttribute("role", "alert");
     slider.oninput = () => { number.value = from_slider(field, slider.value / 1000); later(); };
     number.oninput = () => { slide(field); later(); };
-    number.onchange = update;
+    number.onchange = () => { slide(field); update(); };
     return create("div", { className: "field" }, words, slider, number, create("span", {}, field.unit), refused);
   }
 
@@ -191,7 +191,7 @@
       plot.draw(find(id), { x, y: mu, points, other: other.filter((p) => p.y !== null), mark, error: data.known.error.mu_app, title });
       const missing = points.filter((p) => p.y === null).length;
       find("caption_" + (key === "f_ext" ? "force" : "voltage")).textContent = `Over ${x} at a ${at}. ` +
-        (given ? "The curve is dashed, since its error is not known." : "Shaded: known error; dashed: error not known.") +
+        (given ? "The curve is dashed, since its error is not known." : `Shaded: known error${same ? "" : " with the defaults"}; dashed: error not known.`) +
         (same ? "" : " Dotted: the default friction, coating, roughness and finger.") +
         (missing ? ` ${missing} of ${points.length} points have no equilibrium and are left out.` : "");
       rows.push(...points.map((p) => [key === "voltage" ? values.f_ext : p.x, key === "voltage" ? p.x : values.voltage, p.y]));
