@@ -67,8 +67,8 @@ def asked(page: str, program: str, folder: Path, *, width: int = 1366, height: i
     kind = "" if scripts else 'sandbox="allow-same-origin" '
     size = f'width="{width}" height="{height}" style="border: 0"'
     frame = folder / "frame.html"
-    text = f'<!DOCTYPE html><meta charset="utf-8"><body><iframe {kind}{size} srcdoc="{html.escape(page)}"></iframe>{after}'
-    frame.write_text(text, encoding="utf-8")
+    inner = f'<iframe {kind}{size} srcdoc="{html.escape(page)}"></iframe>'
+    frame.write_text(f'<!DOCTYPE html><meta charset="utf-8"><body>{inner}{after}', encoding="utf-8")
     flags = [*_FLAGS, f"--user-data-dir={folder / 'profile'}", "--window-size=1500,1000", "--dump-dom"]
     environment = os.environ | {"HOME": str(folder)}
     done = subprocess.run(
