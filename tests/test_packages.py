@@ -98,7 +98,7 @@ def wheel(tmp_path_factory) -> zipfile.ZipFile:
 
 
 def test_wheel_holds_the_library(wheel):
-    """Each module of it, the marks of its types and the parts of the calculator page, and nothing of tests, benchmarks and demos."""
+    """Each module, the marks of types and the parts of the calculator; nothing of tests, benchmarks and demos."""
     modules = {file.relative_to(ROOT) for top in LIBRARY for file in (ROOT / top).rglob("*.py")}
     marks = {Path(top) / "py.typed" for top in LIBRARY}
     listed = {Path(name) for name in wheel.namelist() if ".dist-info/" not in name}
