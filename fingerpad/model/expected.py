@@ -2,7 +2,7 @@ r"""What a run of a scene will take, by a rule from kept runs; within a factor o
 
 Processor time of the path is factorisations times unknowns times a constant. Factorisations are those of a press, a
 charge and a slide to full slip. How they grow with the loads is fitted to the 40 full runs of ``docs/models.json``, and
-their number is that of the default run of ``docs/performance.json`` (0.59 to 0.93 times the 40 runs, which an older
+their number is that of the default run of ``docs/performance.json`` (0.52 to 0.81 times the 40 runs, which an older
 program made):
 
 .. math:: n = 113.5 \, (f_{ext} / 75 N/m)^{0.33} \, e^{0.74 (U / 200 V)^2}
@@ -48,15 +48,27 @@ class Cost:
 
 def expected(scene: Scene, needed: ModelOptions) -> Cost:
     """Return what the path of a scene's loads will take on the mesh that it starts from."""
-    f_ext, voltage, total = 0.0, 0.0, 0.0
+    loads = factorisations(scene)
+    path = sum(by_load(scene, needed))
+    return Cost(sum(loads), path, ERRORS * path if needed.errors else 0.0, BESIDE * path)
+
+
+def by_load(scene: Scene, needed: ModelOptions) -> list[float]:
+    """Return the processor time (s) of each load."""
+    unknowns = estimate(scene, needed).unknowns
+    return [SECONDS * number * unknowns for number in factorisations(scene)]
+
+
+def factorisations(scene: Scene) -> list[float]:
+    """Return the number of factorisations of each load."""
+    f_ext, voltage, found = 0.0, 0.0, []
     for load in scene.loads():
         f_ext = load.f_ext if load.f_ext is not None else f_ext
         voltage = load.voltage if load.voltage is not None else voltage
         force = max(f_ext, 1.0) / 75.0
-        total += _share(load) * RUNS * force**FORCE * math.exp(VOLTAGE * (voltage / 200.0) ** 2)
-    total *= FORMULATIONS[scene.contact.formulation] / scene.numerics.step_scale
-    path = SECONDS * total * estimate(scene, needed).unknowns
-    return Cost(total, path, ERRORS * path if needed.errors else 0.0, BESIDE * path)
+        found.append(_share(load) * RUNS * force**FORCE * math.exp(VOLTAGE * (voltage / 200.0) ** 2))
+    factor = FORMULATIONS[scene.contact.formulation] / scene.numerics.step_scale
+    return [number * factor for number in found]
 
 
 def _share(load: Load) -> float:
