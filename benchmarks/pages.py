@@ -77,9 +77,9 @@ def computes(text: bytes) -> str:
 
 
 def changed(before: Mapping[str, bytes], now: Mapping[str, bytes]) -> set[str]:
-    """Return the paths of modules that compute something else, that are new or that are gone."""
-    both = {path for path in before.keys() & now.keys() if before[path] != now[path]}
-    return (before.keys() ^ now.keys()) | {path for path in both if computes(before[path]) != computes(now[path])}
+    """Return the paths of modules that compute something else or are gone; a new one counts where one imports it."""
+    differ = [path for path in before if before[path] != now.get(path)]
+    return {path for path in differ if path not in now or computes(before[path]) != computes(now[path])}
 
 
 def program(name: str) -> list[str]:

@@ -73,7 +73,9 @@ def test_page_is_older_where_its_code_computes_something_else(since):
     assert since("chart", MADE, old=OLD, new=NEW) == []
     assert since("chart", MADE, old=OLD, new=NEW | CHANGED) == ["benchmarks/chart.py", "variational/x.py"]
     assert since("errors", MADE, old=OLD, new=NEW | CHANGED) == ["variational/x.py"]
-    assert since("paper", MADE, old=OLD, new=OLD | {"benchmarks/paper/page.py": b"y"}) == []
+    drawing = {"benchmarks/paper/page.py": b"x"}, {"benchmarks/paper/page.py": b"y"}
+    assert since("paper", MADE, old=OLD | drawing[0], new=OLD | drawing[1]) == []
+    assert since("chart", MADE, old=OLD, new=NEW | {"variational/new.py": b"x"}) == []  # imported by none of the others
     assert since("chart", MADE, old=OLD, new={}) == ["benchmarks/chart.py", "variational/x.py"]
 
 
