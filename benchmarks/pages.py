@@ -39,6 +39,7 @@ PAGES = {
 }
 _PACKAGES = ("geometry", "variational", "fingerpad")
 _WITHOUT_NUMBERS = ("fingerpad/cli/", "fingerpad/io/", "fingerpad/report/")  # these read, write and print
+_REDUCED = "fingerpad.reduced"  # no full run uses it: it counts for the pages whose program imports it
 _SHARED = ("runs", "limits", "measure", "explicit")  # modules of benchmarks/ that make numbers of several pages
 _SEARCHED = 100  # commits before the one that brought numbers into git, among which theirs is looked for
 _SHOWN = 3  # changed files of a page that are printed
@@ -99,9 +100,12 @@ def stale(name: str, docs: Path) -> tuple[str, list[str]]:
         before, states = git("rev-list", *options).decode().split(), made["source"].split(", ")
         found = [next((commit for commit in before if source(commit) == state), brought) for state in states]
     packages, own = files("HEAD", _PACKAGES), program(name)
+    now = files("HEAD", own)
     since = {path for commit in found for path in changed(files(commit, _PACKAGES), packages)}
-    since = {path for path in since if not path.startswith(_WITHOUT_NUMBERS)}
-    since |= {path for path in changed(files(brought, own), files("HEAD", own)) if not path.endswith("/page.py")}
+    reduced = any(_REDUCED.encode() in text for text in now.values())
+    without = _WITHOUT_NUMBERS if reduced else (*_WITHOUT_NUMBERS, f"{_REDUCED.replace('.', '/')}/")
+    since = {path for path in since if not path.startswith(without)}
+    since |= {path for path in changed(files(brought, own), now) if not path.endswith("/page.py")}
     return f"version {made['version']} of {made['date']}, commit {', '.join(found)}", sorted(since)
 
 
