@@ -45,6 +45,7 @@ fuzz:
 
 pages:
 	$(run) python3 -m benchmarks.pages
+	$(run) python3 -m fingerpad calculator --out docs/calculator.html
 
 stale:
 	python3 -m benchmarks.pages --stale

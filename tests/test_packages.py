@@ -80,6 +80,9 @@ def test_what_runs_can_be_imported(name):
     assert importlib.util.find_spec(name) is not None
 
 
+PAGE = ("page.html", "page.css", "closed_form.js", "plot.js", "page.js")
+
+
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory) -> zipfile.ZipFile:
     """The wheel of this checkout, built with what is installed: no network."""
@@ -95,11 +98,12 @@ def wheel(tmp_path_factory) -> zipfile.ZipFile:
 
 
 def test_wheel_holds_the_library(wheel):
-    """Each module of it and the marks of its types, and nothing of tests, benchmarks and demos."""
+    """Each module, the marks of types and the parts of the calculator; nothing of tests, benchmarks and demos."""
     modules = {file.relative_to(ROOT) for top in LIBRARY for file in (ROOT / top).rglob("*.py")}
     marks = {Path(top) / "py.typed" for top in LIBRARY}
     listed = {Path(name) for name in wheel.namelist() if ".dist-info/" not in name}
-    assert listed == modules | marks
+    page = {Path("fingerpad/calculator") / name for name in PAGE}
+    assert listed == modules | marks | page
 
 
 def test_wheel_holds_licence_and_command(wheel, project):

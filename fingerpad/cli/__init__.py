@@ -24,6 +24,7 @@ COMMANDS = {
     "compare": "models of a scene side by side: their results and their cost",
     "check": "what a run contains, omits and costs, and a picture of its mesh; solves nothing",
     "mesh": "the mesh of the finger as a file for gmsh, with names of its parts",
+    "calculator": "the closed form as one HTML page with sliders, for a browser without Python or network",
     "microscale": "air gap, attraction and real area of contact of a ridge over its pressure",
     "topography": "roughness of a scene from a measured height map",
     "params": "every key of a scene: unit, default, range and meaning",

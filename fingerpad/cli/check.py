@@ -36,7 +36,7 @@ def main(argv: Sequence[str]) -> int:
         ("Laws, numbers in SI units", (f"{name.replace('_', ' ')}: {law}" for name, law in used(scene).items())),
         ("Model", _model(scene, needed)),
         ("Omitted", (f"{omission.what}: {omission.reason}" for omission in needed.omitted)),
-        ("Cost, within a factor of 2", _cost(scene, needed)),
+        (f"Cost, an estimate within a factor of {cost.FACTOR:g}", _cost(scene, needed)),
     ):
         shown = list(lines) or ["nothing"]
         echo("\n".join([title, *(f"  {line}" for line in shown)]))
@@ -69,6 +69,11 @@ def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
         yield f"contact by a method for comparison, which takes {times} and may miss equilibria that it finds"
     given = scene.mesh.touching_half_arc is not None
     how = "as mesh.touching_half_arc gives" if given else "by a rule of thumb; a run takes more where they come near"
+    size = touching.mesh
+    sizes = {"in contact": size.contact, "at the Merkel sites": size.receptor, "elsewhere at most": size.coarsest}
+    if not needed.receptors:
+        del sizes["at the Merkel sites"]
+    yield f"elements of {', '.join(f'{value * 1e6:.4g} µm {where}' for where, value in sizes.items())}"
     yield f"some {_about(found.triangles)} triangles of element {scene.numerics.element}"
     yield f"some {_about(found.unknowns)} unknowns, within a factor of 1.5"
     yield f"{len(ridges)} of {scene.geometry.ridge_count} ridges can touch, {how}"
@@ -77,17 +82,23 @@ def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
 
 def _cost(scene: Scene, needed: ModelOptions) -> Iterator[str]:
     found = cost.expected(scene, needed)
-    yield f"some {_about(found.factorisations)} factorisations"
-    yield f"some {_duration(found.seconds)} of processor time, by a rule from kept runs (fingerpad/cli/cost.py)"
+    few, many = (_about(found.factorisations * factor) for factor in (1 / cost.FACTOR, cost.FACTOR))
+    yield f"{few} to {many} factorisations"
+    yield f"{between(found.seconds)} of processor time, on a machine like that of docs/performance.md:"
+    yield f"  {between(found.path)} for the path of the loads"
+    if found.errors:
+        yield f"  {between(found.errors)} for the error estimate"
+    yield f"  {between(found.beside)} for set-up, tables and pictures"
+    yield f"{cost.COMPILING:.0f} s more the first time, when the forms are compiled"
     if scene.accuracy is not None:
         yield "and that of finer meshes, to the accuracy asked for: perhaps several times as much"
 
 
-def _duration(seconds: float) -> str:
-    for size, unit in ((3600.0, "hours"), (60.0, "minutes")):
-        if seconds >= 2 * size:
-            return f"{_about(seconds / size)} {unit}"
-    return f"{_about(seconds)} s"
+def between(seconds: float) -> str:
+    """Return a time within the factor of the rule, as a range in words."""
+    low, high = seconds / cost.FACTOR, seconds * cost.FACTOR
+    size, unit = next(((s, u) for s, u in ((3600.0, "hours"), (60.0, "minutes")) if high >= 2 * s), (1.0, "s"))
+    return f"{_about(low / size)} to {_about(high / size)} {unit}"
 
 
 def _about(value: float) -> str:

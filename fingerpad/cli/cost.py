@@ -1,12 +1,15 @@
 r"""What a run of a scene will take, by a rule from kept runs; within a factor of 2 where the scene is like theirs.
 
-Processor time is factorisations times unknowns times a constant. Factorisations are those of a press, a charge and a
-slide to full slip, fitted to the 40 full runs of ``docs/models.json`` (0.83 to 1.31 times theirs):
+Processor time of the path is factorisations times unknowns times a constant. Factorisations are those of a press, a
+charge and a slide to full slip. How they grow with the loads is fitted to the 40 full runs of ``docs/models.json``, and
+their number is that of the default run of ``docs/performance.json`` (0.59 to 0.93 times the 40 runs, which an older
+program made):
 
-.. math:: n = 160 \, (f_{ext} / 75 N/m)^{0.33} \, e^{0.74 (U / 200 V)^2}
+.. math:: n = 113.5 \, (f_{ext} / 75 N/m)^{0.33} \, e^{0.74 (U / 200 V)^2}
 
-of which the three loads of the default run have 0.26, 0.10 and 0.64; time, shares and the factors of the formulations
-are those of ``docs/chart.json``. ``tests/test_command_mesh.py`` derives all of them again.
+of which the three loads of the default run have 0.26, 0.10 and 0.64; these shares and the factors of the formulations
+are those of ``docs/chart.json``. The time, the shares of the error estimate and of set-up and output, and the time to
+compile the forms are those of ``docs/performance.json``. ``tests/test_command_mesh.py`` derives all of them again.
 """
 
 import math
@@ -16,19 +19,31 @@ from fingerpad.model.memory import estimate
 from fingerpad.model.options import ModelOptions
 from fingerpad.scene import Load, Scene
 
-RUNS, FORCE, VOLTAGE = 160.0, 0.33, 0.74
+RUNS, FORCE, VOLTAGE = 113.5, 0.33, 0.74
 SHARES = {"force": 0.26, "voltage": 0.10, "slide": 0.64}
 FORMULATIONS = {"penalty": 1.0, "nitsche": 1.85, "augmented": 7.15}
-SECONDS = 8.2e-6  # of the processor, for a factorisation and an unknown
+SECONDS = 2.66e-6  # of the processor, for a factorisation and an unknown
+ERRORS, BESIDE = 0.308, 0.136  # of the path's time: the error estimate; start, set-up and output
+COMPILING = 9.0  # s of the processor, once for each version and machine
+FACTOR = 2.0  # of the true cost and the expected one, either way, where the scene is like those of the kept runs
 
 
 @dataclass(frozen=True)
 class Cost:
-    """What a run will take, roughly."""
+    """What a run will take, roughly; times are of the processor (s)."""
 
     factorisations: float
-    seconds: float
-    """Of the processor (s), the set-up included."""
+    path: float
+    """Time of the loads."""
+    errors: float
+    """Time of the error estimate; zero without one."""
+    beside: float
+    """Time of start, set-up and output, without compiling."""
+
+    @property
+    def seconds(self) -> float:
+        """Time of the whole run (s)."""
+        return self.path + self.errors + self.beside
 
 
 def expected(scene: Scene, needed: ModelOptions) -> Cost:
@@ -40,7 +55,8 @@ def expected(scene: Scene, needed: ModelOptions) -> Cost:
         force = max(f_ext, 1.0) / 75.0
         total += _share(load) * RUNS * force**FORCE * math.exp(VOLTAGE * (voltage / 200.0) ** 2)
     total *= FORMULATIONS[scene.contact.formulation] / scene.numerics.step_scale
-    return Cost(total, SECONDS * total * estimate(scene, needed).unknowns)
+    path = SECONDS * total * estimate(scene, needed).unknowns
+    return Cost(total, path, ERRORS * path if needed.errors else 0.0, BESIDE * path)
 
 
 def _share(load: Load) -> float:
