@@ -59,5 +59,5 @@ def test_demo_on_two_ranks(stem, tmp_path, capfd):
 def test_every_demo_is_listed():
     """The page of the demos names each of them, and no other."""
     page = (ROOT / "demos" / "README.md").read_text(encoding="utf-8")
-    listed = [line.split("`")[1] for line in page.splitlines() if line.startswith("| `")]
+    listed = [line.split("`")[1] for line in page.splitlines() if line.startswith("| [`")]
     assert sorted(listed) == [demo.name for demo in DEMOS]
