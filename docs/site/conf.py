@@ -31,7 +31,9 @@ myst_heading_anchors = 4
 myst_dmath_double_inline = True
 
 toc_object_entries = False  # hundreds, in the navigation of every page
+add_module_names = False
 autodoc_member_order = "bysource"
+autodoc_default_options = {"exclude-members": "model_config, model_post_init"}  # Pydantic's
 autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented"
 autodoc_preserve_defaults = True
@@ -60,6 +62,7 @@ def adapt(app: Any, docname: str, source: list[str]) -> None:
     """Make places in the code links to the reference, and lead links to folders to pages."""
     if docname.startswith("docs/") and "/site/" not in docname:
         text = PLACE.sub(r"{py:obj}`\1:\2 <\1.\2>`", source[0])
+        text = re.sub(r"\[(\w+\.md)\]\(\1\)", r"[](\1)", text)  # by the title of the page, not by its file
         for before, after in ELSEWHERE.items():
             text = text.replace(before, after)
         source[0] = text
@@ -68,10 +71,10 @@ def adapt(app: Any, docname: str, source: list[str]) -> None:
         source[0] += "\n```{toctree}\n:hidden:\n\n" + "\n".join(demos) + "\n```\n"
 
 
-def bars(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
-    """Take bars around a formula for absolute values."""
-    if what == "attribute":
-        lines[:] = [line if "`" in line else line.replace("|", "\\|") for line in lines]
+def plain_text(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
+    """Take bars in the text of an attribute for absolute values, and what stands before a colon for no type."""
+    if what in ("attribute", "property"):
+        lines[:] = ["..", "", *(line if "`" in line else line.replace("|", "\\|") for line in lines)]
 
 
 def plain_types(model: type[BaseModel]) -> None:
@@ -84,8 +87,8 @@ def plain_types(model: type[BaseModel]) -> None:
 
 def setup(app: Any) -> None:
     """Register what is above."""
-    plain_types(BaseModel)
     reference.write(HERE / "modules")
+    plain_types(BaseModel)
     app.add_source_parser(Percent)
     app.connect("source-read", adapt)
-    app.connect("autodoc-process-docstring", bars)
+    app.connect("autodoc-process-docstring", plain_text, priority=400)  # before Napoleon

@@ -28,11 +28,11 @@ def folders() -> dict[str, list[str]]:
 
 
 def door() -> dict[str, list[str]]:
-    """Return the classes that import fingerpad gives, by the module that defines them; api.md describes them."""
+    """Return the names that import fingerpad gives, by the module that defines them; api.md describes them."""
     homes: dict[str, list[str]] = {}
     for name in fingerpad.__all__:
-        if isinstance(found := getattr(fingerpad, name), type):
-            homes.setdefault(found.__module__, []).append(name)
+        if name != "geometry":
+            homes.setdefault(getattr(fingerpad, name).__module__, []).append(name)
     return homes
 
 
@@ -45,10 +45,10 @@ def page(folder: str, modules: list[str], described: dict[str, list[str]]) -> st
         lines += ["```{eval-rst}", f".. automodule:: {module}"]
         lines += ["   :members:", "   :ignore-module-all:", "   :show-inheritance:"]
         if module in described:
-            lines += [f"   :exclude-members: {', '.join(described[module])}"]
+            lines += [f"   :exclude-members: +{', '.join(described[module])}"]
         if module in TABLES:
             name, meaning = TABLES[module]
-            lines += ["", f".. py:data:: {module}.{name}", "", f"   {meaning}"]
+            lines += ["", f".. py:data:: {name}", f"   :module: {module}", "", f"   {meaning}"]
         lines += ["```", ""]
     return "\n".join(lines)
 
