@@ -6,6 +6,7 @@
 # make fuzz   10 000 scenes and command lines, each ready to run or refused in one sentence; some minutes
 # make pages  every generated page and picture of docs/ from the numbers kept there; seconds, no run
 # make stale  the pages older than the code that they rest on; needs git
+# make docs   the documentation site, in build/docs/index.html; a minute
 # make verify every number with a known answer, some minutes; docs/verification.md
 # make paper  the statements of the paper beside this model's numbers; docs/paper.md, an hour or two
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour
@@ -16,7 +17,7 @@
 
 run := environment/run
 
-.PHONY: help demo lint test check test-order fuzz pages stale verify paper chart performance
+.PHONY: help demo lint test check test-order fuzz docs pages stale verify paper chart performance
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -29,6 +30,7 @@ lint:
 
 test:
 	environment/wheels
+	environment/docs --get || true
 	$(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" tests
 	$(run) mpirun -n 2 python3 -m pytest -q --color=no -p no:cacheprovider -m "not long" tests
 
@@ -42,6 +44,9 @@ test-order:
 
 fuzz:
 	$(run) python3 -m tests.fuzz --count 10000
+
+docs:
+	environment/docs build/docs
 
 pages:
 	$(run) python3 -m benchmarks.pages
