@@ -2,6 +2,7 @@
 # make test   all tests, then those marked mpi on two ranks
 # make check  tests of every module that run no whole finger
 # make lint   style, layout and types: ruff and mypy, half a minute
+# make test-pip  the same digits with dolfinx from PyPI, in a Python from 3.12 on: make test-pip PYTHON=python3.13
 # make test-order  all tests with other rounding: cells numbered the other way round, other kernels of OpenBLAS
 # make fuzz   10 000 scenes and command lines, each ready to run or refused in one sentence; some minutes
 # make pages  every generated page and picture of docs/ from the numbers kept there; seconds, no run
@@ -17,7 +18,7 @@
 
 run := environment/run
 
-.PHONY: help demo lint test check test-order fuzz docs pages stale verify paper chart performance
+.PHONY: help demo lint test check test-pip test-order fuzz docs pages stale verify paper chart performance
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -37,6 +38,9 @@ test:
 check:
 	environment/wheels
 	$(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" --quick tests
+
+test-pip:
+	SUITE=pip PYTHON="$(PYTHON)" $(run) python3 -m pytest -q --color=no tests/test_digits.py
 
 test-order:
 	environment/wheels
