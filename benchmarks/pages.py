@@ -4,8 +4,8 @@ environment/run python3 -m benchmarks.pages [NAME ...]     also: make pages
 python3 -m benchmarks.pages --stale                        also: make stale; needs git and no dolfinx
 
 A page is older than the code where a file that computes its numbers differs from that which made them: one of the
-packages (geometry, variational, fingerpad without its wings that read, write and print), or of the page's own program,
-the module that only draws it left out. Comments and docstrings do not count. The commit that made numbers is
+packages (geometry, variational, fingerpad without what starts, reads, refuses, writes and prints), or of the page's own
+program, the module that only draws it left out. Comments and docstrings do not count. The commit that made numbers is
 found by the hash of the packages' files that is kept with them; a program in benchmarks/ is compared with that of the
 commit that brought them into git. Numbers of files that are in no commit count as made by the commit that brought them,
 and so do older numbers, which have no hash.
@@ -38,8 +38,11 @@ PAGES = {
     "verification": "benchmarks.verification.case",
 }
 _PACKAGES = ("geometry", "variational", "fingerpad")
-_WITHOUT_NUMBERS = ("fingerpad/cli/", "fingerpad/io/", "fingerpad/report/")  # these read, write and print
-_REDUCED = "fingerpad.reduced"  # no full run uses it: it counts for the pages whose program imports it
+_WITHOUT_NUMBERS = (  # these start, read, refuse, write and print
+    *(f"fingerpad/{wing}/" for wing in ("cli", "io", "report", "calculator")),
+    *("fingerpad/startup.py", "fingerpad/scene/contradictions.py", "fingerpad/scene/messages.py"),
+)
+_REDUCED = "fingerpad/reduced"  # no full run uses it: part of the programs that import it
 _SHARED = ("runs", "limits", "measure", "explicit")  # modules of benchmarks/ that make numbers of several pages
 _SEARCHED = 100  # commits before the one that brought numbers into git, among which theirs is looked for
 _SHOWN = 3  # changed files of a page that are printed
@@ -102,10 +105,10 @@ def stale(name: str, docs: Path) -> tuple[str, list[str]]:
     packages, own = files("HEAD", _PACKAGES), program(name)
     now = files("HEAD", own)
     since = {path for commit in found for path in changed(files(commit, _PACKAGES), packages)}
-    reduced = any(_REDUCED.encode() in text for text in now.values())
-    without = _WITHOUT_NUMBERS if reduced else (*_WITHOUT_NUMBERS, f"{_REDUCED.replace('.', '/')}/")
-    since = {path for path in since if not path.startswith(without)}
-    since |= {path for path in changed(files(brought, own), now) if not path.endswith("/page.py")}
+    since = {path for path in since if not path.startswith((*_WITHOUT_NUMBERS, _REDUCED))}
+    if any(_REDUCED.replace("/", ".").encode() in text for text in now.values()):
+        own = [*own, _REDUCED]
+    since |= {p for p in changed(files(brought, own), files("HEAD", own)) if not p.endswith("/page.py")}
     return f"version {made['version']} of {made['date']}, commit {', '.join(found)}", sorted(since)
 
 
