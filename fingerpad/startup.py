@@ -18,6 +18,8 @@ _ELSEWHERE = "/"  # belongs to the system; nothing is configured there
 _QUIET = ("-options_left", "no", "-no_signal_handler")
 
 with contextlib.chdir(_ELSEWHERE):
+    with contextlib.suppress(ModuleNotFoundError):
+        import dolfinx_solver  # noqa: F401  # dolfinx from PyPI, which has to find its MPI before anything else
     from mpi4py import MPI
 
 __all__ = ["MPI", "start"]

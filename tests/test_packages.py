@@ -52,7 +52,7 @@ def test_pypi(project):
     assert set(_split(project["project"]["dependencies"])) == _column(3, "run")
     extras = project["project"]["optional-dependencies"]
     assert {name: set(_split(listed)) for name, listed in extras.items()} == {
-        name: _column(3, name) for name in ("fem", "test", "topography")
+        name: _column(3, name) for name in ("fem", "test", "docs", "topography")
     }
 
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from fingerpad.cli.keys import every
+from fingerpad.scene.keys import every
 from fingerpad.cli.params import page
 
 PAGE = Path(__file__).parents[1] / "docs" / "scene.md"

@@ -21,6 +21,7 @@ COMMANDS = {
     "estimate": "friction over force and voltage by a closed form, in seconds, without finite elements",
     "run": "contact and friction of a finger that is pressed, charged and slid: tables, pictures, fields",
     "sweep": "a scene over values of its keys: a table; a stopped sweep continues",
+    "report": "a folder of a run or of a sweep as one HTML file, to read and to pass on",
     "compare": "models of a scene side by side: their results and their cost",
     "check": "what a run contains, omits and costs, and a picture of its mesh; solves nothing",
     "mesh": "the mesh of the finger as a file for gmsh, with names of its parts",

@@ -9,7 +9,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn
 
-from fingerpad.cli.keys import every
+from fingerpad.scene.keys import every
 from fingerpad.io import terminal
 from fingerpad.model.check import check
 from fingerpad.scene import Scene, load, override

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from fingerpad.cli.arguments import Parser, echo
-from fingerpad.cli.keys import Key, every
+from fingerpad.scene.keys import Key, every
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError, clip
 

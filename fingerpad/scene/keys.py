@@ -16,7 +16,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, WrapValidator
 
-from fingerpad.scene import Scene
+from fingerpad.scene.scene import Scene
 from geometry.bounds import Range
 
 
