@@ -82,7 +82,12 @@ def _ended(result: Result) -> BaseException:
 
 
 def solved(
-    scene: Scene, model: str, out: Path | None = None, comm: "MPI.Comm | None" = None, lines: bool = False
+    scene: Scene,
+    model: str,
+    out: Path | None = None,
+    comm: "MPI.Comm | None" = None,
+    lines: bool = False,
+    report: bool = True,
 ) -> Result:
     """Return what a model answers to a scene with all its laws; collective; arguments as of :func:`run`.
 
@@ -92,7 +97,17 @@ def solved(
         out: folder of results.
         comm: communicator.
         lines: whether the full model prints its steps.
+        report: whether ``report.html`` is written beside the results.
     """
+    result = _solved(scene, model, out, comm, lines)
+    if report and out is not None and (terminal.rank() if comm is None else comm.rank) == 0:
+        from fingerpad.report.write import attempt
+
+        attempt(out)
+    return result
+
+
+def _solved(scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool) -> Result:
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     if model == "cylinders":

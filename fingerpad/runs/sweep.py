@@ -17,6 +17,7 @@ from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import PREFIXES, STATES
 from fingerpad.model.check import check
+from fingerpad.report.write import attempt
 from fingerpad.runs.solve import MODELS, solved
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import show
@@ -145,7 +146,7 @@ def sweep(
 
     Args:
         scene: the scene; by default press, charge and slide of the default finger.
-        out: folder of the results.
+        out: folder of the results, of ``table.csv`` and of ``report.html``.
         jobs: points that are run at a time.
         model: as of :func:`fingerpad.runs.solve.run`.
         **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``.
@@ -172,6 +173,7 @@ def sweep(
         found = _in_processes(scenes, points, folder, jobs, model)
     done = Sweep(values, tuple(found), folder)
     done.to_csv(folder / "table.csv")
+    attempt(folder)
     return done
 
 
