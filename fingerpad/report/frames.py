@@ -183,7 +183,8 @@ def _finger(file: Path, view: list[float]) -> dict[str, Any] | None:
         return None
     try:
         with kept:
-            xy, triangles = _MM * (kept["x"] + kept["u"]), kept["triangles"]
+            xy = np.asarray(_MM * (kept["x"] + kept["u"]), dtype=float)
+            triangles = kept["triangles"]
             density, tag = _KPA * kept["sed"], kept["tag"]
     except (KeyError, OSError, ValueError, EOFError):
         return None
