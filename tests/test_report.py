@@ -167,7 +167,8 @@ def test_worst_finding_leads(folder):
 def test_browser_opens_a_sweep(table, tmp_path, size):
     width, height = SIZES[size]
     program = """
-    const drawn = [...document.querySelectorAll(".chart")].map((c) => c.querySelectorAll(".scatterlayer .trace").length);
+    const charts = [...document.querySelectorAll(".chart")];
+    const drawn = charts.map((c) => c.querySelectorAll(".scatterlayer .trace").length);
     return { drawn, wide: document.documentElement.scrollWidth };"""
     page = (table / NAME).read_text(encoding="utf-8")
     found = asked(page, program, tmp_path, width=width, height=height)

@@ -194,7 +194,8 @@ def _finger(file: Path, view: list[float]) -> dict[str, Any] | None:
     near &= corners[:, :, 1].min(axis=1) < top
     x = np.linspace(left, right, _COLUMNS)
     y = np.arange(0.5 * (x[1] - x[0]), top, x[1] - x[0])  # the screen is at 0
-    cells = Triangulation(xy[:, 0], xy[:, 1], triangles[near]).get_trifinder()(*np.meshgrid(x, y))
+    finder = Triangulation(xy[:, 0], xy[:, 1], triangles[near]).get_trifinder()
+    cells = np.asarray(finder(*np.meshgrid(x, y)), dtype=int)  # -1 outside
     level = np.round(100 * np.log10(np.maximum(density[near], 1e-9))).astype("<i2")
     image = np.where(cells >= 0, level[cells], _EMPTY).astype("<i2")
     lines = np.concatenate(interfaces(triangles, tag))
