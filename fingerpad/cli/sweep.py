@@ -39,7 +39,7 @@ def main(argv: Sequence[str]) -> int:
     scene = from_data(base)
     found = sweep(scene, args.out, jobs=args.jobs, model=args.model, **axes)
     echo(str(found))
-    echo(f"Written: {args.out / 'table.csv'}")
+    echo(f"Written: {args.out / 'table.csv'}{'' if found.notes else ' and sweep.nc'}")
     return 1 if any(result.failure for result in found) else 0
 
 

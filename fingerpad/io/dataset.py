@@ -141,8 +141,8 @@ def _loads(result: "Result") -> Variables:
     ends = [load.end.step for load in loads]
     found["load_last_step"] = ("load",), _array(ends), _about(Column("1", "last step of the load"))
     for name in ("full_slip_reached", "full_slip_held"):
-        words = Column("1", f"whether full slip was {name.rpartition('_')[2]} in the load")
-        found[f"load_{name}"] = ("load",), _array([getattr(load, name) for load in loads]), _about(words)
+        slip = Column("1", f"whether full slip was {name.rpartition('_')[2]} in the load")
+        found[f"load_{name}"] = ("load",), _array([getattr(load, name) for load in loads]), _about(slip)
     for quantity in loads[0].extremes if loads else ():
         for end, words in (("min", "least"), ("max", "largest")):
             values = [getattr(load.extremes[quantity], end) for load in loads]
@@ -163,13 +163,13 @@ def _by_ridge(
     if not rows:
         return {}
     dim, key, labels = axis
-    rank, place = {label: k for k, label in enumerate(labels)}, {number: k for k, number in enumerate(numbers)}
+    rank, place = {str(label): k for k, label in enumerate(labels)}, {number: k for k, number in enumerate(numbers)}
     found: Variables = {}
     for name, column in known.items():
         text = name == "state"
         values = np.full((len(labels), len(numbers)), "" if text else np.nan, object if text else np.float64)
         for row in rows:
-            where = rank[type(labels[0])(row[key])], place[int(row["ridge"])]
+            where = rank[str(row[key])], place[int(row["ridge"])]
             values[where] = row[name] if text else float(row[name])
         found[f"{prefix}{'note' if text else name}"] = (dim, "ridge"), values, _about(column)
     return found
