@@ -2,7 +2,6 @@
 
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 from fingerpad.accuracy.recompute import StateRecorder
