@@ -32,19 +32,19 @@ lint:
 test:
 	environment/wheels
 	environment/docs --get || true
-	$(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" tests
+	FINGERPAD_CHROMIUM=$$(environment/browser) $(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" tests
 	$(run) mpirun -n 2 python3 -m pytest -q --color=no -p no:cacheprovider -m "not long" tests
 
 check:
 	environment/wheels
-	$(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" --quick tests
+	FINGERPAD_CHROMIUM=$$(environment/browser) $(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" --quick tests
 
 test-pip:
 	SUITE=pip PYTHON="$(PYTHON)" $(run) python3 -m pytest -q --color=no tests/test_digits.py
 
 test-order:
 	environment/wheels
-	OPENBLAS_CORETYPE=Nehalem $(run) python3 -m pytest -q --color=no -n auto --renumber tests
+	FINGERPAD_CHROMIUM=$$(environment/browser) OPENBLAS_CORETYPE=Nehalem $(run) python3 -m pytest -q --color=no -n auto --renumber tests
 
 fuzz:
 	$(run) python3 -m tests.fuzz --count 10000

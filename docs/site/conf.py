@@ -9,17 +9,21 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path[:0] = [str(HERE), str(ROOT)]
 
-import fingerpad.started  # noqa: E402, F401
-import reference  # noqa: E402
-from percent import Percent  # noqa: E402
-from pydantic import BaseModel  # noqa: E402
+import reference
+from percent import Percent
+from pydantic import BaseModel
+
+import fingerpad.started  # noqa: F401
 
 project, author = "fingerpad", "The fingerpad developers"
 version = re.search(r'^version = "(.*)"', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)[1]
 copyright = f"{author}; text and program under the GNU Lesser General Public License, version 3 or later"
 
 root_doc = "docs/site/index"
-include_patterns = ["docs/*.md", "docs/site/*.md", "docs/site/modules/*.md", "demos/README.md", "demos/*.py", "CONTRIBUTING.md", "CHANGELOG.md"]
+include_patterns = [
+    "docs/*.md", "docs/site/*.md", "docs/site/modules/*.md", "demos/README.md", "demos/*.py", "CONTRIBUTING.md",
+    "CHANGELOG.md",
+]  # fmt: skip
 exclude_patterns = ["build/**", "results/**", "docs/README.md", "docs/site/*.py"]
 source_suffix = {".md": "markdown", ".py": "percent"}
 extensions = [

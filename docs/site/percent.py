@@ -26,10 +26,11 @@ def markdown(script: str) -> str:
 
 
 def kept(demo: Path) -> str:
-    """Return the section with the kept output of a demo; empty where none is kept."""
-    text, pictures = demo.parent / OUTPUT / f"{demo.stem}.txt", sorted((demo.parent / OUTPUT).glob(f"{demo.stem}_*.png"))
+    """Return the section with the kept output of a demo, or where it is."""
+    folder = demo.parent / OUTPUT
+    text, pictures = folder / f"{demo.stem}.txt", sorted(folder.glob(f"{demo.stem}_*.png"))
     if not text.exists():
-        return ""
+        return "\n## Output\n\n[The first page](../docs/site/index.md) shows what the scene prints.\n"
     shown = [f"![Picture of this demo: {p.stem.removeprefix(demo.stem + '_')}]({OUTPUT}/{p.name})" for p in pictures]
     return "\n".join(["", "## Output", "", "```", text.read_text(encoding="utf-8").strip(), "```", "", *shown, ""])
 

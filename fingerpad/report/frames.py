@@ -1,9 +1,11 @@
 """The deformed finger and its skin state by state, as the page's program steps through them.
 
-Energy densities become an image on a grid, log10 of kPa in hundredths as 16-bit integers: a tenth of the triangles' size.
+Energy densities become an image on a grid, log10 of kPa in hundredths as 16-bit integers: a tenth of the size of the
+triangles.
 """
 
 import base64
+import csv
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -23,6 +25,7 @@ _MM, _UM, _KPA = 1e3, 1e6, 1e-3
 _COLUMNS = 520  # of the grid
 _MOST = 12  # states with an image
 _EMPTY = 32767
+_Tables = dict[str, dict[tuple[str, int], tuple[float, float]]]
 _BELOW, _ABOVE, _BESIDE = -0.15, 1.25, 0.6  # mm of the view around the contact
 
 
@@ -35,6 +38,10 @@ class _Frame(NamedTuple):
     """Stem of the file of its skin."""
     prefix: str
     """Of the skin's arrays there."""
+    table: str = "ridges"
+    """Name of the table of its ridges."""
+    row: str = ""
+    """Its step, or its name, there."""
 
 
 def frames(result: Result) -> dict[str, Any]:
@@ -42,7 +49,8 @@ def frames(result: Result) -> dict[str, Any]:
     folder = result.folder
     if folder is None or result.model != "full":
         return {}
-    found = [(frame, _skin(folder, frame)) for frame in _listed(result)]
+    tables = {name: _ridges(folder / f"{name}.csv") for name in ("ridges", "ridges_final")}
+    found = [(frame, _skin(folder, frame, tables)) for frame in _listed(result)]
     view = _view([skin for _, skin in found if skin])
     if view is None:
         return {}
@@ -58,18 +66,27 @@ def frames(result: Result) -> dict[str, Any]:
 def _listed(result: Result) -> Iterator[_Frame]:
     partial = partial_slip(result.steps) if result.charged is not None and result.steps else None
     ends = [
-        _Frame(f"end of {load.name}", load.end, f"finger_{_file(load.name)}", f"surface_{_file(load.name)}", "end")
+        _Frame(
+            f"end of {load.name}",
+            load.end,
+            f"finger_{_file(load.name)}",
+            f"surface_{_file(load.name)}",
+            "end",
+            row=str(load.end.step),
+        )
         for load in result.loads
     ]
     for frame in ends:
         if partial is not None and frame.state is not None and frame.state.step > partial.step:
-            yield _Frame("partial slip", partial, "", "surface", "partial")
+            yield _Frame("partial slip", partial, "", "surface", "partial", row=str(partial.step))
             partial = None
         yield frame
     for name, prefix in (("charged", "normal"), ("full_slip", "slip")):
         stem = f"finger_{_file(WORDS[name])}"
         if result.folder is not None and (result.folder / f"{stem}.npz").is_file():
-            yield _Frame(f"{WORDS[name]}, final mesh", getattr(result, name), stem, "surface", prefix)
+            yield _Frame(
+                f"{WORDS[name]}, final mesh", getattr(result, name), stem, "surface", prefix, "ridges_final", name
+            )
 
 
 def _file(words: str) -> str:
@@ -92,7 +109,22 @@ def _open(file: Path) -> NpzFile | None:
     return found if isinstance(found, NpzFile) else None
 
 
-def _skin(folder: Path, frame: _Frame) -> list[dict[str, Any]]:
+def _ridges(file: Path) -> dict[tuple[str, int], tuple[float, float]]:
+    """Return length in contact (mm) and mean pressure (kPa) by state, a step or a name, and number of the ridge."""
+    try:
+        with file.open(encoding="utf-8", newline="") as table:
+            return {
+                (row.get("of") or row["step"], int(row["ridge"])): (
+                    round(_MM * float(row["contact_length"]), 4),
+                    round(_KPA * float(row["p_c"]), 2),
+                )
+                for row in csv.DictReader(table)
+            }
+    except (OSError, KeyError, ValueError, TypeError):
+        return {}
+
+
+def _skin(folder: Path, frame: _Frame, tables: _Tables) -> list[dict[str, Any]]:
     """Return the ridges of a state, each with its places (mm, height in µm), stresses (kPa) and gap (µm)."""
     kept = _open(folder / f"{frame.skin}.npz")
     if kept is None:
@@ -108,10 +140,8 @@ def _skin(folder: Path, frame: _Frame) -> list[dict[str, Any]]:
     found = []
     for number in np.unique(ridge[np.isfinite(ridge)]):
         mine = ridge == number
-        # A point is in contact or not: the length is that of the skin under pressure.
-        arc = np.hypot(np.gradient(x[mine]), np.gradient(y[mine])) if mine.sum() > 1 else np.zeros(1)
-        touching = p[mine] > 0
         gap = float(d_eq[mine][0])
+        length, mean = tables[frame.table].get((frame.row, int(number)), (0.0, 0.0))
         found.append(
             {
                 "ridge": int(number),
@@ -121,10 +151,8 @@ def _skin(folder: Path, frame: _Frame) -> list[dict[str, Any]]:
                 "t": _rounded(_KPA * t[mine], 2),
                 "p_el": _rounded(_KPA * p_el[mine], 2),
                 "gap": round(_UM * gap, 4) if np.isfinite(gap) else None,
-                "length": round(_MM * float(arc[touching].sum()), 4),
-                "mean": round(_KPA * float(np.average(p[mine][touching], weights=arc[touching])), 2)
-                if touching.any()
-                else 0.0,
+                "length": length,
+                "mean": mean,
             }
         )
     return found
@@ -145,7 +173,7 @@ def _view(skins: list[list[dict[str, Any]]]) -> list[float] | None:
 def _chosen(stems: list[str]) -> set[str]:
     """Return the states that get an image, spread over all."""
     places = np.unique(np.linspace(0, len(stems) - 1, min(len(stems), _MOST)).round().astype(int)) if stems else []
-    return {stems[k] for k in places}
+    return {stems[int(k)] for k in places}
 
 
 def _finger(file: Path, view: list[float]) -> dict[str, Any] | None:
@@ -155,7 +183,8 @@ def _finger(file: Path, view: list[float]) -> dict[str, Any] | None:
         return None
     try:
         with kept:
-            xy, triangles = _MM * (kept["x"] + kept["u"]), kept["triangles"]
+            xy = np.asarray(_MM * (kept["x"] + kept["u"]), dtype=float)
+            triangles = kept["triangles"]
             density, tag = _KPA * kept["sed"], kept["tag"]
     except (KeyError, OSError, ValueError, EOFError):
         return None
@@ -165,11 +194,13 @@ def _finger(file: Path, view: list[float]) -> dict[str, Any] | None:
     near &= corners[:, :, 1].min(axis=1) < top
     x = np.linspace(left, right, _COLUMNS)
     y = np.arange(0.5 * (x[1] - x[0]), top, x[1] - x[0])  # the screen is at 0
-    cells = Triangulation(xy[:, 0], xy[:, 1], triangles[near]).get_trifinder()(*np.meshgrid(x, y))
+    finder = Triangulation(xy[:, 0], xy[:, 1], triangles[near]).get_trifinder()
+    cells = np.asarray(finder(*np.meshgrid(x, y)), dtype=int)  # -1 outside
     level = np.round(100 * np.log10(np.maximum(density[near], 1e-9))).astype("<i2")
     image = np.where(cells >= 0, level[cells], _EMPTY).astype("<i2")
     lines = np.concatenate(interfaces(triangles, tag))
-    inside = ((xy[lines] >= (left, bottom)) & (xy[lines] <= (right, top))).all(axis=(1, 2))
+    low, high = np.array([left, bottom]), np.array([right, top])
+    inside = ((xy[lines] >= low) & (xy[lines] <= high)).all(axis=(1, 2))
     segments = np.round(1e3 * xy[lines[inside]]).astype(int)  # µm, shape (lines, 2, 2)
     known = image[image != _EMPTY]
     return {

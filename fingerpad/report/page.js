@@ -19,8 +19,7 @@
       font: { family: "system-ui, DejaVu Sans, sans-serif", size: narrow() ? 11 : 13, color: "#1a1a1a" },
       legend: { orientation: "h", x: 0, xanchor: "left", y: 1.02, yanchor: "bottom" } }, more);
   }
-  const config = () => ({ responsive: true, displaylogo: false, displayModeBar: !narrow(), scrollZoom: false,
-    modeBarButtonsToRemove: ["lasso2d", "select2d"] });
+  const config = () => ({ responsive: true, displaylogo: false, displayModeBar: false, scrollZoom: false });
   function draw(id, traces, how) {
     if (get(id)) Plotly.react(get(id), traces, how, config());
   }
@@ -58,7 +57,8 @@
   function work() {
     const s = data.steps, text = s.step.map((n, k) => s.load[k]);
     const bar = (name, key, colour, shape) => ({ type: "bar", x: s.step, y: s[key], name, text, textposition: "none",
-      marker: { color: colour, pattern: { shape, fgcolor: "#fff" } },
+      marker: { color: colour, line: { color: colour, width: 1 },
+        pattern: { shape, fillmode: "replace", fgcolor: colour, bgcolor: "#fff", size: 5 } },
       hovertemplate: `step %{x} (%{text}): %{y} ${name}<extra></extra>` });
     const traces = [bar("Newton iterations", "newton_iterations", BLUE, ""), bar("factorisations", "factorisations", "#D55E00", "/")];
     const cut = s.step.map((n, k) => k).filter((k) => s.cutbacks[k]);
@@ -95,12 +95,14 @@
     return found;
   }
   function body() {
-    const finger = frames[now].finger, traces = [], annotations = [];
+    const finger = frames[now].finger, traces = [], annotations = [], range = along();
+    const wide = (get("body").clientWidth || 700) - 68;
+    const high = Math.max(90, wide * (view[3] - view[2]) / (range[1] - range[0]));
     if (finger) {
       traces.push({ type: "heatmap", z: image(finger), customdata: finger.kpa, x0: finger.x[0], dx: finger.x[1],
         y0: finger.y[0], dy: finger.y[1], zmin: highest - 3, zmax: highest, colorscale: "Viridis",
         hovertemplate: "x %{x:.3f} mm, y %{y:.3f} mm<br>energy density %{customdata:.3g} kPa<extra></extra>",
-        colorbar: { orientation: "h", y: -0.32, yanchor: "top", thickness: 12, len: 0.9, tickvals: ticks(),
+        colorbar: { orientation: "h", y: -52 / high, yanchor: "top", thickness: 12, len: 0.9, tickvals: ticks(),
           ticktext: ticks().map((k) => String(Number(Math.pow(10, k).toPrecision(1)))),
           title: { text: "strain energy density (kPa)", side: "bottom" } } });
       const x = [], y = [];
@@ -112,15 +114,21 @@
     }
     const mine = current();
     if (mine) {
-      const known = mine.x.filter((v) => v !== null), middle = (Math.min(...known) + Math.max(...known)) / 2;
-      annotations.push({ x: middle, y: 0, text: `▲ ${mine.ridge}`, showarrow: false, yanchor: "top", font: { size: 13 } });
+      annotations.push({ x: middle(mine), y: 0, text: `▲ ${mine.ridge}`, showarrow: false, yanchor: "top", font: { size: 13 } });
     }
-    const wide = (get("body").clientWidth || 700) - 68;
-    const high = Math.max(90, wide * (view[3] - view[2]) / (view[1] - view[0]));
     draw("body", traces, layout(Math.round(high + 140), { showlegend: false, annotations, margin: { l: 56, r: 12, t: 12, b: 128 },
       shapes: [{ type: "line", x0: view[0], x1: view[1], y0: 0, y1: 0, line: { width: 3, color: "#000" } }],
-      xaxis: axis("x (mm)", { range: [view[0], view[1]], fixedrange: narrow() }),
+      xaxis: axis("x (mm)", { range, fixedrange: narrow() }),
       yaxis: axis("y (mm)", { range: [view[2], view[3]], fixedrange: narrow() }) }));
+  }
+  const middle = (r) => {
+    const known = r.x.filter((v) => v !== null);
+    return (Math.min(...known) + Math.max(...known)) / 2;
+  };
+  // On a phone the ridge that was chosen and its neighbours, elsewhere all that touch.
+  function along() {
+    const mine = current();
+    return narrow() && mine ? [middle(mine) - 1.2, middle(mine) + 1.2] : [view[0], view[1]];
   }
   const current = () => frames[now].skin.find((r) => r.ridge === ridge);
   function joined(key) {
@@ -143,7 +151,7 @@
         fillcolor: "#000", opacity: 0.08, line: { width: 1, dash: "dot", color: "#000" } });
     }
     draw("skin", traces, layout(300, { shapes, margin: { l: 56, r: 12, t: 50, b: 44 },
-      xaxis: axis("x on the screen (mm)", { range: [view[0], view[1]], fixedrange: narrow() }),
+      xaxis: axis("x on the screen (mm)", { range: along(), fixedrange: narrow() }),
       yaxis: axis("stress (kPa)", { range: [1.05 * lowest, 1.08 * largest], fixedrange: narrow() }) }));
   }
   function one() {
@@ -173,9 +181,8 @@
   function nearest(x) {
     let best = null, least = Infinity;
     for (const r of frames[now].skin) {
-      const known = r.x.filter((v) => v !== null);
-      const away = Math.abs((Math.min(...known) + Math.max(...known)) / 2 - x);
-      if (known.length && away < least) { least = away; best = r.ridge; }
+      const away = Math.abs(middle(r) - x);
+      if (away < least) { least = away; best = r.ridge; }
     }
     if (best !== null) choose(best);
   }

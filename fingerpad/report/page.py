@@ -30,7 +30,8 @@ def items(lines: Iterable[object]) -> str:
 
 def table(heads: Sequence[object], rows: Iterable[Sequence[object]], kind: str = "") -> str:
     """Return a table that scrolls sideways where it is wider than the page; the first cell of a row is its head."""
-    lines = [f"<tr>{''.join(f'<th scope="col">{text(head)}</th>' for head in heads)}</tr>"]
+    first_row = "".join(f'<th scope="col">{text(head)}</th>' for head in heads)
+    lines = [f"<tr>{first_row}</tr>"]
     for first, *rest in rows:
         cells = "".join(f"<td>{text(cell)}</td>" for cell in rest)
         lines.append(f'<tr><th scope="row">{text(first)}</th>{cells}</tr>')

@@ -53,7 +53,7 @@ def all_of(parameters: Mapping[str, Any], varied: Container[str] = ()) -> str:
         of = "the sweep" if name in varied else "this scene" if name in other else "default"
         rows.append((name, shown, key.unit if key else "", of, key.meaning if key else ""))
     heads = ("key", "value", "unit", "chosen by", "meaning and source")
-    note = "SI units. Where no source is named, the value is that of the paper; “Assumption” marks a choice it leaves open."
+    note = "SI units. Without another source a default is the paper's; “Assumption” marks a choice that it leaves open."
     return folded(f"All {len(rows)} parameters", paragraph(note), table(heads, rows, "parameters"))
 
 
@@ -61,7 +61,7 @@ def again(parameters: Mapping[str, Any], model: str, folder: str) -> str:
     """Return how a run is repeated."""
     if parameters.get("laws"):
         return paragraph(
-            f"The scene has laws of its own, written in Python: {parameters['laws']}. Run the program that made them again."
+            f"The scene has laws of its own, written in Python ({parameters['laws']}); run the program that made them."
         )
     given = {key: value for key, value in changed(parameters).items() if key != "model"}
     option = "" if model == "full" else f" --model {model}"
@@ -79,7 +79,7 @@ def again(parameters: Mapping[str, Any], model: str, folder: str) -> str:
 def cite() -> str:
     """Return what is cited."""
     return paragraph("Please cite the program, by its version above, and the paper whose model it implements:") + (
-        f'<blockquote>fingerpad: two-scale finite element model of a fingertip under electroadhesion.</blockquote>'
+        f"<blockquote>fingerpad: two-scale finite element model of a fingertip under electroadhesion.</blockquote>"
         f"<blockquote>{text(PAPER)}</blockquote>"
     )
 

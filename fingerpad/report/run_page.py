@@ -69,7 +69,8 @@ def _head(result: Result) -> str:
         factor = f", {slip.mu_app / friction:.2f} times the {friction:.3g} without attraction" if friction else ""
         said = f"apparent friction coefficient at full slip{factor}; {_conditions(result)}"
     elif charged is not None:
-        number = f"L<sub>R</sub> = {html.text(cell('contact_length', charged.contact_length, charged.error.contact_length))} mm"
+        value = cell("contact_length", charged.contact_length, charged.error.contact_length)
+        number = f"L<sub>R</sub> = {html.text(value)} mm"
         said = f"contact length in charged normal contact; {_conditions(result)}"
     else:
         number, said = "No contact state was kept", _conditions(result)
@@ -90,7 +91,9 @@ def _asked(result: Result) -> str:
             "voltage": (load.voltage, 1.0, "V"),
             "bone sideways": (load.bone_x, _MM, "mm"),
         }
-        words = [f"{name} to {value * scale:.4g} {unit}" for name, (value, scale, unit) in given.items() if value is not None]
+        words = [
+            f"{name} to {value * scale:.4g} {unit}" for name, (value, scale, unit) in given.items() if value is not None
+        ]
         words += ["ends at full slip"] if load.until_full_slip else []
         reached = [end for end in result.loads if end.name == load.name]
         rows.append((load.name, ", ".join(words), _cell(reached)))
@@ -142,10 +145,12 @@ def _trust(result: Result) -> str:
         for each in found
     )
     note = (
-        "All this is about the mathematics. The least certain input is the finger: ridge tips and roughness, which differ "
-        "between people, move µ_app by 10 % and more (docs/assumptions.md)."
+        "All this is about the mathematics. The least certain input is the finger: ridge tips and roughness move µ_app "
+        "by 10 % and more (docs/assumptions.md)."
     )
-    return html.section("trust", "Can these numbers be relied on?", f'<ul class="findings">{lines}</ul>', html.paragraph(note))
+    return html.section(
+        "trust", "Can these numbers be relied on?", f'<ul class="findings">{lines}</ul>', html.paragraph(note)
+    )
 
 
 def _finger(shown: dict[str, Any]) -> str:
@@ -167,19 +172,17 @@ def _finger(shown: dict[str, Any]) -> str:
         html.chart("skin", "Contact pressure, attraction and shear traction along the skin"),
         html.chart("one", "Contact pressure, attraction and height above the screen along one ridge"),
     )
-    rows = [
-        (f"{frame['label']} ({frame['about']})", peak, gap)
-        for frame in shown["frames"]
-        for peak, gap in [_extremes(frame["skin"])]
-    ]
+    rows = [(frame["label"], peak, gap) for frame in shown["frames"] for peak, gap in [_extremes(frame["skin"])]]
     heads = ("state", "highest contact pressure (kPa)", "air gap of the ridges in contact (µm)")
     return html.section(
         "finger",
         "The deformed finger, state by state",
-        html.paragraph("Move the slider through the saved states. Point at a ridge, or choose it, to read its values.", "needs-js"),
+        html.paragraph(
+            "Move the slider through the saved states. Point at a ridge, or choose it, to read its values.", "needs-js"
+        ),
         controls,
         *charts,
-        '<noscript><p class="note">The slider and charts need JavaScript; numbers and pictures of the page do not.</p></noscript>',
+        '<noscript><p class="note">The slider and charts need JavaScript; numbers and pictures do not.</p></noscript>',
         html.table(heads, rows),
     )
 
@@ -228,8 +231,8 @@ def _model(result: Result) -> str:
     rows = [(name.replace("_", " "), law) for name, law in laws.items()] if isinstance(laws, dict) else []
     omitted = [f"{each['what']}: {each['reason']}" for each in result.record.get("omitted") or []]
     always = (
-        "Never in the model: time and rate effects, sweat and moisture, heat, the third dimension along the screen "
-        "(plane strain), and charge that leaks through the insulator."
+        "Never in the model: inertia, viscous skin, waves, leakage of charge, moisture, the deformation and roughness "
+        "of the screen, and the direction along the finger (plane strain). See docs/model.md."
     )
     kinds = {"full": "Every ridge of the cross-section", "smooth": "A smooth finger with the law of one ridge"}
     first = f"{kinds.get(result.model, 'A closed form of charged cylinders')} (model {result.model!r})."
@@ -257,8 +260,8 @@ def _solver(result: Result) -> str:
             ("memory", f"{cost.memory_mb:.0f} MB"),
             ("ranks", str(cost.ranks)),
             ("unknowns", str(cost.unknowns)),
-            ("Newton iterations", str(cost.newton_iterations)),
-            ("factorisations", str(cost.factorisations)),
+            ("Newton iterations of the loading path", str(cost.newton_iterations)),
+            ("its factorisations", str(cost.factorisations)),
         )
         if value not in ("0", "0 s", "0 MB")
     ]

@@ -52,10 +52,18 @@ def read(folder: Path) -> Result | Table:
 
 
 def _run(folder: Path) -> Result:
+    name = clip(str(folder), 80)
     try:
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        if set(summary) == {"failure"}:
+            raise SceneError(f"the run in {name} was refused and has no results: {summary['failure']}")
+        if summary.get("model", "full") == "full" and not (folder / "steps.csv").exists():  # no step was accepted
+            return Result.from_dict(summary, folder)
         return Result.load(folder)
-    except (TypeError, AttributeError) as error:  # JSON of other things
-        raise SceneError(f"run {clip(str(folder), 80)} cannot be read: summary.json is not of a run ({error})") from None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:  # JSON of other things
+        if isinstance(error, SceneError):
+            raise
+        raise SceneError(f"run {name} cannot be read: summary.json is not whole, or not of a run ({error})") from None
 
 
 def _unfinished(folder: Path) -> Result:
@@ -64,16 +72,21 @@ def _unfinished(folder: Path) -> Result:
         parameters = json.loads((folder / "scene.json").read_text(encoding="utf-8"))
         scene = from_data({key: value for key, value in parameters.items() if key not in ("laws", "model")})
         with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
-            steps = tuple(ContactState.from_row(row) for row in csv.DictReader(file))
+            rows = [row for row in csv.DictReader(file) if None not in row.values()]  # the last may be cut short
+        steps = tuple(ContactState.from_row(row) for row in rows)
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise SceneError(f"the unfinished run in {clip(str(folder), 80)} cannot be read: {error}") from None
     if not steps:
-        raise SceneError(f"the run in {clip(str(folder), 80)} has no accepted step yet; make the report when it has one")
+        raise SceneError(
+            f"the run in {clip(str(folder), 80)} has no accepted step yet; make the report when it has one"
+        )
     found = named(steps)
     return Result(
         scene,
         "full",
-        *(found.get(name) for name in ("uncharged", "charged", "full_slip")),
+        found.get("uncharged"),
+        found.get("charged"),
+        found.get("full_slip"),
         steps=steps,
         loads=tuple(load_result(name, mine, None) for name, mine in by_load(steps)),
         failure=f"the run has not ended, or was killed, after step {steps[-1].step}: these are its steps so far",

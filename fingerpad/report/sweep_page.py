@@ -10,7 +10,11 @@ from fingerpad.report import parameters
 from fingerpad.report.source import Table
 
 _SHOWN = ("mu_app", "f_t", "contact_length", "f_electrostatic", "ridges_in_contact")
-_CHARTS = {"mu_app": "apparent friction µ_app", "f_t": "friction force f_T (N/m)", "contact_length": "contact length L_R (mm)"}
+_CHARTS = {
+    "mu_app": "apparent friction µ_app",
+    "f_t": "friction force f_T (N/m)",
+    "contact_length": "contact length L_R (mm)",
+}
 
 
 def page(table: Table) -> str:
@@ -54,7 +58,9 @@ def _varied(table: Table) -> str:
 def _study(table: Table) -> str:
     charts = [html.chart(f"sweep_{key}", f"{words} at full slip over the sweep") for key, words in _CHARTS.items()]
     note = "Bars are estimated discretisation errors, where a run has them."
-    without = '<noscript><p class="note">The charts need JavaScript; the table below has the same numbers.</p></noscript>'
+    without = (
+        '<noscript><p class="note">The charts need JavaScript; the table below has the same numbers.</p></noscript>'
+    )
     return html.section("study", "Friction and contact at full slip", without, *charts, html.paragraph(note, "note"))
 
 
@@ -70,7 +76,9 @@ def _points(table: Table) -> str:
         rows.append((first, *rest, *cells, state))
     heads = [_head_of(key) for key in table.axes]
     heads += [f"{QUANTITIES[k].words}{f' ({QUANTITIES[k].unit})' if QUANTITIES[k].unit else ''}" for k in _SHOWN]
-    return html.section("points", "Every point", html.table((*heads, ""), rows, "numbers"), html.paragraph(PER_LENGTH, "note"))
+    return html.section(
+        "points", "Every point", html.table((*heads, ""), rows, "numbers"), html.paragraph(PER_LENGTH, "note")
+    )
 
 
 def _failed(table: Table) -> str:
@@ -82,12 +90,14 @@ def _failed(table: Table) -> str:
     if not rows:
         return html.section("failed", "Failures", html.paragraph("No run failed."))
     note = "A run that crashed or was stopped is started again by the same command; the others stay as they are."
-    return html.section("failed", "Which runs failed, and why", html.table(("point", "reason"), rows), html.paragraph(note))
+    return html.section(
+        "failed", "Which runs failed, and why", html.table(("point", "reason"), rows), html.paragraph(note)
+    )
 
 
 def _parameters(table: Table) -> str:
     if table.parameters is None:
-        words = "The folder holds no scene: a closed form leaves its table alone. The command of the sweep has the parameters."
+        words = "The folder holds no scene: a closed form leaves its table alone. Its command has the parameters."
         return html.section("parameters", "Parameters", html.paragraph(words))
     return html.section("parameters", "Parameters", parameters.all_of(table.parameters, table.axes))
 

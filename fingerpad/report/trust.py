@@ -35,11 +35,10 @@ def findings(result: Result) -> list[Finding]:
 
 def verdict(found: list[Finding]) -> tuple[str, str]:
     """Return the worst verdict and a sentence for the head of a page."""
-    bad, care = ([each.what for each in found if each.verdict == kind] for kind in (BAD, CARE))
-    if bad:
-        return BAD, f"Do not use these numbers as they are: {' and '.join(bad)}; the reason is below."
-    if care:
-        return CARE, f"Use with care: {' and '.join(care)}; the reason is below."
+    bad, care = ([each for each in found if each.verdict == kind] for kind in (BAD, CARE))
+    for kind, worst, first in ((BAD, bad, "Do not use these numbers as they are"), (CARE, care, "Use with care")):
+        if worst:
+            return kind, f"{first}: {' and '.join(each.what for each in worst)}. {worst[0].words}"
     return GOOD, "Everything that was examined holds: the numbers can be used within their ±."
 
 
@@ -89,7 +88,9 @@ def _balance(result: Result) -> Iterator[Finding]:
         yield Finding("balance of forces", GOOD if abs(left) < 1e-3 * abs(state.f_ext) else BAD, words)
         return
     words += f" The solver's tolerance allows {floor:.1g} N/m."
-    yield Finding("balance of forces" if abs(left) <= floor else "forces do not balance", _worse(abs(left) > floor), words)
+    yield Finding(
+        "balance of forces" if abs(left) <= floor else "forces do not balance", _worse(abs(left) > floor), words
+    )
 
 
 def _stability(result: Result) -> Iterator[Finding]:
@@ -113,23 +114,28 @@ def _jumps(result: Result) -> Iterator[Finding]:
             yield Finding("jumps", GOOD, "No part of the skin jumped.")
         return
     places = ", ".join(f"{state.step} ({state.load})" for state in steps[:12]) + (" …" if len(steps) > 12 else "")
-    energy, error = (sum(getattr(state.record, key) for state in steps) for key in ("energy_released", "released_error"))
+    energy, error = (
+        sum(getattr(state.record, key) for state in steps) for key in ("energy_released", "released_error")
+    )
     sure = f"They released {energy:.2g} J/m." if energy > error else f"They released less than {error:.1g} J/m."
     words = f"Skin jumped without the loads in {len(steps)} of {len(result.steps)} steps: {places}. {sure} "
-    yield Finding("jumps", GOOD, f"{words}A jump is part of the model, as in stick-slip; states between steps are not known.")
+    yield Finding(
+        "jumps", GOOD, f"{words}A jump is part of the model, as in stick-slip; states between steps are not known."
+    )
 
 
 def _restarts(result: Result) -> Iterator[Finding]:
     restarts = result.record.get("restarts") or []
     if restarts:
         why = "; ".join(str(each.get("reason", "")) for each in restarts if isinstance(each, dict))
-        words = f"The run started again {len(restarts)} times, with more in its model: {why}. The numbers are of the last run."
+        again = f"The run started again {len(restarts)} times, with more in its model: {why}."
+        words = f"{again} The numbers are of the last run."
         yield Finding("restarts", GOOD, words)
     else:
         yield Finding("restarts", GOOD, "None: no part that was left out turned out to matter.")
     cuts = sum(state.record.cutbacks for state in result.steps if state.record is not None)
     if cuts:
-        words = f"{cuts} steps found no equilibrium at first and were cut. Each accepted step is in equilibrium."
+        words = f"{cuts} times a step found no equilibrium and was cut. Each accepted step is in equilibrium."
         yield Finding("cut steps", GOOD, words)
 
 

@@ -137,7 +137,7 @@ def _one(scene: Path, folder: Path, model: str) -> None:
     asked = from_data(json.loads(scene.read_text(encoding="utf-8")))
     try:
         if model == "full":
-            solved(asked, model, folder, lines=True)
+            solved(asked, model, folder, lines=True, report=False)
         else:
             from fingerpad.reduced import smooth
 

@@ -88,6 +88,7 @@ def solved(
     comm: "MPI.Comm | None" = None,
     lines: bool = False,
     bar: bool = True,
+    report: bool = True,
 ) -> Result:
     """Return what a model answers to a scene with all its laws; collective; arguments as of :func:`run`.
 
@@ -98,7 +99,19 @@ def solved(
         comm: communicator.
         lines: whether the full model prints its steps.
         bar: whether it shows a progress bar.
+        report: whether ``report.html`` is written beside the results.
     """
+    result = _solved(scene, model, out, comm, lines, bar)
+    if report and out is not None and (terminal.rank() if comm is None else comm.rank) == 0:
+        from fingerpad.report.write import attempt
+
+        attempt(out)
+    return result
+
+
+def _solved(
+    scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool, bar: bool
+) -> Result:
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     if model == "cylinders":

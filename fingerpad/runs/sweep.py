@@ -17,6 +17,7 @@ from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import PREFIXES, STATES
 from fingerpad.model.check import check
+from fingerpad.report.write import attempt
 from fingerpad.runs.solve import MODELS, solved
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import show
@@ -146,7 +147,7 @@ def sweep(
 
     Args:
         scene: the scene; by default press, charge and slide of the default finger.
-        out: folder of the results.
+        out: folder of the results, of ``table.csv`` and of ``report.html``.
         jobs: points that are run at a time.
         model: as of :func:`fingerpad.runs.solve.run`.
         quiet: whether to print no line for each point, and show no progress bar.
@@ -174,6 +175,7 @@ def sweep(
         found = _in_processes(scenes, points, folder, jobs, model, quiet)
     done = Sweep(values, tuple(found), folder)
     done.to_csv(folder / "table.csv")
+    attempt(folder)
     return done
 
 
