@@ -34,6 +34,7 @@ myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
 myst_dmath_double_inline = True
 
+viewcode_follow_imported_members = False
 toc_object_entries = False  # hundreds, in the navigation of every page
 add_module_names = False
 autodoc_member_order = "bysource"
