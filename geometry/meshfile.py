@@ -37,6 +37,7 @@ FACETS = {
 _RIDGE = re.compile(r"ridge (0|-?[1-9][0-9]{0,2})")
 _LARGEST, _LEAST = 0.2, 1e-6  # m, of the longer side of a body
 _FLAT = 1e-9  # out of the plane or below the screen, over the body's size
+_THIN = 1e-6  # double area of a triangle, over the square of its longest side
 _TRIANGLE, _LINE = 2, 1  # gmsh's numbers of linear elements
 _START = b"$MeshFormat"
 
@@ -136,6 +137,9 @@ def _check_mesh() -> None:
     xyz = np.asarray(coordinates, dtype=np.float64).reshape(-1, 3)
     triangles = _elements(2, _TRIANGLE, "triangles with 3 nodes")
     _check_places(xyz[np.isin(nodes, triangles)])
+    order = np.argsort(nodes)
+    places = order[np.searchsorted(nodes, triangles, sorter=order)]
+    _check_areas(xyz[places][:, :, :2])
     grouped = sum(len(_of_group(2, tag)) for tag in tags.LAYERS.values())
     if grouped < len(triangles):
         raise GeometryError(f"{len(triangles) - grouped} of {len(triangles)} triangles are in no group of cells")
@@ -147,6 +151,8 @@ def _check_mesh() -> None:
     if parts > 1:
         raise GeometryError(f"the mesh is in {parts} parts that share no node; layers must share nodes where they meet")
     _check_facets(triangles)
+    used = np.isin(nodes, triangles)
+    _check_lowest(xyz[used], np.asarray(nodes, dtype=np.int64)[used])
 
 
 def _check_places(xyz: Array) -> None:
@@ -162,6 +168,41 @@ def _check_places(xyz: Array) -> None:
     if lowest < -_FLAT * size:
         raise GeometryError(
             f"the lowest point is at y = {lowest:g} m, below the screen at y = 0; move the body up by {-lowest:g} m"
+        )
+
+
+def _check_areas(corners: Array) -> None:
+    """Refuse triangles without an area and those of both orientations; ``corners`` (m), shape (triangles, 3, 2)."""
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    double = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    longest = np.max(np.sum(np.stack([a, b, b - a]) ** 2, axis=2), axis=0)
+    flat = np.flatnonzero(np.abs(double) < _THIN * longest)
+    if len(flat):
+        x, y = corners[flat[0]].mean(axis=0)
+        raise GeometryError(f"{len(flat)} of {len(corners)} triangles have no area, the first at ({x:g}, {y:g}) m")
+    turned = int((double < 0).sum())
+    if 0 < turned < len(corners):
+        raise GeometryError(
+            f"{turned} of {len(corners)} triangles are clockwise and the others are not, so that cells may overlap; "
+            "give all of them one orientation"
+        )
+
+
+def _check_lowest(xyz: Array, nodes: Numbers) -> None:
+    """Refuse a body whose lowest point cannot touch; of all nodes, their places (m) and their numbers."""
+    ridges = [_of_group(1, tag).ravel() for _, tag in gmsh.model.getPhysicalGroups(1) if tags.is_ridge(tag)]
+    low = xyz[np.isin(nodes, np.concatenate(ridges)), 1].min()
+    below = xyz[:, 1].min()
+    size = float(np.ptp(xyz[:, :2], axis=0).max())
+    if below < low - _FLAT * size:
+        raise GeometryError(
+            f"the lowest point, at y = {below:g} m, is in no ridge group, and the lowest ridge is at y = {low:g} m; "
+            "give the skin that comes down first a group 'ridge 0'"
+        )
+    if low > size:
+        raise GeometryError(
+            f"the lowest ridge is at y = {low:g} m, further above the screen at y = 0 than the body is large; "
+            f"move the body down by {low:g} m"
         )
 
 

@@ -64,6 +64,14 @@ def test_body_from_a_file_is_the_body(place, version):
     assert body.state.bone_height == pytest.approx(itself.state.bone_height, rel=1e-8)
 
 
+def test_clockwise_cells_are_the_same_body(place):
+    """All of one orientation, whichever: the same integrals but for roundoff, below Newton's tolerance of 1e-9."""
+    clockwise = changed(lambda: gmsh.model.mesh.reverse(gmsh.model.getEntities(2)))
+    body = Body(write(place, clockwise), SKIN, contact=SPRINGS, friction=0.25).press(1.0)
+    itself = Body(RIDGE, SKIN, contact=SPRINGS, friction=0.25).press(1.0)
+    assert body.state.bone_height == pytest.approx(itself.state.bone_height, rel=1e-7)
+
+
 def test_numbers_of_groups_do_not_matter(place):
     def renumbered():
         model()
@@ -145,6 +153,17 @@ def rim_elsewhere(inside: bool):
     gmsh.model.mesh.generate(2)
 
 
+def thrown(flat: bool):
+    """Move a node of the mesh inside onto or across an opposite edge of one of its triangles."""
+    entity = gmsh.model.getEntities(2)[0][1]
+    inside = set(gmsh.model.mesh.getNodes(2, entity)[0])
+    triangles = np.asarray(gmsh.model.mesh.getElementsByType(2, entity)[1]).reshape(-1, 3)
+    first, *others = next([n, *(m for m in each if m != n)] for each in triangles for n in each if n in inside)
+    here, one, two = (gmsh.model.mesh.getNode(int(node))[0] for node in (first, *others))
+    middle = (one + two) / 2
+    gmsh.model.mesh.setNode(int(first), middle if flat else middle + (middle - here), [])
+
+
 REFUSED = {
     "no rim": (named(1, tags.BONE_RIM, None), "the group 'bone rim' is missing"),
     "no skin": (named(1, tags.ridge(0), None), "no skin can touch; give the facets that can a group 'ridge 0'"),
@@ -166,6 +185,10 @@ REFUSED = {
     "volumes": (solid, "group 'dermis' is of volumes; the mesh must be plane"),
     "rim inside": (partial(rim_elsewhere, True), "group 'bone rim' has edges inside the body"),
     "rim outside": (partial(rim_elsewhere, False), "group 'bone rim' has edges that no triangle has"),
+    "no area": (changed(lambda: thrown(flat=True)), "triangles have no area, the first at"),
+    "orientation": (changed(lambda: thrown(flat=False)), "triangles are clockwise and the others are not"),
+    "far away": (changed(lambda: scale(1, up=1e-2)), "the lowest ridge is at y = 0.01 m, further above the screen"),
+    "lowest point": (changed(lambda: scale(-1, up=2e-3)), "is in no ridge group, and the lowest ridge is at y ="),
     "two parts": (two_parts, "the mesh is in 2 parts that share no node"),
 }
 

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from fingerpad.scene.keys import every
 from fingerpad.cli.params import page
+from fingerpad.scene.keys import every
 
 PAGE = Path(__file__).parents[1] / "docs" / "scene.md"
 

@@ -32,7 +32,7 @@ def kept(demo: Path) -> str:
     if not text.exists():
         return "\n## Output\n\n[The first page](../docs/site/index.md) shows what the scene prints.\n"
     shown = [f"![Picture of this demo: {p.stem.removeprefix(demo.stem + '_')}]({OUTPUT}/{p.name})" for p in pictures]
-    return "\n".join(["", "## Output", "", "```", text.read_text(encoding="utf-8").strip(), "```", "", *shown, ""])
+    return "\n".join(["", "## Output", "", "```text", text.read_text(encoding="utf-8").strip(), "```", "", *shown, ""])
 
 
 class Percent(MystParser):

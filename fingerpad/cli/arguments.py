@@ -9,10 +9,10 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn
 
-from fingerpad.scene.keys import every
 from fingerpad.io import terminal
 from fingerpad.model.check import check
 from fingerpad.scene import Scene, load, override
+from fingerpad.scene.keys import every
 from fingerpad.scene.messages import SceneError, clip
 
 _PETSC = "-fingerpad_"  # prefix of PETSc's options

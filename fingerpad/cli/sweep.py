@@ -40,7 +40,8 @@ def main(argv: Sequence[str]) -> int:
     scene = from_data(base)
     found = sweep(scene, args.out, jobs=args.jobs, model=args.model, quiet=args.quiet, **axes)
     echo(str(found))
-    echo(f"Written: {args.out / 'table.csv'} and report.html")
+    files = [args.out / "table.csv", *(["sweep.nc"] if not found.notes else []), "report.html"]
+    echo(f"Written: {', '.join(map(str, files))}")
     return 1 if any(result.failure for result in found) else 0
 
 

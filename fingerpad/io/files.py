@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 
-def replace(file: Path, text: str) -> None:
-    """Write a text file; what was there stays until all of it is written."""
+def replace(file: Path, text: str | bytes) -> None:
+    """Write a file of text or bytes; what was there stays until all of it is written."""
     part = file.with_name(f"{file.name}.part")
     try:
-        part.write_text(text, encoding="utf-8")
+        part.write_bytes(text.encode("utf-8") if isinstance(text, str) else text)
         part.replace(file)
     except OSError:
         part.unlink(missing_ok=True)

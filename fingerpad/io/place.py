@@ -33,6 +33,8 @@ LEFT = (
         "summary.json",
         "summary.json.part",
         "run.log",
+        "result.nc",
+        "result.nc.part",
     ),
     *("displacement.bp", "stress.bp", "sed.bp", "finger_*.npz", "finger_*.png", "surface*.npz", "surface*.png"),
     *("history.png", "report.html", "report.html.part"),

@@ -16,6 +16,7 @@ from fingerpad.scene.laws import coefficient
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
 
 if TYPE_CHECKING:
+    import xarray
     from matplotlib.figure import Figure
 
     from fingerpad.io.drawing import Drawing
@@ -103,6 +104,16 @@ class Result:
         if terminal.rank() == 0:
             raise ValueError("the result has no states to draw")
         return None
+
+    def to_xarray(self) -> "xarray.Dataset":
+        """Return steps, loads, ridges, sites and named states as one dataset with units, as ``result.nc`` has it.
+
+        Raises:
+            ImportError: xarray is not installed.
+        """
+        from fingerpad.io import dataset  # it takes a Result
+
+        return dataset.dataset(self)
 
     # -- files -----------------------------------------------------------------------------------------
     def values(self) -> dict[str, Any]:

@@ -7,8 +7,10 @@ from typing import Any
 
 from mpi4py import MPI
 
+from fingerpad.io import dataset
 from fingerpad.io.files import Table, replace_json
 from fingerpad.io.place import Place
+from fingerpad.io.result import Result
 from variational.output import Fields
 from variational.problem import Problem
 
@@ -64,6 +66,12 @@ class Writer:
         """Write ``summary.json``, on rank 0."""
         if self._place is not None and self._comm.rank == 0:
             replace_json(self._place.folder / "summary.json", found)
+
+    def dataset(self, result: Result) -> str:
+        """Write ``result.nc`` on rank 0; return on every rank why it is missing, empty where it is not; collective."""
+        if self._place is None:
+            return ""
+        return str(self._comm.bcast(dataset.save(result) if self._comm.rank == 0 else None))
 
     def restart(self) -> None:
         """Delete tables and close fields, to be started anew; collective."""

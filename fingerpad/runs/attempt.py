@@ -1,5 +1,7 @@
 """One attempt at a run: the path of its loads on one mesh, and the errors of its states."""
 
+from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
 from fingerpad.accuracy.recompute import StateRecorder
@@ -159,6 +161,12 @@ class Attempt:
         if result.failure:
             self._writer.log.error(result.failure)
         self._writer.summary(result.to_dict())
+        missing = self._writer.dataset(result)
+        if missing:
+            result = replace(result, notes=(*result.notes, missing))
+            with suppress(OSError):  # the same full disk; what is there stays
+                self._writer.log.warning(missing)
+                self._writer.summary(result.to_dict())
         return result
 
     def _path(self) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fingerpad.installed import needed_by
-from fingerpad.io import terminal
+from fingerpad.io import dataset, terminal
 from fingerpad.io.files import replace_json
 from fingerpad.io.place import Place, Serial
 from fingerpad.io.result import Result
@@ -153,7 +153,8 @@ def kept(result: Result, out: Path | None, comm: "MPI.Comm | Serial") -> Result:
         place.take()
         if comm.rank == 0:
             replace_json(out / "summary.json", result.to_dict())
-    return result
+        missing = comm.bcast(dataset.save(result) if comm.rank == 0 else "")
+    return replace(result, notes=(*result.notes, missing)) if missing else result
 
 
 def tables_in(out: Path | None) -> Path:

@@ -5,8 +5,9 @@ import itertools
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from dataclasses import replace as replace_fields
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +19,15 @@ from fingerpad.io.result import Result
 from fingerpad.io.states import PREFIXES, STATES
 from fingerpad.model.check import check
 from fingerpad.report.write import attempt
+from fingerpad.runs import sweep_dataset
 from fingerpad.runs.solve import MODELS, solved
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import show
 from fingerpad.scene.reading import plain, put
 from variational.state import CONDITIONS, RESULTS
+
+if TYPE_CHECKING:
+    import xarray
 
 _MOST = 10_000  # points
 _LIMIT = 4 * 3600.0  # s of processor time for one point
@@ -37,7 +42,9 @@ class Sweep:
     """Values by key, in SI."""
     results: tuple[Result, ...]
     folder: Path | None
-    """Of the results, each in a folder of its own, and of ``table.csv``."""
+    """Of the results, each in a folder of its own, of ``table.csv`` and of ``sweep.nc``."""
+    notes: tuple[str, ...] = ()
+    """Remarks on the files of the sweep."""
 
     def __len__(self) -> int:
         """Return the number of points."""
@@ -86,6 +93,14 @@ class Sweep:
             rows.append(point | cells | {"failure": result.failure})
         return rows
 
+    def to_xarray(self) -> "xarray.Dataset":
+        """Return the named states along the swept keys as one dataset with units, as ``sweep.nc`` has it.
+
+        Raises:
+            ImportError: xarray is not installed.
+        """
+        return sweep_dataset.of_sweep(self)
+
     def to_csv(self, path: str | Path) -> None:
         """Write the rows as a table."""
         rows = self.rows()
@@ -111,7 +126,7 @@ class Sweep:
             rows.append([*first, *cells])
         widths = [max(len(row[k]) for row in rows if len(row) == len(heads)) for k in range(len(heads))]
         lines = ["   ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=False)) for row in rows]
-        return "\n".join(["At full slip", *lines, PER_LENGTH])
+        return "\n".join(["At full slip", *lines, PER_LENGTH, *self.notes])
 
 
 class _Lines(list[str]):
@@ -175,8 +190,9 @@ def sweep(
         found = _in_processes(scenes, points, folder, jobs, model, quiet)
     done = Sweep(values, tuple(found), folder)
     done.to_csv(folder / "table.csv")
+    missing = sweep_dataset.save(done)
     attempt(folder)
-    return done
+    return replace_fields(done, notes=(missing,)) if missing else done
 
 
 def _along(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> dict[str, list[Scene]]:

@@ -41,19 +41,28 @@ def every() -> Iterator[Key]:
     yield from _of(Scene, "", None)
 
 
+def tables(model: type[BaseModel]) -> Iterator[type[BaseModel]]:
+    """Yield the model of a table and of every table in it; one that is there twice comes twice."""
+    yield model
+    for field in model.model_fields.values():
+        for part in (*_parts(field.annotation), *field.metadata):
+            if isinstance(part, type) and issubclass(part, BaseModel):
+                yield from tables(part)
+
+
 def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Iterator[Key]:
     inner = []
     for name, field in model.model_fields.items():
         parts = tuple(_parts(field.annotation)) + tuple(field.metadata)
-        tables = [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
+        inside = [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
         many = "[]" if tuple in parts else ""
         value = getattr(instance, name) if instance is not None else field.get_default(call_default_factory=True)
-        if tables:
-            inner.append((tables[0], f"{table}{name}{many}.", value if isinstance(value, tables[0]) else None))
+        if inside:
+            inner.append((inside[0], f"{table}{name}{many}.", value if isinstance(value, inside[0]) else None))
             continue
         unit, allowed = _allowed(parts)
         required = instance is None and field.is_required()
-        yield Key(table + name, unit, None if required else value, allowed, _docstrings(model).get(name, ""), required)
+        yield Key(table + name, unit, None if required else value, allowed, docstrings(model).get(name, ""), required)
     for kind, where, value in inner:
         yield from _of(kind, where, value)
 
@@ -94,7 +103,7 @@ def _allowed(parts: tuple[Any, ...]) -> tuple[str, str]:
 
 
 @cache
-def _docstrings(model: type[BaseModel]) -> dict[str, str]:
+def docstrings(model: type[BaseModel]) -> dict[str, str]:
     """Return what is written under the keys of a model, in one line each; empty where there is no source."""
     try:
         body = ast.parse(textwrap.dedent(inspect.getsource(model))).body[0]

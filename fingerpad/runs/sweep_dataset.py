@@ -1,0 +1,81 @@
+"""A sweep as one xarray dataset, and as ``sweep.nc`` beside its table: the swept keys are the coordinates."""
+
+import json
+import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fingerpad.io import dataset
+from fingerpad.scene.keys import every
+
+if TYPE_CHECKING:
+    import xarray
+
+    from fingerpad.runs.sweep import Sweep
+
+FILE = "sweep.nc"
+
+
+def of_sweep(sweep: "Sweep") -> "xarray.Dataset":
+    """Return a sweep as a dataset.
+
+    Args:
+        sweep: with at least one point.
+
+    Returns:
+        The named states of every point along the swept keys and ``state``, as in the dataset of a run; the failure and
+        the cost of every point. Its attributes are the parameters that all points share. SI units.
+
+    Raises:
+        ImportError: xarray is not installed.
+    """
+    import xarray
+
+    shape = [len(values) for values in sweep.axes.values()]
+    axes = tuple(sweep.axes)
+    points = [dataset.states(result.named) for result in sweep.results]
+    found: dataset.Variables = {"state": points[0].pop("state")}
+    for name, (dims, _, about) in points[0].items():
+        if name != "state":
+            values = np.stack([point[name][1] for point in points])
+            found[name] = (*axes, *dims), values.reshape(*shape, *values.shape[1:]), about
+    failures = np.array([result.failure for result in sweep.results], object).reshape(shape)
+    found["failure"] = axes, failures, {"units": "1", "long_name": "reason of a failure, empty without one"}
+    for name, words in (("wall_seconds", "elapsed time"), ("processor_seconds", "processor time of all ranks")):
+        values = np.array([getattr(result.cost, name) for result in sweep.results], np.float64).reshape(shape)
+        found[name] = axes, values, {"units": "s", "long_name": f"{words} of the point"}
+    known = {key.name: key for key in every()}
+    for key, along in sweep.axes.items():
+        meant = known.get(re.sub(r"\[\d+\]", "[]", key))
+        unit, words = ("1", key) if meant is None else (meant.unit or "1", meant.meaning)
+        found[key] = (key,), _coordinate(along), {"units": unit, "long_name": words}
+    coords = {name: value for name, value in found.items() if name in (*axes, "state")}
+    data = {name: value for name, value in found.items() if name not in coords}
+    return xarray.Dataset(data, coords, _shared(sweep))
+
+
+def save(sweep: "Sweep") -> str:
+    """Write ``sweep.nc`` into the folder of a sweep; return why not in one sentence, empty where it was written."""
+    assert sweep.folder is not None
+    return dataset.write(sweep.folder / FILE, lambda: of_sweep(sweep))
+
+
+def _coordinate(values: Sequence[Any]) -> Any:
+    """Return numbers as they are, and all else as text: names, switches, lists and tables."""
+    if all(isinstance(value, int | float) and not isinstance(value, bool) for value in values):
+        whole = all(isinstance(value, int) for value in values)
+        return np.array(values, np.int32 if whole else np.float64)
+    return np.array([value if isinstance(value, str) else json.dumps(value, default=str) for value in values], object)
+
+
+def _shared(sweep: "Sweep") -> dict[str, Any]:
+    """Return the attributes that all points have in common."""
+    every_one = [dataset.attributes(result) for result in sweep.results]
+    first = every_one[0]
+    texts = [{key: json.dumps(value) for key, value in each.items()} for each in every_one]
+    own = ("parameters", "provenance", "failure", "notes")
+    return {
+        key: value for key, value in first.items() if key not in own and all(t.get(key) == texts[0][key] for t in texts)
+    }

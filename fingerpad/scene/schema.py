@@ -1,0 +1,82 @@
+"""The JSON Schema of scenes, for editors that complete and check TOML files.
+
+The schema comes from the models of :mod:`fingerpad.scene`: keys, types, ranges, units, defaults and meanings. A number
+with a unit may also be a text such as ``"10 um"``. What concerns several keys at once, and whether a unit fits, is
+checked by the program alone.
+"""
+
+from typing import Any
+
+from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
+from pydantic_core import core_schema
+
+from fingerpad.scene.keys import docstrings, tables
+from fingerpad.scene.materials import Skin, Stiff
+from fingerpad.scene.scene import Scene
+from geometry.bounds import Range
+from geometry.units import QUANTITIES
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+_NUMBER = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?"
+_NUMBER_AND_UNIT = _NUMBER + r"\s*[^\s0-9.+-].*$"
+_PARTIAL = (Skin, Stiff)  # a scene completes these tables from the layer's own defaults
+_SWEEP = {
+    "type": "object",
+    "description": "Of a study, for fingerpad sweep: a list or a range such as 0:200:5 by key.",
+    "additionalProperties": {
+        "anyOf": [{"type": "array", "minItems": 1}, {"type": "string"}, {"type": "object"}],
+    },
+}
+
+
+class _Generator(GenerateJsonSchema):
+    """Writes ranges and texts with a unit, where pydantic sees a function; TOML has no null."""
+
+    def function_wrap_schema(self, schema: core_schema.WrapValidatorFunctionSchema) -> JsonSchemaValue:
+        """Return the schema of a number within a range."""
+        function = schema["function"]["function"]
+        return _number(function) if isinstance(function, Range) else super().function_wrap_schema(schema)
+
+    def nullable_schema(self, schema: core_schema.NullableSchema) -> JsonSchemaValue:
+        """Return the schema of the value; a key that may be missing is left out."""
+        return self.generate_inner(schema["schema"])
+
+    def default_schema(self, schema: core_schema.WithDefaultSchema) -> JsonSchemaValue:
+        """Return the schema with its default, unless this is a whole table or nothing."""
+        found = super().default_schema(schema)
+        if found.get("default") is None or isinstance(found["default"], dict):
+            found.pop("default", None)
+        return found
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON Schema of a scene file, ready for JSON."""
+    found = Scene.model_json_schema(schema_generator=_Generator, mode="validation")
+    parts = found["$defs"] | {Scene.__name__: found}
+    for model in dict.fromkeys(tables(Scene)):
+        part = parts[model.__name__]
+        part["description"] = " ".join((model.__doc__ or "").split("\n\n")[0].split())
+        part.pop("title", None)
+        if model in _PARTIAL:
+            part.pop("required", None)
+        for name, value in part["properties"].items():
+            value.pop("title", None)
+            if words := docstrings(model).get(name):
+                value["description"] = words
+    found["properties"]["sweep"] = _SWEEP
+    return {"$schema": DIALECT, "title": "Scene of fingerpad"} | found
+
+
+def _number(bounds: Range) -> JsonSchemaValue:
+    """Return the schema of a number within its range, or of a text with a unit where the quantity has one."""
+    ranges: list[JsonSchemaValue] = [{"minimum": bounds.low, "maximum": bounds.high}]
+    if bounds.sides == 2:
+        ranges.append({"minimum": -bounds.high, "maximum": -bounds.low})
+    if bounds.zero:
+        ranges.append({"const": 0})
+    number = {"type": "number"} | (ranges[0] if len(ranges) == 1 else {"anyOf": ranges})
+    if not bounds.unit:
+        return number
+    words = f"a number with a unit of {QUANTITIES[bounds.unit]}"
+    text = {"type": "string", "pattern": _NUMBER_AND_UNIT, "description": words}
+    return {"anyOf": [number, text]}

@@ -1,0 +1,174 @@
+"""A run and a sweep as NetCDF: the numbers of the tables, with units; a file that cannot be written loses nothing."""
+
+import csv
+import errno
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+from mpi4py import MPI
+
+import fingerpad as fp
+from fingerpad.io import columns, dataset
+from fingerpad.io.result import Result
+from fingerpad.runs import sweep_dataset
+from fingerpad.scene import from_data
+from tests.runs import run
+
+SCENE = {
+    "geometry": {"ridge_count": 9},
+    "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
+    "output": {"errors": False},
+    "history": [
+        {"name": "press", "f_ext": 1.0},
+        {"name": "charge", "voltage": 50.0},
+        {"name": "nudge", "bone_x": "10 um"},
+    ],
+}
+
+
+def rows_of(folder: Path, name: str) -> list[dict[str, str]]:
+    with (folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    """A run with three loads, of seconds."""
+    found = tmp_path_factory.mktemp("run")
+    run(from_data(SCENE), found, MPI.COMM_SELF)
+    return found
+
+
+@pytest.fixture(scope="module")
+def data(folder) -> xarray.Dataset:
+    return xarray.load_dataset(folder / "result.nc")
+
+
+def test_steps_are_those_of_the_table(folder, data):
+    """Bit for bit: both hold the same doubles."""
+    rows = rows_of(folder, "steps")
+    assert data.sizes["step"] == len(rows) > 3
+    for name in rows[0]:
+        values = data["load_name" if name == "load" else name]
+        for row, value in zip(rows, values.values, strict=True):
+            assert row[name] == str(value) if values.dtype.kind in "OUb" else float(row[name]) == value, name
+
+
+@pytest.mark.parametrize(("table", "known"), [("ridges", columns.RIDGES), ("receptors", columns.RECEPTORS)])
+def test_ridges_and_sites_are_those_of_the_tables(folder, data, table, known):
+    rows = rows_of(folder, table)
+    assert rows
+    for row in rows:
+        at = data.sel(step=int(row["step"]), ridge=int(row["ridge"]))
+        for name in known:
+            if name == "state":
+                assert at["ridge_note"] == row[name]
+            elif name.startswith("meissner"):
+                assert float(at["meissner_sed"].sel(side=name.removeprefix("meissner_"))) == float(row[name])
+            else:
+                assert float(at[name if table == "receptors" else f"ridge_{name}"]) == float(row[name])
+
+
+def test_ridges_out_of_contact_have_no_values(folder, data):
+    assert int(data["ridge_p_c"].notnull().sum()) == len(rows_of(folder, "ridges"))
+
+
+def test_coupling_is_that_of_the_table(folder, data):
+    for row in rows_of(folder, "coupling"):
+        value = data["coupling_change"].sel(step=int(row["step"]), iteration=int(row["iteration"]))
+        assert float(value) == float(row["change"])
+
+
+def test_states_are_those_of_the_summary(folder, data):
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    for name, values in summary["states"].items():
+        for key in ("step", "mu_app", "f_t", "contact_length", "ridges_in_contact", "bone_height"):
+            assert float(data[f"state_{key}"].sel(state=name)) == values[key]
+    assert np.isnan(data["state_mu_app"].sel(state="full_slip"))
+    assert list(data["load"].values) == [load["name"] for load in summary["loads"]]
+
+
+def test_skin_is_along_facets_and_points(data):
+    """Under pressure are facets of the ridges that have values in that step, and of no others."""
+    skin = data.sel(state="charged")
+    assert skin["skin_p_n"].dims == ("facet", "point") and skin.sizes["point"] == 4
+    bears = skin["ridge_f_contact"].sel(step=int(skin["state_step"])).notnull()
+    touching = skin["skin_ridge"].where((skin["skin_p_n"] > 0).any("point"))
+    assert set(touching.values[touching.notnull()]) == set(data["ridge"].values[bears.values])
+
+
+def test_every_variable_has_a_unit_and_a_name(data):
+    about = {name: {"units", "long_name"} <= set(value.attrs) for name, value in data.variables.items()}
+    assert all(about.values()), about
+
+
+def test_parameters_are_attributes(folder, data):
+    scene = json.loads((folder / "scene.json").read_text(encoding="utf-8"))
+    assert json.loads(data.attrs["parameters"]) == scene
+    assert data.attrs["roughness.h_rms"] == scene["roughness"]["h_rms"]
+
+
+def test_dataset_of_a_result_that_was_read_back(folder, data):
+    """But for the skin, which no table holds."""
+    again = Result.load(folder).to_xarray()
+    assert set(data.variables) - set(again.variables) == {f"skin_{name}" for name in (*columns.SKIN, "ridge")}
+    for name, value in again.data_vars.items():
+        if not name.startswith("state_"):  # a loaded state has no step
+            np.testing.assert_array_equal(value, data[name], name)
+
+
+# -- sweeps ----------------------------------------------------------------------------------------------
+def test_swept_keys_are_coordinates(tmp_path):
+    found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0, 100, 200], f_ext=["25 N/m", 75])
+    data = xarray.load_dataset(tmp_path / "sweep.nc")
+    assert data["state_mu_app"].dims == ("voltage", "f_ext", "state")
+    assert data["f_ext"].values.tolist() == [25.0, 75.0] and data["f_ext"].attrs["units"] == "N/m"
+    np.testing.assert_array_equal(data["state_mu_app"].sel(state="full_slip"), found.array("mu_app"))
+    for row in rows_of(tmp_path, "table"):
+        at = data.sel(voltage=float(row["voltage"]), f_ext=float(row["f_ext"]), state="full_slip")
+        assert float(at["state_f_t"]) == float(row["slip_f_t"])
+    assert "voltage" not in data.attrs and data.attrs["friction"] == 0.25
+
+
+def test_swept_names_are_text(tmp_path):
+    axes = {"materials.exponent": ["printed", "abaqus"], "roughness.h_rms": [2e-6, 3e-6]}
+    data = fp.sweep(fp.Scene(), tmp_path, model="cylinders", **axes).to_xarray()
+    assert data["materials.exponent"].values.tolist() == ["printed", "abaqus"]
+    assert data["roughness.h_rms"].attrs["units"] == "m"
+
+
+# -- faults ----------------------------------------------------------------------------------------------
+def full(file, text):
+    """Find no room for a dataset."""
+    if Path(file).suffix == ".nc":
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+
+def test_full_disk_loses_the_dataset_alone(tmp_path, monkeypatch):
+    """The tables, the summary and its note stay."""
+    monkeypatch.setattr(dataset, "replace", full)
+    summary = run(from_data(SCENE | {"history": SCENE["history"][:1]}), tmp_path, MPI.COMM_SELF)
+    note = "result.nc was not written: No space left on device; all other files are complete"
+    assert summary["notes"] == [note]
+    assert json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["notes"] == [note]
+    assert note in (tmp_path / "run.log").read_text(encoding="utf-8")
+    assert rows_of(tmp_path, "steps") and not (tmp_path / "result.nc").exists()
+
+
+def test_full_disk_loses_no_table_of_a_sweep(tmp_path, monkeypatch):
+    monkeypatch.setattr(dataset, "replace", full)
+    found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0, 100])
+    assert found.notes == ("sweep.nc was not written: No space left on device; all other files are complete",)
+    assert str(found).endswith(found.notes[0]) and len(rows_of(tmp_path, "table")) == 2
+
+
+def test_without_xarray_the_sentence_says_what_to_install(tmp_path, monkeypatch):
+    def missing(sweep):
+        raise ImportError("No module named 'xarray'")
+
+    monkeypatch.setattr(sweep_dataset, "of_sweep", missing)
+    found = fp.sweep(fp.Scene(), tmp_path, model="cylinders", voltage=[0])
+    assert found.notes == ("sweep.nc was not written: No module named 'xarray'; pip install xarray",)
