@@ -2,8 +2,7 @@ r"""What a run of a scene will take, by a rule from kept runs; within a factor o
 
 Processor time of the path is factorisations times unknowns times a constant. Factorisations are those of a press, a
 charge and a slide to full slip. How they grow with the loads is fitted to the 40 full runs of ``docs/models.json``, and
-their number is that of the default run of ``docs/performance.json`` (0.52 to 0.81 times the 40 runs, which an older
-program made):
+their number is that of the default run of ``docs/performance.json`` (0.74 to 1.36 times those of the 40 runs):
 
 .. math:: n = 113.5 \, (f_{ext} / 75 N/m)^{0.33} \, e^{0.74 (U / 200 V)^2}
 

@@ -44,7 +44,7 @@ def all_of(parameters: Mapping[str, Any], varied: Container[str] = ()) -> str:
         parameters: of a scene.
         varied: keys without a value of their own, since a sweep varies them.
     """
-    from fingerpad.cli.keys import every  # reads the docstrings of the models
+    from fingerpad.scene.keys import every  # reads the docstrings of the models
 
     keys, other, rows = {key.name: key for key in every()}, changed(parameters), []
     for name, value in flat(parameters).items():
