@@ -102,7 +102,7 @@
       traces.push({ type: "heatmap", z: image(finger), customdata: finger.kpa, x0: finger.x[0], dx: finger.x[1],
         y0: finger.y[0], dy: finger.y[1], zmin: highest - 3, zmax: highest, colorscale: "Viridis",
         hovertemplate: "x %{x:.3f} mm, y %{y:.3f} mm<br>energy density %{customdata:.3g} kPa<extra></extra>",
-        colorbar: { orientation: "h", y: -52 / high, yanchor: "top", thickness: 12, len: 0.9, tickvals: ticks(),
+        colorbar: { orientation: "h", y: -62 / high, yanchor: "top", thickness: 12, len: 0.9, tickvals: ticks(),
           ticktext: ticks().map((k) => String(Number(Math.pow(10, k).toPrecision(1)))),
           title: { text: "strain energy density (kPa)", side: "bottom" } } });
       const x = [], y = [];
