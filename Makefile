@@ -2,10 +2,12 @@
 # make test   all tests, then those marked mpi on two ranks
 # make check  tests of every module that run no whole finger
 # make lint   style, layout and types: ruff and mypy, half a minute
+# make test-pip  the same digits with dolfinx from PyPI, in a Python from 3.12 on: make test-pip PYTHON=python3.13
 # make test-order  all tests with other rounding: cells numbered the other way round, other kernels of OpenBLAS
 # make fuzz   10 000 scenes and command lines, each ready to run or refused in one sentence; some minutes
 # make pages  every generated page and picture of docs/ from the numbers kept there; seconds, no run
 # make stale  the pages older than the code that they rest on; needs git
+# make docs   the documentation site, in build/docs/index.html; a minute
 # make verify every number with a known answer, some minutes; docs/verification.md
 # make paper  the statements of the paper beside this model's numbers; docs/paper.md, an hour or two
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour
@@ -16,7 +18,7 @@
 
 run := environment/run
 
-.PHONY: help demo lint test check test-order fuzz pages stale verify paper chart performance
+.PHONY: help demo lint test check test-pip test-order fuzz docs pages stale verify paper chart performance
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -29,22 +31,30 @@ lint:
 
 test:
 	environment/wheels
-	$(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" tests
+	environment/docs --get || true
+	FINGERPAD_CHROMIUM=$$(environment/browser) $(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" tests
 	$(run) mpirun -n 2 python3 -m pytest -q --color=no -p no:cacheprovider -m "not long" tests
 
 check:
 	environment/wheels
-	$(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" --quick tests
+	FINGERPAD_CHROMIUM=$$(environment/browser) $(run) python3 -m pytest -q --color=no -n auto --dist worksteal -m "not long" --quick tests
+
+test-pip:
+	SUITE=pip PYTHON="$(PYTHON)" $(run) python3 -m pytest -q --color=no tests/test_digits.py
 
 test-order:
 	environment/wheels
-	OPENBLAS_CORETYPE=Nehalem $(run) python3 -m pytest -q --color=no -n auto --renumber tests
+	FINGERPAD_CHROMIUM=$$(environment/browser) OPENBLAS_CORETYPE=Nehalem $(run) python3 -m pytest -q --color=no -n auto --renumber tests
 
 fuzz:
 	$(run) python3 -m tests.fuzz --count 10000
 
+docs:
+	environment/docs build/docs
+
 pages:
 	$(run) python3 -m benchmarks.pages
+	$(run) python3 -m fingerpad calculator --out docs/calculator.html
 
 stale:
 	python3 -m benchmarks.pages --stale

@@ -3,21 +3,23 @@
 environment/run python3 -m benchmarks.pages [NAME ...]     also: make pages
 python3 -m benchmarks.pages --stale                        also: make stale; needs git and no dolfinx
 
-A page is older than the code where a commit after the one that made its numbers changes a package (geometry,
-variational, fingerpad), or one after that which brought them into git changes the page's own program, the module that
-only draws it left out. Commits that change nothing but docs, tests, prose or other pages' programs do not count. The
-commit that made numbers is found by the hash of the packages' files that is kept with them. Numbers of files that are
-in no commit count as made by the commit that brought them, and so do older numbers, which have no hash.
+A page is older than the code where a file that computes its numbers differs from that which made them: one of the
+packages (geometry, variational, fingerpad without what starts, reads, refuses, writes and prints), or of the page's own
+program, the module that only draws it left out. Comments and docstrings do not count. The commit that made numbers is
+found by the hash of the packages' files that is kept with them; a program in benchmarks/ is compared with that of the
+commit that brought them into git. Numbers of files that are in no commit count as made by the commit that brought them,
+and so do older numbers, which have no hash.
 """
 
 import argparse
+import ast
 import hashlib
 import io
 import json
 import subprocess
 import sys
 import tarfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 
@@ -36,8 +38,14 @@ PAGES = {
     "verification": "benchmarks.verification.case",
 }
 _PACKAGES = ("geometry", "variational", "fingerpad")
+_WITHOUT_NUMBERS = (  # these start, read, refuse, write and print
+    *(f"fingerpad/{wing}/" for wing in ("cli", "io", "report", "calculator")),
+    *("fingerpad/startup.py", "fingerpad/scene/contradictions.py", "fingerpad/scene/messages.py"),
+)
+_REDUCED = "fingerpad/reduced"  # no full run uses it: part of the programs that import it
 _SHARED = ("runs", "limits", "measure", "explicit")  # modules of benchmarks/ that make numbers of several pages
 _SEARCHED = 100  # commits before the one that brought numbers into git, among which theirs is looked for
+_SHOWN = 3  # changed files of a page that are printed
 
 
 def git(*words: str) -> bytes:
@@ -45,38 +53,63 @@ def git(*words: str) -> bytes:
     return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, check=True).stdout
 
 
+def files(commit: str, paths: Sequence[str]) -> dict[str, bytes]:
+    """Return the Python files of a commit in folders, or at paths, by path."""
+    there = [path for path in paths if git("ls-tree", "--name-only", commit, "--", path)]
+    if not there:
+        return {}
+    with tarfile.open(fileobj=io.BytesIO(git("archive", commit, *there))) as packed:
+        found = {name: packed.extractfile(name) for name in sorted(packed.getnames(), key=Path) if name.endswith(".py")}
+        return {name: file.read() for name, file in found.items() if file}
+
+
 def source(commit: str) -> str:
     """Return the hash of the packages' files in a commit, as ``fingerpad.io.provenance`` has it of those on disk."""
     found = hashlib.sha256()
-    with tarfile.open(fileobj=io.BytesIO(git("archive", commit, *_PACKAGES))) as files:
-        for path in sorted(Path(name) for name in files.getnames() if name.endswith(".py")):
-            if file := files.extractfile(str(path)):
-                found.update(str(path).encode() + file.read())
+    for path, text in files(commit, _PACKAGES).items():
+        found.update(path.encode() + text)
     return found.hexdigest()[:12]
 
 
+def computes(text: bytes) -> str:
+    """Return the statements of a module, without comments and docstrings."""
+    module = ast.parse(text)
+    for node in ast.walk(module):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node, clean=False):
+            node.body = node.body[1:] or [ast.Pass()]
+    return ast.dump(module)
+
+
+def changed(before: Mapping[str, bytes], now: Mapping[str, bytes]) -> set[str]:
+    """Return the paths of modules that compute something else or are gone; a new one counts where one imports it."""
+    differ = [path for path in before if before[path] != now.get(path)]
+    return {path for path in differ if path not in now or computes(before[path]) != computes(now[path])}
+
+
 def program(name: str) -> list[str]:
-    """Return the files in benchmarks/ that make the numbers of a page, as git names paths."""
+    """Return the files and folders in benchmarks/ that make the numbers of a page."""
     _, own, *module = PAGES[name].split(".")
-    parts = [f"benchmarks/{own}", f":!benchmarks/{own}/page.py"] if module else [f"benchmarks/{own}.py"]
-    return [*(f"benchmarks/{shared}.py" for shared in _SHARED), *parts]
+    shared = [f"benchmarks/{name}.py" for name in _SHARED]
+    return [*shared, f"benchmarks/{own}" if module else f"benchmarks/{own}.py"]
 
 
-def stale(name: str, docs: Path) -> tuple[str, int]:
-    """Return which version made the numbers of a page, in words, and how many commits since have changed its code."""
-
-    def commits(where: str, paths: Sequence[str], *options: str) -> list[str]:
-        return git("rev-list", "--abbrev-commit", *options, where, "--", *paths).decode().split()
-
+def stale(name: str, docs: Path) -> tuple[str, list[str]]:
+    """Return which version made the numbers of a page, in words, and the files of its code that have changed since."""
     made = json.loads((docs / f"{name}.json").read_text(encoding="utf-8"))["made"]
     found = [brought := made["commit"]]  # of older numbers, which have no hash
     if made["source"]:
         brought = git("log", "-1", "--format=%h", "--", str(docs / f"{name}.json")).decode().strip() or "HEAD"
-        before, states = commits(brought, _PACKAGES, f"-n{_SEARCHED}"), made["source"].split(", ")
+        options = ("--abbrev-commit", f"-n{_SEARCHED}", brought, "--", *_PACKAGES)
+        before, states = git("rev-list", *options).decode().split(), made["source"].split(", ")
         found = [next((commit for commit in before if source(commit) == state), brought) for state in states]
-    since = {later for commit in found for later in commits(f"{commit}..HEAD", _PACKAGES)}
-    since |= set(commits(f"{brought}..HEAD", program(name)))
-    return f"version {made['version']} of {made['date']}, commit {', '.join(found)}", len(since)
+    packages, own = files("HEAD", _PACKAGES), program(name)
+    now = files("HEAD", own)
+    since = {path for commit in found for path in changed(files(commit, _PACKAGES), packages)}
+    since = {path for path in since if not path.startswith((*_WITHOUT_NUMBERS, _REDUCED))}
+    if any(_REDUCED.replace("/", ".").encode() in text for text in now.values()):
+        own = [*own, _REDUCED]
+    since |= {p for p in changed(files(brought, own), files("HEAD", own)) if not p.endswith("/page.py")}
+    return f"version {made['version']} of {made['date']}, commit {', '.join(found)}", sorted(since)
 
 
 def main(given: Sequence[str] | None = None) -> int:
@@ -94,9 +127,9 @@ def main(given: Sequence[str] | None = None) -> int:
             print(import_module(PAGES[name]).draw(args.docs))
         return 0
     found = {name: stale(name, args.docs) for name in names}
-    older = {name: (words, count) for name, (words, count) in found.items() if count}
-    for name, (words, count) in older.items():
-        print(f"{name}: {words}; {count} commits since")
+    older = {name: (words, since) for name, (words, since) in found.items() if since}
+    for name, (words, since) in older.items():
+        print(f"{name}: {words}; since then changed: {', '.join(since[:_SHOWN])}{' …' if len(since) > _SHOWN else ''}")
     print(f"{len(older)} of {len(found)} pages are older than the code that they rest on")
     return 0
 

@@ -15,6 +15,9 @@ need_gb=6  # the root and, for a moment, mmdebstrap's own copy of it
 stop() { echo "fingerpad: $*" >&2; exit 1; }
 say() { echo "fingerpad: $*" >&2; }
 
+# environment/venv's reason why dolfinx does not come from PyPI here
+others="or take another way (docs/command.md, Set-up): dolfinx from PyPI${FINGERPAD_LACKING:+ (here $FINGERPAD_LACKING)}, conda or a container."
+
 home=${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6 || true)}
 cache=${XDG_CACHE_HOME:-${home:+$home/.cache}}/fingerpad
 case $cache in
@@ -44,7 +47,7 @@ found() {
 case $suite in
     trixie) name="Debian 13" ;;
     sid) name="Debian unstable" ;;
-    *) stop "SUITE is $suite; it must be trixie or sid." ;;
+    *) stop "SUITE is $suite; it must be pip, trixie or sid." ;;
 esac
 
 packages=$(awk '!/^#/ && NF && $2 != "-" { print $2 }' "$here/packages.txt" | sort | paste -sd,)
@@ -79,7 +82,7 @@ for tool in "${tools[@]}"; do
 done
 if [ ${#missing[@]} -gt 0 ]; then
     [ "$(id -u)" = 0 ] ||
-        stop "${missing[*]} missing: ask an administrator for 'apt-get install ${missing[*]}', or use the conda environment (README)."
+        stop "${missing[*]} missing: ask an administrator for 'apt-get install ${missing[*]}', $others"
     say "installing ${missing[*]} with apt"
     { apt-get update && apt-get install -y --no-install-recommends "${missing[@]}"; } >"$cache/apt.log" 2>&1 ||
         stop "apt could not install ${missing[*]} ($(grep -m 1 -E '^E:' "$cache/apt.log" || echo 'no message')); is there a network? All of it: $cache/apt.log"
@@ -89,18 +92,33 @@ mode=root
 if [ "$(id -u)" != 0 ]; then
     mode=unshare
     grep -q "^$(id -un):" /etc/subuid 2>/dev/null ||
-        stop "user $(id -un) has no line in /etc/subuid: ask an administrator for 'usermod --add-subuids 100000-165535 --add-subgids 100000-165535 $(id -un)'."
+        stop "user $(id -un) has no line in /etc/subuid: ask an administrator for 'usermod --add-subuids 100000-165535 --add-subgids 100000-165535 $(id -un)', $others"
 fi
+# Before minutes of building what could not be entered.
+said=$(bwrap --unshare-user --ro-bind / / true 2>&1) ||
+    stop "the kernel refuses user namespaces, which bubblewrap needs (${said##*$'\n'});" \
+        "allow them (sysctl kernel.unprivileged_userns_clone=1, on Ubuntu 24.04 also" \
+        "kernel.apparmor_restrict_unprivileged_userns=0), $others"
 
 build=$(mktemp -d "$cache/build.XXXXXXXX")
 trap 'rm -rf "$build" 2>/dev/null || true' EXIT
 chmod 755 "$build"
 mkdir -m 1777 "$build/tmp"
 
-# Say which phase it is and how far it got: one line that changes on a terminal, else a line a quarter.
+# Say which phase it is and how far it got: one line that changes on a terminal, else a line a quarter, and one after
+# each 20 s in which nothing happened, or half a minute of slow work.
 progress() {
-    local line phase= of=0 count=0 text shown=
-    while IFS= read -r line; do
+    local line phase= of=0 count=0 text="starting" shown= last=$SECONDS code
+    while true; do
+        code=0
+        IFS= read -r -t 20 line || code=$?
+        if [ "$code" -gt 128 ]; then  # a line that is not whole yet would be lost: mmdebstrap writes whole ones
+            last=$SECONDS
+            if [ -t 2 ]; then printf '\r\033[K' >&2; fi
+            say "$((SECONDS - start)) s, still $text"
+            continue
+        fi
+        [ "$code" = 0 ] || break
         printf '%s\n' "$line" >>"$cache/build.log"
         case $line in
             *" newly installed, "*) [[ $line =~ ([0-9]+)\ newly ]] && of=${BASH_REMATCH[1]}; continue ;;
@@ -119,7 +137,9 @@ progress() {
         esac
         if [ -t 2 ]; then
             printf '\r\033[Kfingerpad: %s s, %s' $((SECONDS - start)) "$text" >&2
-        elif [ -z "$shown" ] || { [ "$of" -gt 3 ] && [ $((count % (of / 4))) = 0 ]; } || [[ $line == unpacked* ]]; then
+        elif [ -z "$shown" ] || { [ "$of" -gt 3 ] && [ $((count % (of / 4))) = 0 ]; } ||
+            [[ $line == unpacked* ]] || [ $((SECONDS - last)) -ge 30 ]; then
+            last=$SECONDS
             say "$((SECONDS - start)) s, $text"
         fi
         shown=yes

@@ -1,9 +1,15 @@
-"""Libraries that may not be installed: what needs one of them says so in one sentence."""
+"""What may not be installed, libraries and the compiler of forms: what needs one of them says so in one sentence."""
 
+import os
+import shlex
+import shutil
+import sysconfig
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
-OPTIONAL = ("dolfinx", "ufl", "basix", "ffcx", "petsc4py", "mpi4py", "gmsh", "matplotlib")
+COMPILER = "C compiler"
+OPTIONAL = ("dolfinx", "ufl", "basix", "ffcx", "petsc4py", "mpi4py", "gmsh", "matplotlib", COMPILER)
 
 
 @contextmanager
@@ -21,6 +27,26 @@ def needed_by(what: str) -> Iterator[None]:
             raise
         raise ImportError(
             f"{what} needs {missing}, which is not installed; finite elements come by conda env create -f "
-            "environment.yml, by pip install 'fingerpad[fem]', or with environment/run",
+            "environment.yml, by pip install '.[pip]' (Python 3.12 or newer, Linux on x86_64), or with environment/run",
             name=missing,
         ) from error
+
+
+def need_compiler() -> None:
+    """Refuse to begin where the forms of finite elements cannot be compiled.
+
+    Raises:
+        ImportError: there is no C compiler, or no headers of Python; its name is :data:`COMPILER`.
+    """
+    words = shlex.split(os.environ.get("CC") or sysconfig.get_config_var("CC") or "cc")
+    headers = Path(sysconfig.get_path("include"))
+    if shutil.which(words[0]) is None:
+        missing, package = f"a C compiler, and {words[0]} is not on the path", "gcc"
+    elif not (headers / "Python.h").is_file():
+        missing, package = f"Python's headers, and {headers / 'Python.h'} is not there", "python3-dev"
+    else:
+        return
+    raise ImportError(
+        f"finite elements are compiled for each form, which needs {missing}; Debian and Ubuntu have it in {package}",
+        name=COMPILER,
+    )

@@ -11,6 +11,8 @@ import contextlib
 import sys
 from collections.abc import Sequence
 
+from fingerpad.installed import need_compiler
+
 _ELSEWHERE = "/"  # belongs to the system; nothing is configured there
 
 # What PETSc did not read is found by fingerpad.io.petsc_options, not listed when everything is over; its handlers of
@@ -18,6 +20,8 @@ _ELSEWHERE = "/"  # belongs to the system; nothing is configured there
 _QUIET = ("-options_left", "no", "-no_signal_handler")
 
 with contextlib.chdir(_ELSEWHERE):
+    with contextlib.suppress(ModuleNotFoundError):
+        import dolfinx_solver  # noqa: F401  # dolfinx from PyPI, which has to find its MPI before anything else
     from mpi4py import MPI
 
 __all__ = ["MPI", "start"]
@@ -28,7 +32,11 @@ def start(options: Sequence[str] = ()) -> None:
 
     Args:
         options: PETSc's, as on a command line; they override those of the environment and of the user's home.
+
+    Raises:
+        ImportError: the forms cannot be compiled, in one sentence.
     """
+    need_compiler()
     with contextlib.chdir(_ELSEWHERE):
         import petsc4py
 

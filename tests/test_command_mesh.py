@@ -1,9 +1,10 @@
 """The commands check and mesh: loads, laws and cost of a run, and its mesh."""
 
-import numpy as np
 import pytest
 
-from fingerpad.cli import cost, main
+from fingerpad.cli import main
+from fingerpad.io.left import between
+from fingerpad.model import expected as cost
 from fingerpad.model.options import plan
 from fingerpad.scene import Scene, from_data
 from tests.commands import COARSE, kept, refused
@@ -29,7 +30,7 @@ def test_method_for_comparison_is_named_before_a_run(tmp_path, capsys, formulati
 
 
 def test_rule_of_the_cost_is_that_of_kept_runs():
-    """Shares, factors and time are the default run's of docs/chart.json; factorisations fit docs/models.json."""
+    """Shares, factors and time are the default run's of docs/chart.json, times those of docs/performance.json."""
     points = {point["label"]: point for point in kept("chart.json")["points"]}
     work = points["default"]["work"]
     slip, charged, pressed = work["slip"], work["normal"], work["uncharged"]
@@ -38,9 +39,17 @@ def test_rule_of_the_cost_is_that_of_kept_runs():
     at_10_um = points["10 µm"]["work"]["slip"]
     for name, label in (("nitsche", "Nitsche, γ_0 = 1"), ("augmented", "augmented Lagrangian")):
         assert cost.FORMULATIONS[name] == pytest.approx(points[label]["work"]["slip"] / at_10_um, rel=0.01)
-    own = ("contact size", "growth", "all sizes", "element", "formulation", "solver", "steps")
-    took = [p["seconds"]["slip"] / p["work"]["slip"] for p in points.values() if p["family"] in own and p["seconds"]]
-    assert cost.SECONDS == pytest.approx(np.median(took), rel=0.02)
+    run, operations = (kept("performance.json")[name]["found"] for name in ("run", "operations"))
+    path = sum(run["path"].values())
+    unknowns = next(each["unknowns"] for each in operations if each["factor"] == 1.0)
+    assert cost.SECONDS == pytest.approx(path / run["factorisations"] / unknowns, rel=0.02)
+    beside = dict(run["beside"])
+    assert cost.ERRORS == pytest.approx(beside.pop("errors") / path, rel=0.03)
+    assert cost.BESIDE == pytest.approx(sum(beside.values()) / path, rel=0.03)
+    assert cost.COMPILING == pytest.approx(kept("performance.json")["compile"]["found"]["cold"]["seconds"], rel=0.03)
+    default = cost.expected(Scene(), plan(Scene()))
+    assert default.factorisations == pytest.approx(run["factorisations"], rel=0.02)
+    assert default.seconds == pytest.approx(run["processor"], rel=0.1)
     for name, found in kept("models.json")["scenes"].items():
         f_ext, voltage = (float(part.split()[0]) for part in name.split(","))
         scene = from_data({"f_ext": f_ext, "voltage": voltage})
@@ -50,7 +59,26 @@ def test_rule_of_the_cost_is_that_of_kept_runs():
 
 def test_cost_of_a_press_is_a_part():
     scene = from_data({"history": [{"name": "press", "f_ext": 75.0}]})
-    assert cost.expected(scene, plan(scene)).factorisations == pytest.approx(0.26 * 160)
+    assert cost.expected(scene, plan(scene)).factorisations == pytest.approx(0.26 * cost.RUNS)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [(3.0, "1.5 to 6 s"), (80.0, "0.67 to 2.7 minutes"), (1200.0, "10 to 40 minutes"), (7200.0, "1 to 4 hours")],
+)
+def test_time_is_a_range(seconds, words):
+    """Half of it to twice as much, in the unit in which the longer time is read."""
+    assert between(seconds / 2, 2 * seconds) == words
+
+
+def test_cost_names_its_parts(tmp_path, capsys):
+    """The error estimate where there is one."""
+    argv = ["check", "--out", str(tmp_path), *(word for text in COARSE for word in ("--set", text))]
+    assert main(argv) == 0
+    whole = capsys.readouterr().out
+    assert "for the error estimate" in whole and "when the forms are compiled" in whole
+    assert main([*argv, "--set", "output.errors=false"]) == 0
+    assert "for the error estimate" not in capsys.readouterr().out
 
 
 def test_mesh_is_read_again_with_its_names(tmp_path, capsys):

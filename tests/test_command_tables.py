@@ -4,9 +4,9 @@ import csv
 
 import pytest
 
-from fingerpad.cli import estimate, keys, main, microscale, sweep
+from fingerpad.cli import estimate, main, microscale, sweep
 from fingerpad.reduced import cylinders
-from fingerpad.scene import Scene, from_data, load
+from fingerpad.scene import Scene, from_data, keys, load
 from tests.commands import kept, refused
 from variational.roughness.bam import BearingArea
 

@@ -219,6 +219,7 @@ def test_the_command_dies_with_the_script_alone(checkout):
 def maker(tmp_path) -> dict[str, str]:
     """Variables under which root.sh makes a root of one file with stand-ins, as the administrator."""
     script(tmp_path / "bin" / "dpkg-query", "#!/bin/sh\necho install ok installed\n")
+    script(tmp_path / "bin" / "bwrap", '#!/bin/sh\n[ -z "$REFUSAL" ] || { echo "bwrap: $REFUSAL" >&2; exit 1; }\n')
     script(tmp_path / "bin" / "mmdebstrap", f"#!/bin/sh\ncat {tmp_path}/says >&2\ncat {tmp_path}/root.tar\n")
     lines = ["I: running apt-get update...", "Get:1 list", "0 upgraded, 8 newly installed, 0 to remove"]
     lines += [f"Get:{k} package" for k in range(8)]
@@ -261,6 +262,28 @@ def test_the_build_says_how_far_it_is(maker):
         assert words in done.stderr
     assert root(maker).stdout == done.stdout  # and says nothing when the root is there
     assert root(maker).stderr == ""
+
+
+@needs_subuid
+def test_slow_work_is_said_to_go_on(tmp_path, maker):
+    """A phase of minutes without a word of mmdebstrap: the wait of 20 s is shortened."""
+    text = (HERE / "root.sh").read_text().replace("read -r -t 20", "read -r -t 0.2")
+    script(tmp_path / "environment" / "root.sh", text)
+    shutil.copy(HERE / "packages.txt", tmp_path / "environment")
+    script(tmp_path / "bin" / "mmdebstrap", f"#!/bin/sh\ncat {tmp_path}/says >&2\nsleep 1\ncat {tmp_path}/root.tar\n")
+    done = subprocess.run([tmp_path / "environment" / "root.sh"], env=maker, capture_output=True, text=True)
+    assert done.returncode == 0 and " s, still moving into place\n" in done.stderr
+
+
+@needs_subuid
+def test_no_root_is_built_that_could_not_be_entered(tmp_path, maker):
+    """The refusal comes before minutes of building, with the other ways and why PyPI's is none here."""
+    lacking = "no C compiler gcc is on the path"
+    done = root(maker | {"REFUSAL": "Creating new namespace failed: Permission denied", "FINGERPAD_LACKING": lacking})
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (1, "", 1)
+    assert "the kernel refuses user namespaces" in done.stderr
+    assert f"dolfinx from PyPI (here {lacking}), conda or a container" in done.stderr
+    assert not list((tmp_path / "cache" / "fingerpad").glob("build.*/"))
 
 
 @needs_subuid

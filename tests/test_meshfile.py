@@ -65,7 +65,7 @@ def test_body_from_a_file_is_the_body(place, version):
 
 
 def test_clockwise_cells_are_the_same_body(place):
-    """All of one orientation, whichever: the same integrals but for roundoff, below Newton's 1e-9."""
+    """All of one orientation, whichever: the same integrals but for roundoff, below Newton's tolerance of 1e-9."""
     clockwise = changed(lambda: gmsh.model.mesh.reverse(gmsh.model.getEntities(2)))
     body = Body(write(place, clockwise), SKIN, contact=SPRINGS, friction=0.25).press(1.0)
     itself = Body(RIDGE, SKIN, contact=SPRINGS, friction=0.25).press(1.0)

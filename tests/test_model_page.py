@@ -28,6 +28,15 @@ def test_place_exists(module, name):
     assert name in names(tree(module).body)
 
 
+def test_every_equation_has_a_place():
+    """In the paragraph before or after it; those of the table of section 5 are in its last column."""
+    paragraphs = re.split(r"\n\s*\n", PAGE)
+    equations = [k for k, paragraph in enumerate(paragraphs) if paragraph.startswith("$$")]
+    assert len(equations) >= 6
+    lone = [k for k in equations if not any(re.search(r"`[a-z_.]+:\w+`", paragraphs[i]) for i in (k - 1, k + 1))]
+    assert [paragraphs[k] for k in lone] == []
+
+
 def test_methods_of_the_bearing_area_model_exist():
     (model,) = (n for n in tree("variational.roughness.bam").body if getattr(n, "name", "") == "BearingArea")
     assert isinstance(model, ast.ClassDef) and len(METHODS) >= 5 and set(METHODS) <= names(model.body)

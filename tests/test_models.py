@@ -15,10 +15,10 @@ def test_lengths_in_the_program_are_the_runs():
     """The lengths that `cylinders` interpolates are the kept full runs', to the four digits they are kept with."""
     known = harness.kept("models").numbers["scenes"]
     for state in ("charged", "full_slip"):
-        for k, f in enumerate(cylinders._FORCES):
+        for k, f in enumerate(cylinders.FORCES):
             run = known[models.name(f, 0.0)]["full"]["summary"]
-            assert cylinders._LENGTHS[state][k] == pytest.approx(run[f"{PREFIXES[state]}_contact_length"], abs=0.5e-7)
-            assert cylinders._RIDGES[state][k] == run[f"{PREFIXES[state]}_ridges_in_contact"]
+            assert cylinders.LENGTHS[state][k] == pytest.approx(run[f"{PREFIXES[state]}_contact_length"], abs=0.5e-7)
+            assert cylinders.RIDGES[state][k] == run[f"{PREFIXES[state]}_ridges_in_contact"]
 
 
 def test_kept_answers_are_those_of_the_program():

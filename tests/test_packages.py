@@ -51,9 +51,31 @@ def test_conda(conda, project):
 def test_pypi(project):
     assert set(_split(project["project"]["dependencies"])) == _column(3, "run")
     extras = project["project"]["optional-dependencies"]
-    assert {name: set(_split(listed)) for name, listed in extras.items()} == {
-        name: _column(3, name) for name in ("fem", "test", "topography")
-    }
+    found = {name: set(_split(listed)) for name, listed in extras.items()}
+    # gmsh is on PyPI under its own name; the other finite elements are in the wheel or come with it.
+    assert found.pop("pip") == _column(3, "pip") | {"gmsh"}
+    assert found == {name: _column(3, name) for name in ("fem", "test", "docs", "topography")}
+
+
+def test_wheel_of_dolfinx_is_pinned(project):
+    """The version of the extra is the one whose content environment/wheel.txt fixes, and a dolfinx of ours."""
+    lines = (ROOT / "environment/wheel.txt").read_text().splitlines()
+    pinned = [line for line in lines if not line.startswith("#")]
+    assert len(pinned) == 1
+    requirement, sum_ = pinned[0].split(" --hash=sha256:")
+    assert requirement in project["project"]["optional-dependencies"]["pip"]
+    assert re.fullmatch(r"[0-9a-f]{64}", sum_)
+    assert requirement.partition("==")[2].startswith("0.11.")
+
+
+def test_container_reads_the_list():
+    """As root.sh does, from the same Debian: no package is named twice."""
+    container = (ROOT / "environment/Containerfile").read_text()
+    script = (ROOT / "environment/root.sh").read_text()
+    reading = """awk '!/^#/ && NF && $2 != "-" { print $2 }'"""
+    assert reading in container and reading in script
+    assert "FROM docker.io/library/debian:trixie-slim" in container and "suite=${SUITE:-trixie}" in script
+    assert not {name for name in _column(1, "run", "fem", "test", "system") if name in container}
 
 
 def test_ranges_agree(conda, project):
@@ -80,6 +102,9 @@ def test_what_runs_can_be_imported(name):
     assert importlib.util.find_spec(name) is not None
 
 
+PAGE = ("page.html", "page.css", "closed_form.js", "plot.js", "page.js")
+
+
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory) -> zipfile.ZipFile:
     """The wheel of this checkout, built with what is installed: no network."""
@@ -95,11 +120,12 @@ def wheel(tmp_path_factory) -> zipfile.ZipFile:
 
 
 def test_wheel_holds_the_library(wheel):
-    """Each module of it and the marks of its types, and nothing of tests, benchmarks and demos."""
+    """Each module, the marks of types and the parts of the calculator; nothing of tests, benchmarks and demos."""
     modules = {file.relative_to(ROOT) for top in LIBRARY for file in (ROOT / top).rglob("*.py")}
     marks = {Path(top) / "py.typed" for top in LIBRARY}
     listed = {Path(name) for name in wheel.namelist() if ".dist-info/" not in name}
-    assert listed == modules | marks
+    page = {Path("fingerpad/calculator") / name for name in PAGE}
+    assert listed == modules | marks | page
 
 
 def test_wheel_holds_licence_and_command(wheel, project):

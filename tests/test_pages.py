@@ -2,7 +2,6 @@
 
 import math
 import shutil
-from typing import ClassVar
 
 import pytest
 
@@ -32,81 +31,81 @@ def test_prose_is_of_pages():
 
 
 # -- pages older than the code -----------------------------------------------------------------------
-class History:
-    """A history of five commits, the newest first; each changes one file, or none that numbers rest on."""
+OLD = {"variational/x.py": b"x = 1  # once", "fingerpad/io/x.py": b"", "benchmarks/chart.py": b"x = 1"}
+NEW = {"variational/x.py": b'"""X."""\nx = 1', "fingerpad/io/x.py": b"y", "benchmarks/chart.py": b"x = 1"}
+CHANGED = {"variational/x.py": b"x = 2", "benchmarks/chart.py": b"x = 2", "benchmarks/paper/page.py": b"y"}
 
-    changed: ClassVar = {
-        "e": "docs/x.md",
-        "d": "benchmarks/chart.py",
-        "c": "fingerpad/x.py",
-        "b": "tests/x.py",
-        "a": "variational/x.py",
-    }
-    commits = tuple(changed)
-    brought = "d"
-    """Commit that brought the numbers into git."""
+
+class History:
+    """A history of commits by name with their files; ``brought`` brought the numbers into git."""
+
+    def __init__(self, **commits):
+        self.commits, self.brought = commits, next(iter(commits))
 
     def git(self, command, *words):
-        """Answer as git does; a path names a file or the folder that it is in."""
-        found = {"log": [self.brought]}.get(command)
-        if command == "rev-list":
-            paths = words[words.index("--") + 1 :]
-            first, until, _ = next(word for word in words if not word.startswith("-")).partition("..")
-            k = self.commits.index(first)
-            asked = self.commits[:k] if until else self.commits[k:]
-            found = [c for c in asked if any(self.changed[c].startswith(path) for path in paths)]
-        return "\n".join(found).encode()
+        """Answer as git does."""
+        return "\n".join({"log": [self.brought], "rev-list": self.commits}[command]).encode()
 
-    def source(self, commit):
-        """Return a hash that changes with the packages alone."""
-        return {"e": "02", "d": "02", "c": "02", "b": "01", "a": "01"}[commit]
+    def files(self, commit, paths):
+        """Return the files of a commit in folders or at paths."""
+        found = self.commits["new" if commit == "HEAD" else commit]
+        return {path: text for path, text in found.items() if path.startswith(tuple(paths))}
 
 
 @pytest.fixture
-def history(monkeypatch):
-    found = History()
-    monkeypatch.setattr(pages, "git", found.git)
-    monkeypatch.setattr(pages, "source", found.source)
-    return found
+def since(monkeypatch, tmp_path):
+    def since(page, made, **commits):
+        history = History(**commits)
+        monkeypatch.setattr(pages, "git", history.git)
+        monkeypatch.setattr(pages, "files", history.files)
+        monkeypatch.setattr(pages, "source", {"old": "01", "new": "02"}.__getitem__)
+        harness.keep(page, {}, made, tmp_path)
+        return pages.stale(page, tmp_path)[1]
+
+    return since
 
 
-def count(folder, page, made):
-    harness.keep(page, {}, made, folder)
-    return pages.stale(page, folder)[1]
+MADE = Made("0.1.0", "", "2026-11-22", "01")
 
 
-def test_page_is_older_than_the_code_by_commits_that_change_it(history, tmp_path):
-    """By packages and its own program; docs, tests and other pages' programs do not count."""
-    assert count(tmp_path, "errors", Made("0.1.0", "", "", "02")) == 0
-    assert count(tmp_path, "chart", Made("0.1.0", "", "", "02")) == 0  # its program came with the numbers
-    history.brought = "c"
-    assert count(tmp_path, "chart", Made("0.1.0", "", "", "02")) == 1
-    assert count(tmp_path, "errors", Made("0.1.0", "", "", "01")) == 1
-    assert count(tmp_path, "chart", Made("0.1.0", "", "", "01")) == 2
-    assert count(tmp_path, "chart", Made("0.1.0", "", "", "02, 01")) == 2
+def test_page_is_older_where_its_code_computes_something_else(since):
+    """By packages and its own program; comments, docstrings and what writes files do not count."""
+    assert since("chart", MADE, old=OLD, new=NEW) == []
+    assert since("chart", MADE, old=OLD, new=NEW | CHANGED) == ["benchmarks/chart.py", "variational/x.py"]
+    assert since("errors", MADE, old=OLD, new=NEW | CHANGED) == ["variational/x.py"]
+    drawing = {"benchmarks/paper/page.py": b"x"}, {"benchmarks/paper/page.py": b"y"}
+    assert since("paper", MADE, old=OLD | drawing[0], new=OLD | drawing[1]) == []
+    assert since("chart", MADE, old=OLD, new=NEW | {"variational/new.py": b"x"}) == []  # imported by none of the others
+    assert since("chart", MADE, old=OLD, new={}) == ["benchmarks/chart.py", "variational/x.py"]
 
 
-def test_numbers_of_no_commit_are_as_old_as_in_git(history, tmp_path):
+def test_numbers_of_several_commits_are_as_old_as_the_oldest(since):
+    states = Made("0.1.0", "", "", "02, 01")
+    assert since("errors", states, old=OLD, new=NEW | CHANGED) == ["variational/x.py"]
+    assert since("errors", Made("0.1.0", "", "", "02"), old=OLD, new=NEW | CHANGED) == []
+
+
+def test_numbers_of_no_commit_are_as_old_as_in_git(since):
     """By the hash of no commit, or without a hash, where the commit that brought them is kept."""
-    assert count(tmp_path, "errors", Made("0.1.0", "", "", "ff")) == 0
-    assert count(tmp_path, "chart", Made("0.1.0", "b", "")) == 2
-    assert count(tmp_path, "errors", Made("0.1.0", "c", "")) == 0
+    assert since("errors", Made("0.1.0", "", "", "ff"), old=OLD, new=CHANGED) == ["variational/x.py"]
+    assert since("errors", Made("0.1.0", "old", ""), old=OLD, new=CHANGED) == ["variational/x.py"]
+    assert since("errors", Made("0.1.0", "new", ""), old=OLD, new=CHANGED) == []
 
 
-def test_drawing_does_not_make_numbers_older():
-    assert {"benchmarks/paper", ":!benchmarks/paper/page.py"} <= set(pages.program("paper"))
+def test_program_of_a_page_is_in_git():
+    root = harness.ROOT
+    assert all((root / path).exists() for name in pages.PAGES for path in pages.program(name))
     assert "benchmarks/chart.py" in pages.program("chart")
     assert not any("prose" in path or "harness" in path for path in pages.program("chart"))
 
 
-def test_older_pages_are_listed(history, tmp_path, capsys):
-    """Those alone, with version and count; a page is not drawn."""
-    harness.keep("chart", {}, Made("0.1.0", "", "2026-11-22", "01"), tmp_path)
-    harness.keep("errors", {}, Made("0.1.0", "", "2026-11-22", "02"), tmp_path)
-    history.brought = "c"
+def test_older_pages_are_listed(since, tmp_path, capsys):
+    """Those alone, with their version and what changed; a page is not drawn."""
+    harness.keep("errors", {}, Made("0.1.0", "", "", "02"), tmp_path)
+    since("chart", MADE, old=OLD, new=NEW | CHANGED)
     assert pages.main(["chart", "errors", "--stale", "--docs", str(tmp_path)]) == 0
     assert capsys.readouterr().out.splitlines() == [
-        "chart: version 0.1.0 of 2026-11-22, commit a; 2 commits since",
+        "chart: version 0.1.0 of 2026-11-22, commit old; since then changed: benchmarks/chart.py, variational/x.py",
         "1 of 2 pages are older than the code that they rest on",
     ]
     assert not list(tmp_path.glob("*.md"))

@@ -4,9 +4,10 @@ import importlib.util
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from fingerpad.cli import cost
 from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.io.folder import check_folder
+from fingerpad.io.left import about, between
+from fingerpad.model import expected as cost
 from fingerpad.model.memory import estimate
 from fingerpad.model.options import ModelOptions, plan
 from fingerpad.model.touching import by_rule
@@ -36,7 +37,7 @@ def main(argv: Sequence[str]) -> int:
         ("Laws, numbers in SI units", (f"{name.replace('_', ' ')}: {law}" for name, law in used(scene).items())),
         ("Model", _model(scene, needed)),
         ("Omitted", (f"{omission.what}: {omission.reason}" for omission in needed.omitted)),
-        ("Cost, within a factor of 2", _cost(scene, needed)),
+        (f"Cost, an estimate within a factor of {cost.FACTOR:g}", _cost(scene, needed)),
     ):
         shown = list(lines) or ["nothing"]
         echo("\n".join([title, *(f"  {line}" for line in shown)]))
@@ -69,31 +70,34 @@ def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
         yield f"contact by a method for comparison, which takes {times} and may miss equilibria that it finds"
     given = scene.mesh.touching_half_arc is not None
     how = "as mesh.touching_half_arc gives" if given else "by a rule of thumb; a run takes more where they come near"
-    yield f"some {_about(found.triangles)} triangles of element {scene.numerics.element}"
-    yield f"some {_about(found.unknowns)} unknowns, within a factor of 1.5"
+    size = touching.mesh
+    sizes = {"in contact": size.contact, "at the Merkel sites": size.receptor, "elsewhere at most": size.coarsest}
+    if not needed.receptors:
+        del sizes["at the Merkel sites"]
+    yield f"elements of {', '.join(f'{value * 1e6:.4g} µm {where}' for where, value in sizes.items())}"
+    yield f"some {about(found.triangles)} triangles of element {scene.numerics.element}"
+    yield f"some {about(found.unknowns)} unknowns, within a factor of 1.5"
     yield f"{len(ridges)} of {scene.geometry.ridge_count} ridges can touch, {how}"
     yield f"some {found.memory * 1e-9:.2g} GB of memory, of the {scene.numerics.memory * 1e-9:.3g} GB allowed"
 
 
 def _cost(scene: Scene, needed: ModelOptions) -> Iterator[str]:
     found = cost.expected(scene, needed)
-    yield f"some {_about(found.factorisations)} factorisations"
-    yield f"some {_duration(found.seconds)} of processor time, by a rule from kept runs (fingerpad/cli/cost.py)"
+    few, many = (about(found.factorisations * factor) for factor in (1 / cost.FACTOR, cost.FACTOR))
+    yield f"{few} to {many} factorisations"
+    yield f"{_within(found.seconds)} of processor time, on a machine like that of docs/performance.md:"
+    yield f"  {_within(found.path)} for the path of the loads"
+    if found.errors:
+        yield f"  {_within(found.errors)} for the error estimate"
+    yield f"  {_within(found.beside)} for set-up, tables and pictures"
+    yield f"{cost.COMPILING:.0f} s more the first time, when the forms are compiled"
     if scene.accuracy is not None:
         yield "and that of finer meshes, to the accuracy asked for: perhaps several times as much"
 
 
-def _duration(seconds: float) -> str:
-    for size, unit in ((3600.0, "hours"), (60.0, "minutes")):
-        if seconds >= 2 * size:
-            return f"{_about(seconds / size)} {unit}"
-    return f"{_about(seconds)} s"
-
-
-def _about(value: float) -> str:
-    """Return a number of two digits, as it is read."""
-    rounded = float(f"{value:.2g}")
-    return f"{rounded:,.0f}".replace(",", " ") if rounded >= 10 else f"{rounded:g}"
+def _within(seconds: float) -> str:
+    """Return a time within the factor of the rule, as a range in words."""
+    return between(seconds / cost.FACTOR, seconds * cost.FACTOR)
 
 
 def _picture(scene: Scene, needed: ModelOptions, folder: Path) -> str:

@@ -29,6 +29,7 @@ def main(argv: Sequence[str]) -> int:
         default="full",
         help="every ridge (full), a smooth finger with the law of one ridge, or a closed form (default: full)",
     )
+    parser.add_argument("--quiet", action="store_true", help="print the result alone: no steps, no progress bar")
     args, petsc = parser.read_with_petsc(argv)
     scene = scene_of(args, meshed=args.model != "cylinders")
     check_folder(args.out)
@@ -43,7 +44,7 @@ def main(argv: Sequence[str]) -> int:
     # PETSc has its options from here on.
     from fingerpad.runs.full import exit_code
 
-    result = solved(scene, args.model, args.out, lines=True)
-    if args.model != "full":
+    result = solved(scene, args.model, args.out, lines=not args.quiet, bar=not args.quiet)
+    if args.quiet or args.model != "full":
         echo(str(result))
     return exit_code(result)

@@ -33,13 +33,15 @@ def main(argv: Sequence[str]) -> int:
     parser.add_out("results/sweep", "folder of all runs and of table.csv (default: results/sweep)")
     parser.add_argument("--jobs", type=positive(int), default=2, metavar="N", help="runs at a time (default: 2)")
     parser.add_argument("--model", choices=MODELS, default="full", help="model to run (default: full)")
+    parser.add_argument("--quiet", action="store_true", help="print the table alone: no line a run, no progress bar")
     args = parser.read(argv)
     check_folder(args.out)
     base, axes = study(args.scene, args.set, args.over)
     scene = from_data(base)
-    found = sweep(scene, args.out, jobs=args.jobs, model=args.model, **axes)
+    found = sweep(scene, args.out, jobs=args.jobs, model=args.model, quiet=args.quiet, **axes)
     echo(str(found))
-    echo(f"Written: {args.out / 'table.csv'}{'' if found.notes else ' and sweep.nc'}")
+    files = [args.out / "table.csv", *(["sweep.nc"] if not found.notes else []), "report.html"]
+    echo(f"Written: {', '.join(map(str, files))}")
     return 1 if any(result.failure for result in found) else 0
 
 

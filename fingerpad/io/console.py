@@ -1,8 +1,11 @@
 """The output of a run in a terminal: one line a step under a legend, and a progress bar; on rank 0."""
 
-from mpi4py import MPI
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from collections.abc import Collection, Mapping
 
+from mpi4py import MPI
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from fingerpad.io.left import Pace
 from fingerpad.io.quantities import PER_LENGTH
 from fingerpad.io.terminal import watched
 from variational.state import ContactState
@@ -12,19 +15,20 @@ _LEGEND = (
     "f_el: attraction; contact: sum of the lengths in contact; iter.: Newton iterations; fact.: factorisations",
     PER_LENGTH,
 )
-_HEADER = "step load     f_ext     U  bone x   bone y      f_T   µ_app    f_el ridges  contact  iter. fact."
+_HEADER = "step load     f_ext     U  bone x   bone y      f_T   µ_app    f_el ridges  contact  iter. fact.  time left"
 _UNITS = "           (N/m)   (V)    (mm)     (mm)    (N/m)          (N/m)           (mm)"
 
 
 class Console:
-    """Prints the lines of a run, or nothing but the progress bar."""
+    """Prints the lines of a run, or nothing but the progress bar, or nothing."""
 
-    def __init__(self, comm: MPI.Comm, lines: bool = True) -> None:
-        """Start the progress bar.
+    def __init__(self, comm: MPI.Comm, lines: bool = True, bar: bool = True) -> None:
+        """Start the progress bar, where a person watches.
 
         Args:
             comm: communicator of the run.
             lines: whether to print lines; a program of one's own prints its own.
+            bar: whether to show the bar.
         """
         self._lines = lines and comm.rank == 0
         self._progress = Progress(
@@ -32,12 +36,13 @@ class Console:
             BarColumn(),
             TextColumn("{task.percentage:3.0f} %"),
             TimeElapsedColumn(),
-            TimeRemainingColumn(),
+            TextColumn("{task.fields[left]}"),
             disable=comm.rank != 0,
             transient=True,
         )
-        self._progress.disable |= not watched()
-        self._task = self._progress.add_task("meshing the finger", total=1.0)
+        self._progress.disable |= not (bar and watched())
+        self._task = self._progress.add_task("starting", total=1.0, left="")
+        self.expect({"": 1.0}, 0.0)
         if not self._progress.disable:
             self._progress.start()
 
@@ -45,6 +50,31 @@ class Console:
         """Print a line above the progress bar."""
         if self._lines:
             self._progress.console.print(text, highlight=False, soft_wrap=True, markup=False)
+
+    def expect(self, loads: Mapping[str, float], after: float, slipping: Collection[str] = (), mu_0: float = 0) -> None:
+        """Take what is expected of a path that starts now.
+
+        Args:
+            loads: time of each load (s), by its name.
+            after: time of what comes after the loads (s).
+            slipping: names of the loads that end with full slip.
+            mu_0: friction coefficient.
+        """
+        self._pace, self._slipping, self._mu_0 = Pace([*loads.values()], after), slipping, mu_0
+
+    def phase(self, text: str, part: float | None = None) -> None:
+        """Show what is being done besides steps: in the bar, or as a line where there is none.
+
+        Args:
+            text: what is being done.
+            part: of what comes after the path that is done; without it, the time left is not known.
+        """
+        if part is not None:
+            self._pace.after_path(part)
+        left = "" if part is None else f"{self._pace.left()} left"
+        if self._progress.disable:
+            self.show("; ".join(filter(None, (text, left))))
+        self._progress.update(self._task, completed=self._pace.part, description=text, left=left)
 
     def head(self) -> None:
         """Print legend and head of the table of steps."""
@@ -59,14 +89,18 @@ class Console:
             done: part of the whole history that is done.
         """
         assert s.record is not None
+        most = self._mu_0 * s.f_contact if s.load in self._slipping else 0.0
+        self._pace.on_path(done, abs(s.f_t) / most if most > 0 else 0.0)
+        left = self._pace.left()
         self.show(
             f"{s.step:4d} {s.load[:7]:7s} {s.f_ext:7.3f} {s.voltage:5.1f} {s.bone_x * 1e3:7.4f} "
             f"{s.bone_height * 1e3:8.5f} {s.f_t:8.4f} {s.mu_app:7.4f} {s.f_electrostatic:7.3f} "
             f"{s.ridges_in_contact:6d} {s.contact_length * 1e3:8.4f} {s.record.newton_iterations:6d} "
-            f"{s.record.factorisations:5d}{'  jump, ' + _released(s) if s.record.jump else ''}"
+            f"{s.record.factorisations:5d}  {left}{'  jump, ' + _released(s) if s.record.jump else ''}"
         )
         loads = f"{s.load}: {s.f_ext:.1f} N/m, {s.voltage:.0f} V, x {s.bone_x * 1e3:.2f} mm"
-        self._progress.update(self._task, completed=done, description=f"{loads}, µ_app {s.mu_app:.3f}")
+        words = f"{loads}, µ_app {s.mu_app:.3f}"
+        self._progress.update(self._task, completed=self._pace.part, description=words, left=f"{left} left")
 
     def close(self) -> None:
         """Take the progress bar away."""

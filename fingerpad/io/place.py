@@ -37,7 +37,7 @@ LEFT = (
         "result.nc.part",
     ),
     *("displacement.bp", "stress.bp", "sed.bp", "finger_*.npz", "finger_*.png", "surface*.npz", "surface*.png"),
-    "history.png",
+    *("history.png", "report.html", "report.html.part"),
 )
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP)  # some network file systems
 

@@ -36,12 +36,12 @@ from variational.state import ContactState
 
 # The default finger's full runs without voltage, contact size 10 um: f_ext (N/m), then contact length (m) and ridges in
 # contact in each state. benchmarks/models.py keeps the same numbers in docs/models.json.
-_FORCES = (5.0, 10.0, 25.0, 50.0, 75.0, 100.0, 120.0, 150.0)
-_LENGTHS = {
-    "charged": (0.2313e-3, 0.3577e-3, 0.6504e-3, 1.0116e-3, 1.3028e-3, 1.4998e-3, 1.7017e-3, 1.8910e-3),
-    "full_slip": (0.2373e-3, 0.3500e-3, 0.6535e-3, 0.9843e-3, 1.2377e-3, 1.4615e-3, 1.6060e-3, 1.7901e-3),
+FORCES = (5.0, 10.0, 25.0, 50.0, 75.0, 100.0, 120.0, 150.0)
+LENGTHS = {
+    "charged": (0.2314e-3, 0.3575e-3, 0.6513e-3, 1.0123e-3, 1.3027e-3, 1.4999e-3, 1.7015e-3, 1.8908e-3),
+    "full_slip": (0.2374e-3, 0.3497e-3, 0.6539e-3, 0.9847e-3, 1.2376e-3, 1.4616e-3, 1.6059e-3, 1.7898e-3),
 }
-_RIDGES = {"charged": (7, 9, 11, 15, 17, 17, 19, 19), "full_slip": (7, 9, 12, 14, 16, 17, 18, 18)}
+RIDGES = {"charged": (7, 9, 11, 15, 17, 17, 19, 19), "full_slip": (7, 9, 12, 14, 16, 17, 18, 18)}
 _SHAPING = ("geometry", "materials", "contact")  # tables of a scene of which these lengths are a matter
 
 
@@ -77,18 +77,18 @@ def fitted(scene: Scene) -> Footprint:
                 "a number of ridges, a folder of a run, or use the model 'smooth'"
             )
     source = "uncharged contact length interpolated between full runs of the default finger"
-    if not _FORCES[0] <= scene.f_ext <= _FORCES[-1]:
-        source = f"uncharged contact length extrapolated from full runs at {_FORCES[0]:g} to {_FORCES[-1]:g} N/m"
+    if not FORCES[0] <= scene.f_ext <= FORCES[-1]:
+        source = f"uncharged contact length extrapolated from full runs at {FORCES[0]:g} to {FORCES[-1]:g} N/m"
     if scene.friction_law() != default.friction_law():
         source += f"; that of full slip with a friction coefficient of {default.friction:g}"
-    length = {state: _interpolate(scene.f_ext, _LENGTHS[state]) for state in STATES}
-    ridges = {state: max(1, round(_interpolate(scene.f_ext, _RIDGES[state]))) for state in STATES}
+    length = {state: _interpolate(scene.f_ext, LENGTHS[state]) for state in STATES}
+    ridges = {state: max(1, round(_interpolate(scene.f_ext, RIDGES[state]))) for state in STATES}
     return Footprint(length, ridges, False, source)
 
 
 def _interpolate(f_ext: float, values: tuple[float, ...] | tuple[int, ...]) -> float:
     """Return a power law through the two neighbours, at the ends through the last two."""
-    x, y = np.log(_FORCES), np.log(values)
+    x, y = np.log(FORCES), np.log(values)
     k = int(np.clip(np.searchsorted(x, np.log(f_ext)) - 1, 0, len(x) - 2))
     return float(np.exp(y[k] + (y[k + 1] - y[k]) * (np.log(f_ext) - x[k]) / (x[k + 1] - x[k])))
 

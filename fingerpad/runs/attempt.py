@@ -2,7 +2,6 @@
 
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 from fingerpad.accuracy.recompute import StateRecorder
@@ -53,12 +52,14 @@ class Attempt:
         self._model = model
         self._comm, self._interrupt = comm, interrupt
         self._writer, self._console, self._clock = writer, console, clock
+        console.phase("meshing the finger and setting up its equations")
         with clock.phase("setup"):
             self.simulation = Simulation(model, comm, self._on_step, self._on_load)
         self.report = Report(self.simulation, model.omitted, writer, console, clock)
         self._recorder = StateRecorder(self.simulation) if model.options.errors else None
         self._refinement: Refinement | None = None
         self._ended: dict[str, str] = {}
+        self._solves = 0  # for the error estimate
 
     def _on_step(self, step: Step, done: float) -> None:
         petsc_options.refuse_unread()
@@ -70,6 +71,18 @@ class Attempt:
     def _on_load(self) -> None:
         self.report.load_reached()
 
+    def _before_solve(self) -> None:
+        """Stop if asked to, or tell how far the error estimate is."""
+        self._interrupt.stop_if_asked(self.simulation.finger.continuation.steps)
+        self._solves += 1
+        if self._model.asked:  # until it is met
+            self._console.phase(f"states on other meshes, to the accuracy asked for: number {self._solves}")
+            return
+        assert self._refinement is not None
+        number = len(self._refinement.parameters) + (self._model.contact.formulation == "penalty")
+        text = f"estimating discretisation errors: solve {self._solves} of {number}"
+        self._console.phase(text, (self._solves - 0.5) / number)
+
     def follow(self) -> RestartRequired | None:
         """Reach every load, and estimate or refine; return what must be added to the model, if anything; collective."""
         reached = False
@@ -78,9 +91,8 @@ class Attempt:
             reached = True
             if restart is not None or self._recorder is None:
                 return self._affordable(restart)
-            pause = partial(self._interrupt.stop_if_asked, self.simulation.finger.continuation.steps)
             path, show = self._recorder.solve(), self._console.show
-            self._refinement = Refinement(self._model, path, self._comm, show, pause)
+            self._refinement = Refinement(self._model, path, self._comm, show, self._before_solve)
             return self._affordable(self._refinement.run())
         except StepFailed as error:
             tip = hint(error) if self._model.mesh_file is None else ""

@@ -11,13 +11,15 @@ import fcntl
 import hashlib
 import json
 import sys
-from collections.abc import Mapping
+import time
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from fingerpad.io.files import replace_json
+from fingerpad.io.left import between
 from fingerpad.io.terminal import watched
 from fingerpad.runs.processes import End, Pool, limit_processor_time, run
 from fingerpad.scene import Scene
@@ -40,16 +42,40 @@ def result(scene: Scene, folder: Path) -> Summary | None:
     return None if summary.get("interrupted") else summary
 
 
-def progress() -> Progress:
-    """Return a bar of things done, time taken and time remaining; nothing where the output is no terminal."""
+def progress(quiet: bool = False) -> Progress:
+    """Return a bar of things done and time taken; nothing where the output is no terminal, or ``quiet`` is given."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
-    bar = Progress(*columns, TimeElapsedColumn(), TimeRemainingColumn(), transient=True)
-    bar.disable = not watched()
+    bar = Progress(*columns, TimeElapsedColumn(), transient=True)
+    bar.disable = quiet or not watched()
     return bar
 
 
+def times_left(took: Sequence[float], left: int, jobs: int) -> tuple[float, float]:
+    """Return the least and the longest time left (s), by the runs until now.
+
+    Args:
+        took: times of the runs until now (s), at least one.
+        left: number of runs that are left, those in hand included.
+        jobs: runs at a time.
+    """
+    rounds = left / min(jobs, left)
+    low, high = min(took), max(took)
+    return (rounds - 1) * low + low / 2, rounds * max(high, 1.25 * low)
+
+
+def _said(summary: Summary) -> str:
+    """Return what became of a run that did not fail, in words."""
+    mu_app = summary.get("slip_mu_app")
+    return "done" if mu_app is None else f"done, µ_app {mu_app:.4f}"
+
+
 def sweep(
-    scenes: Mapping[str, Scene], folder: Path, jobs: int = 2, limit: float = _LIMIT, model: str = "full"
+    scenes: Mapping[str, Scene],
+    folder: Path,
+    jobs: int = 2,
+    limit: float = _LIMIT,
+    model: str = "full",
+    quiet: bool = False,
 ) -> dict[str, Summary]:
     """Run what has not been run yet, with a progress bar.
 
@@ -59,6 +85,7 @@ def sweep(
         jobs: processes at a time.
         limit: seconds of processor time for one scene.
         model: ``"full"`` or ``"smooth"``.
+        quiet: whether to print nothing, and show no bar.
 
     Returns:
         The summaries by name. That of a run that crashed, took too long or was asked to stop holds ``failure`` alone,
@@ -66,6 +93,7 @@ def sweep(
     """
     found = {name: result(scene, folder) for name, scene in scenes.items()}
     broken: dict[str, Summary] = {}
+    took: list[float] = []  # s, of each run
 
     def job(name: str) -> End:
         place = folder / key(scenes[name])
@@ -75,18 +103,25 @@ def sweep(
             if result(scenes[name], folder) is not None:
                 return End(0, "", "", "")
             (place / "asked.json").write_text(json.dumps(scenes[name].parameters(), indent=1), encoding="utf-8")
-            return run("fingerpad.runs.batch", [str(place / "asked.json"), str(place), str(limit), model], limit)
+            start = time.monotonic()
+            end = run("fingerpad.runs.batch", [str(place / "asked.json"), str(place), str(limit), model], limit)
+            took.append(time.monotonic() - start)
+            return end
 
     def done(name: str, end: End, left: int) -> None:
         summary = result(scenes[name], folder)
         if summary is None:
             broken[name] = {"failure": f"{end.reason}: {end.message}" if end.reason else "INTERRUPTED"}
-        words = (summary or broken[name]).get("failure") or "done"
-        bar.console.print(f"{name}: {words}", highlight=False, markup=False, soft_wrap=True)
-        bar.advance(task)
+        if quiet:
+            return
+        words = (summary or broken[name]).get("failure") or _said(summary or {})
+        rest = f"; {between(*times_left(took, left, jobs))} left" if left and took else ""
+        text = f"{name}: {words} ({len(missing) - left} of {len(missing)}{rest})"
+        bar.console.print(text, highlight=False, markup=False, soft_wrap=True)
+        bar.update(task, advance=1, description=f"scenes{rest.replace(';', ',')}")
 
     missing = [name for name, summary in found.items() if summary is None]
-    with progress() as bar:
+    with progress(quiet) as bar:
         task = bar.add_task("scenes", total=len(missing))
         Pool[str, End](job, jobs).run(missing, done)
     return {name: result(scene, folder) or broken[name] for name, scene in scenes.items()}
@@ -102,7 +137,7 @@ def _one(scene: Path, folder: Path, model: str) -> None:
     asked = from_data(json.loads(scene.read_text(encoding="utf-8")))
     try:
         if model == "full":
-            solved(asked, model, folder, lines=True)
+            solved(asked, model, folder, lines=True, report=False)
         else:
             from fingerpad.reduced import smooth
 

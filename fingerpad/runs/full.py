@@ -14,17 +14,19 @@ from fingerpad.io.place import Place
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
 from fingerpad.model.cost import Clock
+from fingerpad.model.expected import ERRORS, by_load
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.touching import by_rule
 from fingerpad.runs.attempt import Attempt
 from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.laws import coefficient
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
 from variational import jit
 
 
-def run(scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True) -> Result:
+def run(scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True, bar: bool = True) -> Result:
     """Reach every load of a scene; refine where it asks for an accuracy; collective.
 
     Where the scene does not give the number of ridges that can touch, a rule of thumb does. All loads are gone through
@@ -37,6 +39,7 @@ def run(scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True) -
         folder: of tables, plots and fields; None to write nothing.
         comm: communicator of the run.
         lines: whether to print the steps.
+        bar: whether to show the progress bar.
 
     Returns:
         The result, the same on every rank. It has a ``failure`` if a load or an accuracy could not be reached; every
@@ -51,7 +54,7 @@ def run(scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True) -
     """
     all_together(comm)
     petsc_options.check()
-    console = Console(comm, lines)
+    console = Console(comm, lines, bar)
     try:
         with nullcontext() if folder is None else Place(folder, scene.parameters(), comm) as place:
             return _run(scene, Writer(place, comm), comm, console)
@@ -71,6 +74,7 @@ def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console) -> Resu
     try:
         with Interrupt(comm) as interrupt:
             while True:
+                _expect(scene, model, comm, console)
                 attempt = Attempt(model, comm, writer, console, clock, interrupt)
                 restart = attempt.follow()
                 if restart is None:
@@ -89,6 +93,15 @@ def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console) -> Resu
         if full is None:
             raise
         raise full from error
+
+
+def _expect(scene: Scene, model: FingerModel, comm: MPI.Comm, console: Console) -> None:
+    """Tell the console what the path will take, about."""
+    loads = scene.loads()
+    seconds = [each / comm.size for each in by_load(scene, model.options)]
+    path = {load.name: each for load, each in zip(loads, seconds, strict=True)}
+    slipping = [load.name for load in loads if load.until_full_slip]
+    console.expect(path, ERRORS * sum(seconds) if model.options.errors else 0.0, slipping, coefficient(scene) or 0.0)
 
 
 def exit_code(result: Result) -> int:

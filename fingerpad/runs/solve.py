@@ -82,7 +82,13 @@ def _ended(result: Result) -> BaseException:
 
 
 def solved(
-    scene: Scene, model: str, out: Path | None = None, comm: "MPI.Comm | None" = None, lines: bool = False
+    scene: Scene,
+    model: str,
+    out: Path | None = None,
+    comm: "MPI.Comm | None" = None,
+    lines: bool = False,
+    bar: bool = True,
+    report: bool = True,
 ) -> Result:
     """Return what a model answers to a scene with all its laws; collective; arguments as of :func:`run`.
 
@@ -92,7 +98,18 @@ def solved(
         out: folder of results.
         comm: communicator.
         lines: whether the full model prints its steps.
+        bar: whether it shows a progress bar.
+        report: whether ``report.html`` is written beside the results.
     """
+    result = _solved(scene, model, out, comm, lines, bar)
+    if report and out is not None and (terminal.rank() if comm is None else comm.rank) == 0:
+        from fingerpad.report.write import attempt
+
+        attempt(out)
+    return result
+
+
+def _solved(scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool, bar: bool) -> Result:
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     if model == "cylinders":
@@ -101,10 +118,12 @@ def solved(
         found = cylinders.solve(scene)
         return kept(found, out, Serial()) if terminal.rank() == 0 else found
     with needed_by(f"the model {model!r}"):
-        return _with_finite_elements(scene, model, out, comm, lines)
+        return _with_finite_elements(scene, model, out, comm, lines, bar)
 
 
-def _with_finite_elements(scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool) -> Result:
+def _with_finite_elements(
+    scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool, bar: bool
+) -> Result:
     import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
     from fingerpad.startup import MPI
 
@@ -113,7 +132,7 @@ def _with_finite_elements(scene: Scene, model: str, out: Path | None, comm: "MPI
     if model == "full":
         from fingerpad.runs import full
 
-        return full.run(scene, out, comm, lines)
+        return full.run(scene, out, comm, lines, bar)
     from fingerpad.reduced import smooth
 
     return kept(smooth.solve(scene, tables_in(out), comm), out, comm)

@@ -18,6 +18,7 @@ from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import PREFIXES, STATES
 from fingerpad.model.check import check
+from fingerpad.report.write import attempt
 from fingerpad.runs import sweep_dataset
 from fingerpad.runs.solve import MODELS, solved
 from fingerpad.scene import Scene, SceneError
@@ -150,6 +151,7 @@ def sweep(
     *,
     jobs: int = 1,
     model: str = "full",
+    quiet: bool = False,
     **axes: Sequence[Any],
 ) -> Sweep:
     """Return what a model answers to a scene over values of some of its keys.
@@ -160,9 +162,10 @@ def sweep(
 
     Args:
         scene: the scene; by default press, charge and slide of the default finger.
-        out: folder of the results.
+        out: folder of the results, of ``table.csv`` and of ``report.html``.
         jobs: points that are run at a time.
         model: as of :func:`fingerpad.runs.solve.run`.
+        quiet: whether to print no line for each point, and show no progress bar.
         **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``.
 
     Raises:
@@ -184,10 +187,11 @@ def sweep(
         found = [_closed(each) for each in scenes]
     else:
         points = [dict(zip(values, point, strict=True)) for point in itertools.product(*values.values())]
-        found = _in_processes(scenes, points, folder, jobs, model)
+        found = _in_processes(scenes, points, folder, jobs, model, quiet)
     done = Sweep(values, tuple(found), folder)
     done.to_csv(folder / "table.csv")
     missing = sweep_dataset.save(done)
+    attempt(folder)
     return replace_fields(done, notes=(missing,)) if missing else done
 
 
@@ -242,7 +246,7 @@ def _closed(scene: Scene) -> Result:
 
 
 def _in_processes(
-    scenes: Sequence[Scene], points: Sequence[Mapping[str, Any]], folder: Path, jobs: int, model: str
+    scenes: Sequence[Scene], points: Sequence[Mapping[str, Any]], folder: Path, jobs: int, model: str, quiet: bool
 ) -> list[Result]:
     """Return the results of scenes, those that can be run in processes of their own, kept by their parameters."""
     from fingerpad.runs import batch
@@ -256,7 +260,7 @@ def _in_processes(
             named[f"{words} ({batch.key(scene)})"] = scene
         except SceneError as error:
             refused[batch.key(scene)] = Result(scene, model, None, None, None, failure=str(error))
-    found = batch.sweep(named, place, jobs, _LIMIT, model)
+    found = batch.sweep(named, place, jobs, _LIMIT, model, quiet)
     results = dict(refused)
     for name, scene in named.items():
         summary, key = found[name], batch.key(scene)

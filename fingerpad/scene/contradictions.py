@@ -10,7 +10,7 @@ from fingerpad.scene.parameters import Accuracy, Load, Output
 
 DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 """Keys of the default loads, which a history replaces."""
-_LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
+LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
 
 
 def refuse_contradictions(
@@ -53,10 +53,10 @@ def _refuse_accuracy(accuracy: Accuracy | None, output: Output) -> None:
 def _refuse_endless_gap(roughness: Roughness, h_0: float) -> None:
     """Refuse a roughness that holds the air gap of an unloaded ridge at more than a metre."""
     gap = roughness.largest_gap(h_0)
-    if not gap < _LARGEST_GAP:
+    if not gap < LARGEST_GAP:
         raise ValueError(
             f"roughness.p_floor is {show(roughness.p_floor)}, where the air gap would be held at {gap:.3g} m; "
-            f"it must be below {_LARGEST_GAP:g} m: take a larger p_floor, or a smaller gamma or h_rms"
+            f"it must be below {LARGEST_GAP:g} m: take a larger p_floor, or a smaller gamma or h_rms"
         )
 
 

@@ -1,0 +1,98 @@
+"""Settings of the documentation site; environment/docs builds it from the pages in place."""
+
+import re
+import sys
+from pathlib import Path
+from typing import Any, get_type_hints
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+sys.path[:0] = [str(HERE), str(ROOT)]
+
+import reference
+from percent import Percent
+from pydantic import BaseModel
+
+import fingerpad.started  # noqa: F401
+
+project, author = "fingerpad", "The fingerpad developers"
+version = re.search(r'^version = "(.*)"', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)[1]
+copyright = f"{author}; text and program under the GNU Lesser General Public License, version 3 or later"
+
+root_doc = "docs/site/index"
+include_patterns = [
+    "docs/*.md", "docs/site/*.md", "docs/site/modules/*.md", "demos/README.md", "demos/*.py", "CONTRIBUTING.md",
+    "CHANGELOG.md",
+]  # fmt: skip
+exclude_patterns = ["build/**", "results/**", "docs/README.md", "docs/site/*.py"]
+source_suffix = {".md": "markdown", ".py": "percent"}
+extensions = [
+    "myst_parser", "mathml", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode",
+]  # fmt: skip
+
+myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 4
+myst_dmath_double_inline = True
+
+toc_object_entries = False  # hundreds, in the navigation of every page
+add_module_names = False
+autodoc_member_order = "bysource"
+autodoc_default_options = {"exclude-members": "model_config, model_post_init"}  # Pydantic's
+autodoc_typehints = "description"
+autodoc_typehints_description_target = "documented"
+autodoc_preserve_defaults = True
+napoleon_use_rtype = False
+# Types of other libraries and of variables in signatures have no page here.
+nitpick_ignore_regex = [
+    ("py:.*", r"(?!(geometry|variational|fingerpad)\.).*"),
+    ("py:.*", r"fingerpad\.(runs\.processes\.(Key|Result)|scene\.(load_names\.load_name|Scene\.replace|load))"),
+]
+
+html_theme = "furo"
+html_title = f"fingerpad {version}"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_extra_path = ["_extra"]
+html_math_renderer = "mathml"
+html_copy_source = False
+html_show_sphinx = False
+
+# Pages of a code host, which the site has elsewhere or in another form.
+ELSEWHERE = {"](../demos/scenes)": "](site/scenes.md)", "](README.md)": "](site/index.md)"}
+PLACE = re.compile(r"`((?:geometry|variational|fingerpad)[a-z_.]*):(\w+)`")
+
+
+def adapt(app: Any, docname: str, source: list[str]) -> None:
+    """Make places in the code links to the reference, and lead links to folders to pages."""
+    if docname.startswith("docs/") and "/site/" not in docname:
+        text = PLACE.sub(r"{py:obj}`\1:\2 <\1.\2>`", source[0])
+        text = re.sub(r"\[(\w+\.md)\]\(\1\)", r"[](\1)", text)  # by the title of the page, not by its file
+        for before, after in ELSEWHERE.items():
+            text = text.replace(before, after)
+        source[0] = text
+    if docname == "demos/README":
+        demos = (f"{name.stem}" for name in sorted((ROOT / "demos").glob("*.py")))
+        source[0] += "\n```{toctree}\n:hidden:\n\n" + "\n".join(demos) + "\n```\n"
+
+
+def plain_text(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
+    """Take bars in the text of an attribute for absolute values, and what stands before a colon for no type."""
+    if what in ("attribute", "property"):
+        lines[:] = ["..", "", *(line if "`" in line else line.replace("|", "\\|") for line in lines)]
+
+
+def plain_types(model: type[BaseModel]) -> None:
+    """Leave the ranges out of the types of a table of the scene; they are in the scene reference."""
+    for table in model.__subclasses__():
+        hints = get_type_hints(table)
+        table.__annotations__ = {name: hints[name] for name in table.__annotations__}
+        plain_types(table)
+
+
+def setup(app: Any) -> None:
+    """Register what is above."""
+    reference.write(HERE / "modules")
+    plain_types(BaseModel)
+    app.add_source_parser(Percent)
+    app.connect("source-read", adapt)
+    app.connect("autodoc-process-docstring", plain_text, priority=400)  # before Napoleon

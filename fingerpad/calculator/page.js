@@ -1,0 +1,254 @@
+/* The page: fields of a scene's keys, refused where a scene would refuse them, and the answer of the closed form. */
+(function () {
+  const { show } = closedForm;
+  const find = (id) => document.getElementById(id);
+  const POINTS = 41; // of a curve
+  const fields = data.fields, by_key = Object.fromEntries(fields.map((field) => [field.key, field]));
+  const defaults = values_of((field) => field.value);
+  const FOOTPRINT = ["length", "ridges"];
+
+  function create(name, attributes, ...content) {
+    const found = document.createElement(name);
+    Object.assign(found, attributes);
+    found.append(...content);
+    return found;
+  }
+
+  // -- fields --------------------------------------------------------------------------------------------
+  function add_fields() {
+    const groups = new Map();
+    const add = (group, ...content) => {
+      if (!groups.has(group)) {
+        const folded = group === "More of the model";
+        const box = create("fieldset", {}, folded ? create("summary", {}, group) : create("legend", {}, group));
+        groups.set(group, box);
+        if (folded) {
+          const details = create("details", { id: "more" }, box.firstChild);
+          box.append(details);
+          groups.set(group, details);
+        }
+        find("fields").append(box);
+      }
+      groups.get(group).append(...content);
+    };
+    for (const field of fields) {
+      if (field.key === "length") add(field.group, choice("default", "the default finger, its contact from full runs", true),
+        choice("given", "a contact as measured, at this force and voltage", false));
+      add(field.group, field_box(field));
+    }
+    const reset = create("button", { type: "button", id: "defaults" }, "Back to the defaults");
+    reset.onclick = () => { find("fields").reset(); find("finger_default").checked = true; fields.forEach(slide); update(); };
+    find("fields").append(reset);
+  }
+
+  function choice(name, words, checked) {
+    const input = create("input", { type: "radio", name: "finger", id: "finger_" + name, defaultChecked: checked });
+    return create("label", { className: "choice" }, input, " " + words);
+  }
+
+  function field_box(field) {
+    const words = create("label", { htmlFor: field.key }, field.words);
+    const slider = create("input", { type: "range", min: 0, max: 1000, step: 1, id: field.key + "_slider" });
+    slider.setAttribute("aria-label", field.words + ", slider");
+    const number = create("input", { type: "number", step: "any", id: field.key, defaultValue: field.value });
+    number.setAttribute("aria-describedby", field.key + "_refused");
+    const refused = create("p", { id: field.key + "_refused" });
+    refused.setAttribute("role", "alert");
+    slider.oninput = () => { number.value = from_slider(field, slider.value / 1000); later(); };
+    number.oninput = () => { slide(field); later(); };
+    number.onchange = () => { slide(field); update(); };
+    return create("div", { className: "field" }, words, slider, number, create("span", {}, field.unit), refused);
+  }
+
+  // Sliders over a factor of ten or more go by equal ratios.
+  const by_ratio = (field) => field.slider[0] > 0 && field.slider[1] / field.slider[0] >= 10;
+  function from_slider(field, part) {
+    const [low, high] = field.slider;
+    const value = by_ratio(field) ? low * (high / low) ** part : low + (high - low) * part;
+    return field.whole ? Math.round(value) : Number(value.toPrecision(3));
+  }
+  function slide(field) {
+    const [low, high] = field.slider, value = Math.min(Math.max(Number(find(field.key).value), low), high);
+    const part = by_ratio(field) ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
+    find(field.key + "_slider").value = 1000 * part;
+  }
+
+  /** Return why a value in a field's unit is refused, empty where it is not; the bounds are a scene's. */
+  function refused(field, text) {
+    const name = field.key.split(".").pop(), unit = field.unit && " " + field.unit, value = Number(text);
+    const allowed = `it must be ${field.zero ? "0 or " : ""}from ${show(field.low)} to ${show(field.high)}${unit}`;
+    if (text.trim() === "" || !Number.isFinite(value)) return `${name} is no number; ${allowed}.`;
+    if (field.whole && !Number.isInteger(value)) return `${name} is ${show(value, 12)}; it must be a whole number.`;
+    const inside = (value >= field.low && value <= field.high) || (field.zero && value === 0);
+    return inside ? "" : `${name} is ${show(value, 12)}${unit}; ${allowed}.`;
+  }
+
+  /** Return SI values by key. */
+  function values_of(value) {
+    return Object.fromEntries(fields.map((field) => [field.key, field.per < 1
+      ? value(field) * Math.round(1 / field.per) : value(field) / field.per]));
+  }
+
+  /** Return the values in the fields, null where one is refused, which is said beside it. */
+  function read() {
+    const given = find("finger_given").checked;
+    let whole = true;
+    const say = (key, text) => {
+      find(key + "_refused").textContent = text;
+      find(key).setAttribute("aria-invalid", text !== "");
+      if (text && by_key[key].group === "More of the model") find("more").open = true;
+      if (text) whole = false;
+    };
+    for (const field of fields) {
+      const unread = FOOTPRINT.includes(field.key) && !given;
+      for (const id of [field.key, field.key + "_slider"]) find(id).disabled = unread;
+      say(field.key, unread ? "" : refused(field, find(field.key).value));
+    }
+    if (!whole) return null;
+    const values = values_of((field) => Number(find(field.key).value)), said = closedForm.refuse(values);
+    if (said) say("roughness.p_floor", `p_floor is ${show(values["roughness.p_floor"], 12)} Pa; ${said}.`);
+    return whole ? { values, given } : null;
+  }
+
+  // -- answers -------------------------------------------------------------------------------------------
+  const footprint = (values, given) => (given ? closedForm.given(values.length, values.ridges) : undefined);
+
+  function answer(values, given) {
+    try {
+      return closedForm.solve(values, footprint(values, given));
+    } catch (error) {
+      if (error instanceof closedForm.NoEquilibriumError) return error.message;
+      throw error;
+    }
+  }
+
+  const known_at = (values) => within(values.f_ext, data.known.forces) && within(values.voltage, data.known.voltages);
+  const within = (value, [low, high]) => value >= low && value <= high;
+  const changed = (values) => [...new Set(fields.map((field) => field.key)
+    .filter((key) => !FOOTPRINT.includes(key) && key !== "f_ext" && key !== "voltage" && values[key] !== defaults[key])
+    .map((key) => key.split(".")[0]))];
+
+  function curve(values, given, key, highest, lowest) {
+    return Array.from({ length: POINTS }, (_, k) => {
+      const x = lowest + ((highest - lowest) * k) / (POINTS - 1), here = { ...values, [key]: x };
+      const found = answer(here, given);
+      return { x, y: typeof found === "string" ? null : found.mu_app, known: !given && known_at(here) };
+    });
+  }
+
+  const ROWS = [
+    ["mu_app", "friction coefficient µ_app", "", 1, 3, "mu_app"],
+    ["f_t", "friction force", "N/m", 1, 2, "mu_app"],
+    ["f_electrostatic", "attraction", "N/m", 1, 2],
+    ["contact_length", "contact length", "mm", 1e3, 3, "contact_length"],
+    ["ridges_in_contact", "ridges in contact", "", 1, 0],
+    ["p_c", "mean contact pressure", "kPa", 1e-3, 2],
+    ["d_eq", "equivalent air gap", "µm", 1e6, 3],
+  ];
+
+  function show_point(found, values, given) {
+    const sure = !given && known_at(values), body = find("point").tBodies[0];
+    body.replaceChildren(...ROWS.map(([key, words, unit, per, digits, error]) => {
+      const value = found[key] * per, band = error && sure ? ` ± ${(value * data.known.error[error]).toFixed(digits)}` : "";
+      const cell = create("td", { id: "value_" + key }, `${value.toFixed(digits)}${band} ${unit}`.trim());
+      cell.dataset.value = String(found[key]);
+      return create("tr", {}, create("th", { scope: "row" }, words), cell);
+    }));
+  }
+
+  function remarks(found, values, given) {
+    const percent = (value) => `${(100 * value).toFixed(1)} %`, { error, runs, forces, voltages } = data.known;
+    const where = `${forces.map(Number).join(" to ")} N/m and ${voltages.map(Number).join(" to ")} V`, said = [];
+    if (given) said.push("The contact is as given along both curves; the error of this answer is not known.");
+    else {
+      said.push(`Known error: µ_app within ${percent(error.mu_app)}, contact length within ` +
+        `${percent(error.contact_length)} of ${runs} full runs at ${where}.`);
+      if (!known_at(values)) said.push("This point is outside of that; its error is not known.");
+      const keys = changed(values);
+      if (keys.length) said.push(`Those runs have the default ${keys.join(", ")}; here the error may be larger.`);
+    }
+    const state = found.closure.state(found.p_c, values.voltage);
+    if (state) said.push(`The mean pressure of ${show(found.p_c, 4)} Pa is ${state}.`);
+    if (found.others.length) said.push(`Further equilibria at a mean pressure of ` +
+      `${found.others.map((p) => show(p, 4)).join(", ")} Pa, of ridges not on the screen yet.`);
+    find("notes").textContent = said.join(" ");
+    find("notes").dataset.state = state;
+  }
+
+  function draw(values, given, found) {
+    const most_u = Math.max(data.known.voltages[1], values.voltage), most_f = Math.max(data.known.forces[1], values.f_ext);
+    const least_f = Math.min(data.known.forces[0], values.f_ext), mu = "friction coefficient µ_app";
+    const axes = [
+      ["over_voltage", "voltage", most_u, 0, "voltage U (V)", `force of ${show(values.f_ext)} N/m`],
+      ["over_force", "f_ext", most_f, least_f, "normal force f_ext (N/m)", `voltage of ${show(values.voltage)} V`],
+    ];
+    const same = !given && changed(values).length === 0, rows = [];
+    for (const [id, key, highest, lowest, x, at] of axes) {
+      const points = curve(values, given, key, highest, lowest);
+      const other = same ? [] : curve({ ...defaults, f_ext: values.f_ext, voltage: values.voltage }, false, key, highest, lowest);
+      const mark = found && { x: values[key], y: found.mu_app };
+      const title = `${mu} over ${x} at a ${at}`;
+      plot.draw(find(id), { x, y: mu, points, other: other.filter((p) => p.y !== null), mark, error: data.known.error.mu_app, title });
+      const missing = points.filter((p) => p.y === null).length;
+      find("caption_" + (key === "f_ext" ? "force" : "voltage")).textContent = `Over ${x} at a ${at}. ` +
+        (given ? "The curve is dashed, since its error is not known." : `Shaded: known error${same ? "" : " with the defaults"}; dashed: error not known.`) +
+        (same ? "" : " Dotted: the default friction, coating, roughness and finger.") +
+        (missing ? ` ${missing} of ${points.length} points have no equilibrium and are left out.` : "");
+      rows.push(...points.map((p) => [key === "voltage" ? values.f_ext : p.x, key === "voltage" ? p.x : values.voltage, p.y]));
+    }
+    const head = ["f_ext (N/m)", "U (V)", "µ_app"].map((text) => create("th", { scope: "col" }, text));
+    find("curves").replaceChildren(create("table", {}, create("thead", {}, create("tr", {}, ...head)), create("tbody", {},
+      ...rows.map((row) => create("tr", {}, ...row.map((v, k) =>
+        create("td", {}, v === null ? "none" : k < 2 ? show(v, 5) : v.toFixed(4))))))));
+  }
+
+  function command(values, given) {
+    const set = fields.filter((field) => !FOOTPRINT.includes(field.key) && values[field.key] !== defaults[field.key]);
+    if (!given)
+      return ["fingerpad estimate", ...set.map((field) => `--set ${field.key}=${values[field.key]}`)].join(" ");
+    const tables = {};
+    for (const { key } of set) {
+      const [table, name] = key.includes(".") ? key.split(".") : ["", key];
+      (tables[table] = tables[table] || []).push([name, values[key]]);
+    }
+    const words = Object.entries(tables).flatMap(([table, entries]) => table
+      ? [`${table}={${entries.map(([name, value]) => `"${name}": ${value}`).join(", ")}}`]
+      : entries.map(([name, value]) => `${name}=${value}`));
+    return "import fingerpad as fp\nfrom fingerpad.reduced import cylinders\n" +
+      `print(cylinders.solve(fp.Scene(${words.join(", ")}), cylinders.given(${values.length}, ${values.ridges})))`;
+  }
+
+  function update() {
+    const asked = read(), answers = find("answers");
+    answers.classList.toggle("stale", asked === null);
+    find("refusal").textContent = asked === null ? "A field is refused; the numbers below are those before." : "";
+    if (asked === null) {
+      find("always").textContent = "A field is refused.";
+      return;
+    }
+    const { values, given } = asked, found = answer(values, given), text = typeof found === "string";
+    find("refusal").textContent = text ? `No answer at this point: ${found}.` : "";
+    if (text) find("point").tBodies[0].replaceChildren();
+    else show_point(found, values, given);
+    if (text) find("notes").textContent = "";
+    else remarks(found, values, given);
+    find("always").textContent = text ? "No answer at this point." : `µ_app ${find("value_mu_app").textContent}`;
+    find("command").textContent = command(values, given);
+    draw(values, given, text ? null : found);
+  }
+
+  let waiting = 0;
+  function later() { // once a frame at most
+    cancelAnimationFrame(waiting);
+    waiting = requestAnimationFrame(update);
+  }
+
+  document.documentElement.className = "js";
+  add_fields();
+  find("fields").onsubmit = (event) => event.preventDefault();
+  for (const name of ["default", "given"]) find("finger_" + name).onchange = update;
+  for (const id of ["fields", "answers", "always"]) find(id).hidden = false;
+  fields.forEach(slide);
+  update();
+  addEventListener("resize", later);
+})();

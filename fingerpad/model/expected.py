@@ -1,0 +1,77 @@
+r"""What a run of a scene will take, by a rule from kept runs; within a factor of 2 where the scene is like theirs.
+
+Processor time of the path is factorisations times unknowns times a constant. Factorisations are those of a press, a
+charge and a slide to full slip. How they grow with the loads is fitted to the 40 full runs of ``docs/models.json``, and
+their number is that of the default run of ``docs/performance.json`` (0.52 to 0.81 times the 40 runs, which an older
+program made):
+
+.. math:: n = 113.5 \, (f_{ext} / 75 N/m)^{0.33} \, e^{0.74 (U / 200 V)^2}
+
+of which the three loads of the default run have 0.26, 0.10 and 0.64; these shares and the factors of the formulations
+are those of ``docs/chart.json``. The time, the shares of the error estimate and of set-up and output, and the time to
+compile the forms are those of ``docs/performance.json``. ``tests/test_command_mesh.py`` derives all of them again.
+"""
+
+import math
+from dataclasses import dataclass
+
+from fingerpad.model.memory import estimate
+from fingerpad.model.options import ModelOptions
+from fingerpad.scene import Load, Scene
+
+RUNS, FORCE, VOLTAGE = 113.5, 0.33, 0.74
+SHARES = {"force": 0.26, "voltage": 0.10, "slide": 0.64}
+FORMULATIONS = {"penalty": 1.0, "nitsche": 1.85, "augmented": 7.15}
+SECONDS = 2.66e-6  # of the processor, for a factorisation and an unknown
+ERRORS, BESIDE = 0.308, 0.136  # of the path's time: the error estimate; start, set-up and output
+COMPILING = 9.0  # s of the processor, once for each version and machine
+FACTOR = 2.0  # of the true cost and the expected one, either way, where the scene is like those of the kept runs
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What a run will take, roughly; times are of the processor (s)."""
+
+    factorisations: float
+    path: float
+    """Time of the loads."""
+    errors: float
+    """Time of the error estimate; zero without one."""
+    beside: float
+    """Time of start, set-up and output, without compiling."""
+
+    @property
+    def seconds(self) -> float:
+        """Time of the whole run (s)."""
+        return self.path + self.errors + self.beside
+
+
+def expected(scene: Scene, needed: ModelOptions) -> Cost:
+    """Return what the path of a scene's loads will take on the mesh that it starts from."""
+    loads = factorisations(scene)
+    path = sum(by_load(scene, needed))
+    return Cost(sum(loads), path, ERRORS * path if needed.errors else 0.0, BESIDE * path)
+
+
+def by_load(scene: Scene, needed: ModelOptions) -> list[float]:
+    """Return the processor time (s) of each load."""
+    unknowns = estimate(scene, needed).unknowns
+    return [SECONDS * number * unknowns for number in factorisations(scene)]
+
+
+def factorisations(scene: Scene) -> list[float]:
+    """Return the number of factorisations of each load."""
+    f_ext, voltage, found = 0.0, 0.0, []
+    for load in scene.loads():
+        f_ext = load.f_ext if load.f_ext is not None else f_ext
+        voltage = load.voltage if load.voltage is not None else voltage
+        force = max(f_ext, 1.0) / 75.0
+        found.append(_share(load) * RUNS * force**FORCE * math.exp(VOLTAGE * (voltage / 200.0) ** 2))
+    factor = FORMULATIONS[scene.contact.formulation] / scene.numerics.step_scale
+    return [number * factor for number in found]
+
+
+def _share(load: Load) -> float:
+    share = SHARES["slide"] if load.bone_x is not None else 0.0
+    share += SHARES["voltage"] if load.voltage is not None else 0.0
+    return share + (SHARES["force"] if load.f_ext is not None or load.bone_height is not None else 0.0)

@@ -1,0 +1,213 @@
+"""The deformed finger and its skin state by state, as the page's program steps through them.
+
+Energy densities become an image on a grid, log10 of kPa in hundredths as 16-bit integers: a tenth of the size of the
+triangles.
+"""
+
+import base64
+import csv
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.tri import Triangulation
+from numpy.lib.npyio import NpzFile
+from numpy.typing import NDArray
+
+from fingerpad.io.finger_picture import interfaces
+from fingerpad.io.result import Result
+from fingerpad.io.states import WORDS, partial_slip
+from variational.state import ContactState
+
+Array = NDArray[np.float64]
+_MM, _UM, _KPA = 1e3, 1e6, 1e-3
+_COLUMNS = 520  # of the grid
+_MOST = 12  # states with an image
+_EMPTY = 32767
+_Tables = dict[str, dict[tuple[str, int], tuple[float, float]]]
+_BELOW, _ABOVE, _BESIDE = -0.15, 1.25, 0.6  # mm of the view around the contact
+
+
+class _Frame(NamedTuple):
+    label: str
+    state: ContactState | None
+    finger: str
+    """Stem of the file of its finger; empty without one."""
+    skin: str
+    """Stem of the file of its skin."""
+    prefix: str
+    """Of the skin's arrays there."""
+    table: str = "ridges"
+    """Name of the table of its ridges."""
+    row: str = ""
+    """Its step, or its name, there."""
+
+
+def frames(result: Result) -> dict[str, Any]:
+    """Return the states that a folder has arrays of, ready for JSON; empty without any."""
+    folder = result.folder
+    if folder is None or result.model != "full":
+        return {}
+    tables = {name: _ridges(folder / f"{name}.csv") for name in ("ridges", "ridges_final")}
+    found = [(frame, _skin(folder, frame, tables)) for frame in _listed(result)]
+    view = _view([skin for _, skin in found if skin])
+    if view is None:
+        return {}
+    images = _chosen([frame.finger for frame, _ in found if (folder / f"{frame.finger}.npz").is_file()])
+    shown = []
+    for frame, skin in found:
+        finger = _finger(folder / f"{frame.finger}.npz", view) if frame.finger in images else None
+        if skin or finger:
+            shown.append({"label": frame.label, "about": _about(frame.state), "skin": skin, "finger": finger})
+    return {"view": view, "frames": shown} if shown else {}
+
+
+def _listed(result: Result) -> Iterator[_Frame]:
+    partial = partial_slip(result.steps) if result.charged is not None and result.steps else None
+    ends = [
+        _Frame(
+            f"end of {load.name}",
+            load.end,
+            f"finger_{_file(load.name)}",
+            f"surface_{_file(load.name)}",
+            "end",
+            row=str(load.end.step),
+        )
+        for load in result.loads
+    ]
+    for frame in ends:
+        if partial is not None and frame.state is not None and frame.state.step > partial.step:
+            yield _Frame("partial slip", partial, "", "surface", "partial", row=str(partial.step))
+            partial = None
+        yield frame
+    for name, prefix in (("charged", "normal"), ("full_slip", "slip")):
+        stem = f"finger_{_file(WORDS[name])}"
+        if result.folder is not None and (result.folder / f"{stem}.npz").is_file():
+            yield _Frame(
+                f"{WORDS[name]}, final mesh", getattr(result, name), stem, "surface", prefix, "ridges_final", name
+            )
+
+
+def _file(words: str) -> str:
+    return words.replace(" ", "_")
+
+
+def _about(state: ContactState | None) -> str:
+    if state is None:
+        return ""
+    words = f"{state.f_ext:.4g} N/m, {state.voltage:.4g} V, bone at {_MM * state.bone_x + 0.0:.4g} mm"
+    slip = f", µ = {state.mu_app:.3f}" if abs(state.f_t) > 1e-9 * abs(state.f_ext) else ""
+    return f"{words}{slip}, L_R = {_MM * state.contact_length:.3f} mm, {state.ridges_in_contact} ridges in contact"
+
+
+def _open(file: Path) -> NpzFile | None:
+    try:
+        found = np.load(file, allow_pickle=False)
+    except (OSError, ValueError, EOFError):
+        return None
+    return found if isinstance(found, NpzFile) else None
+
+
+def _ridges(file: Path) -> dict[tuple[str, int], tuple[float, float]]:
+    """Return length in contact (mm) and mean pressure (kPa) by state, a step or a name, and number of the ridge."""
+    try:
+        with file.open(encoding="utf-8", newline="") as table:
+            return {
+                (row.get("of") or row["step"], int(row["ridge"])): (
+                    round(_MM * float(row["contact_length"]), 4),
+                    round(_KPA * float(row["p_c"]), 2),
+                )
+                for row in csv.DictReader(table)
+            }
+    except (OSError, KeyError, ValueError, TypeError):
+        return {}
+
+
+def _skin(folder: Path, frame: _Frame, tables: _Tables) -> list[dict[str, Any]]:
+    """Return the ridges of a state, each with its places (mm, height in µm), stresses (kPa) and gap (µm)."""
+    kept = _open(folder / f"{frame.skin}.npz")
+    if kept is None:
+        return []
+    try:
+        with kept:
+            x, y, p, t, p_el, d_eq, ridge = (
+                np.asarray(kept[f"{frame.prefix}_{name}"], dtype=float)
+                for name in ("x", "y", "p", "t", "p_el", "d_eq", "ridge")
+            )
+    except (KeyError, OSError, ValueError, EOFError):
+        return []
+    found = []
+    for number in np.unique(ridge[np.isfinite(ridge)]):
+        mine = ridge == number
+        gap = float(d_eq[mine][0])
+        length, mean = tables[frame.table].get((frame.row, int(number)), (0.0, 0.0))
+        found.append(
+            {
+                "ridge": int(number),
+                "x": _rounded(_MM * x[mine], 4),
+                "y": _rounded(_UM * y[mine], 2),
+                "p": _rounded(_KPA * p[mine], 2),
+                "t": _rounded(_KPA * t[mine], 2),
+                "p_el": _rounded(_KPA * p_el[mine], 2),
+                "gap": round(_UM * gap, 4) if np.isfinite(gap) else None,
+                "length": length,
+                "mean": mean,
+            }
+        )
+    return found
+
+
+def _rounded(values: Array, digits: int) -> list[float | None]:
+    return [round(float(v), digits) + 0.0 if np.isfinite(v) else None for v in values]
+
+
+def _view(skins: list[list[dict[str, Any]]]) -> list[float] | None:
+    """Return left, right, lower and upper end (mm) of one view for all states: the skin that touches in any of them."""
+    touching = [x for skin in skins for ridge in skin if ridge["length"] > 0 for x in ridge["x"] if x is not None]
+    if not touching:
+        return None
+    return [round(min(touching) - _BESIDE, 3), round(max(touching) + _BESIDE, 3), _BELOW, _ABOVE]
+
+
+def _chosen(stems: list[str]) -> set[str]:
+    """Return the states that get an image, spread over all."""
+    places = np.unique(np.linspace(0, len(stems) - 1, min(len(stems), _MOST)).round().astype(int)) if stems else []
+    return {stems[int(k)] for k in places}
+
+
+def _finger(file: Path, view: list[float]) -> dict[str, Any] | None:
+    """Return the energy density on a grid and the lines between layers; None where the file cannot be read."""
+    kept = _open(file)
+    if kept is None:
+        return None
+    try:
+        with kept:
+            xy = np.asarray(_MM * (kept["x"] + kept["u"]), dtype=float)
+            triangles = kept["triangles"]
+            density, tag = _KPA * kept["sed"], kept["tag"]
+    except (KeyError, OSError, ValueError, EOFError):
+        return None
+    left, right, bottom, top = view
+    corners = xy[triangles]
+    near = (corners[:, :, 0].max(axis=1) > left) & (corners[:, :, 0].min(axis=1) < right)
+    near &= corners[:, :, 1].min(axis=1) < top
+    x = np.linspace(left, right, _COLUMNS)
+    y = np.arange(0.5 * (x[1] - x[0]), top, x[1] - x[0])  # the screen is at 0
+    finder = Triangulation(xy[:, 0], xy[:, 1], triangles[near]).get_trifinder()
+    cells = np.asarray(finder(*np.meshgrid(x, y)), dtype=int)  # -1 outside
+    level = np.round(100 * np.log10(np.maximum(density[near], 1e-9))).astype("<i2")
+    image = np.where(cells >= 0, level[cells], _EMPTY).astype("<i2")
+    lines = np.concatenate(interfaces(triangles, tag))
+    low, high = np.array([left, bottom]), np.array([right, top])
+    inside = ((xy[lines] >= low) & (xy[lines] <= high)).all(axis=(1, 2))
+    segments = np.round(1e3 * xy[lines[inside]]).astype(int)  # µm, shape (lines, 2, 2)
+    known = image[image != _EMPTY]
+    return {
+        "image": base64.b64encode(image.tobytes()).decode(),
+        "shape": list(image.shape),
+        "x": [round(float(x[0]), 5), round(float(x[1] - x[0]), 7)],
+        "y": [round(float(y[0]), 5), round(float(y[1] - y[0]), 7)],
+        "highest": float(np.quantile(known, 0.999)) / 100 if known.size else 0.0,
+        "lines": segments.reshape(-1, 4).tolist(),
+    }

@@ -1,0 +1,96 @@
+"""Every parameter of a scene with unit, value and source; how to run it again, and how to cite it."""
+
+import json
+import re
+import shlex
+from collections.abc import Container, Mapping
+from typing import Any
+
+from fingerpad.report.page import folded, paragraph, table, text
+from fingerpad.scene import Scene
+
+PAPER = (
+    "Forsbach, F., Heß, M., Papangelo, A. (2023). A two-scale FEM-BAM approach for fingerpad friction under "
+    "electroadhesion. Frontiers in Mechanical Engineering. doi:10.3389/fmech.2022.1074393"
+)
+
+
+def flat(parameters: Mapping[str, Any], where: str = "") -> dict[str, Any]:
+    """Return the parameters of a scene by dotted key; entries of lists of tables as ``history[0].f_ext``."""
+    found: dict[str, Any] = {}
+    for key, value in parameters.items():
+        name = where + key
+        if isinstance(value, Mapping):
+            found |= flat(value, f"{name}.")
+        elif isinstance(value, list | tuple) and value and all(isinstance(each, Mapping) for each in value):
+            for k, each in enumerate(value):
+                found |= flat(each, f"{name}[{k}].")
+        else:
+            found[name] = value
+    return found
+
+
+def changed(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the parameters that are not those of the default scene, by dotted key."""
+    default = flat(json.loads(json.dumps(Scene().parameters())))
+    given = flat(json.loads(json.dumps(parameters)))
+    return {key: value for key, value in given.items() if key not in default or default[key] != value}
+
+
+def all_of(parameters: Mapping[str, Any], varied: Container[str] = ()) -> str:
+    """Return the table of every parameter; those that are not the default are marked.
+
+    Args:
+        parameters: of a scene.
+        varied: keys without a value of their own, since a sweep varies them.
+    """
+    from fingerpad.scene.keys import every  # reads the docstrings of the models
+
+    keys, other, rows = {key.name: key for key in every()}, changed(parameters), []
+    for name, value in flat(parameters).items():
+        key = keys.get(re.sub(r"\[\d+\]", "[]", name))
+        shown = "varied" if name in varied else _shown(value)
+        of = "the sweep" if name in varied else "this scene" if name in other else "default"
+        rows.append((name, shown, key.unit if key else "", of, key.meaning if key else ""))
+    heads = ("key", "value", "unit", "chosen by", "meaning and source")
+    note = "SI units. Without another source a default is the paper's; “Assumption” marks a choice that it leaves open."
+    return folded(f"All {len(rows)} parameters", paragraph(note), table(heads, rows, "parameters"))
+
+
+def again(parameters: Mapping[str, Any], model: str, folder: str) -> str:
+    """Return how a run is repeated."""
+    if parameters.get("laws"):
+        return paragraph(
+            f"The scene has laws of its own, written in Python ({parameters['laws']}); run the program that made them."
+        )
+    given = {key: value for key, value in changed(parameters).items() if key != "model"}
+    option = "" if model == "full" else f" --model {model}"
+    if any("[" in key or isinstance(value, list) or value is None for key, value in given.items()):
+        code = (
+            "import json\nimport fingerpad as fp\nfrom fingerpad.scene import from_data\n\n"
+            f'scene = from_data(json.load(open("scene.json")))  # in this folder\n'
+            f'fp.run(scene, model="{model}", out="results/again")'
+        )
+        return f"<pre><code>{text(code)}</code></pre>"
+    options = "".join(f" --set {shlex.quote(f'{key}={_toml(value)}')}" for key, value in given.items())
+    return f"<pre><code>{text(f'fingerpad run{options}{option} --out results/again')}</code></pre>"
+
+
+def cite() -> str:
+    """Return what is cited."""
+    return paragraph("Please cite the program, by its version above, and the paper whose model it implements:") + (
+        f"<blockquote>fingerpad: two-scale finite element model of a fingertip under electroadhesion.</blockquote>"
+        f"<blockquote>{text(PAPER)}</blockquote>"
+    )
+
+
+def _toml(value: Any) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value) if isinstance(value, str) else repr(value)
+
+
+def _shown(value: Any) -> str:
+    if value is None:
+        return "–"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

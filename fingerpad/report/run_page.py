@@ -1,0 +1,321 @@
+"""The report of a run: what was asked and modelled, key numbers and their trust, charts, pictures, parameters."""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
+from fingerpad.io.result import Result
+from fingerpad.io.states import WORDS, before_sliding
+from fingerpad.report import page as html
+from fingerpad.report import parameters, trust
+from fingerpad.report.frames import frames
+
+_MM = 1e3
+_MARKS = {trust.GOOD: "✓ holds", trust.CARE: "! care", trust.BAD: "✗ fails"}
+_LINKS = {
+    "asked": "Asked", "numbers": "Numbers", "trust": "Trust", "finger": "Finger", "sliding": "Sliding",
+    "pictures": "Pictures", "model": "Model", "solver": "Solver", "parameters": "Parameters", "reproduce": "Reproduce",
+}  # fmt: skip
+_SAID = {
+    "history.png": "Friction force, contact length and ridges in contact over sliding",
+    "surface.png": "Pressure, shear traction, attraction and gap along the skin in the named states",
+}
+
+
+def page(result: Result) -> str:
+    """Return the page of a run."""
+    shown = frames(result)
+    title = f"fingerpad: {_conditions(result)}"
+    sections = [
+        _asked(result),
+        _numbers(result),
+        _trust(result),
+        _finger(shown),
+        _sliding(result),
+        _pictures(result.folder),
+        _model(result),
+        _solver(result),
+        html.section("parameters", "Parameters", parameters.all_of(_parameters(result))),
+        _reproduce(result),
+    ]
+    links = "".join(
+        f'<a href="#{name}">{words}</a>' for name, words in _LINKS.items() if any(f'id="{name}"' in s for s in sections)
+    )
+    body = "\n".join([_head(result), f"<nav>{links}</nav>", *sections])
+    return html.page(title, body, {"finger": shown, "steps": _columns(result), "errors": _errors(result)})
+
+
+def _parameters(result: Result) -> Mapping[str, Any]:
+    return result.record.get("parameters") or result.scene.parameters()
+
+
+def _conditions(result: Result) -> str:
+    last = result.full_slip or result.charged or result.last
+    if last is None:
+        return "a run without a result"
+    return f"{last.f_ext:.4g} N/m, {last.voltage:.4g} V"
+
+
+def _head(result: Result) -> str:
+    """Return the finding: the largest number of the page, and whether to rely on it."""
+    kind, words = trust.verdict(trust.findings(result))
+    slip, charged = result.full_slip, result.charged
+    if slip is not None:
+        value = cell("mu_app", slip.mu_app, slip.error.mu_app)
+        number = f"µ<sub>app</sub> = {html.text(value)}"
+        friction = result.scene.friction if "laws" not in _parameters(result) else None
+        factor = f", {slip.mu_app / friction:.2f} times the {friction:.3g} without attraction" if friction else ""
+        said = f"apparent friction coefficient at full slip{factor}; {_conditions(result)}"
+    elif charged is not None:
+        value = cell("contact_length", charged.contact_length, charged.error.contact_length)
+        number = f"L<sub>R</sub> = {html.text(value)} mm"
+        said = f"contact length in charged normal contact; {_conditions(result)}"
+    else:
+        number, said = "No contact state was kept", _conditions(result)
+    where = "" if result.folder is None else f" · {html.text(result.folder.resolve().name)}"
+    return (
+        f'<header><p class="kind">fingerpad · report of a run{where}</p><h1>{number}</h1>'
+        f'<p class="said">{html.text(said)}</p>'
+        f'<p class="verdict {kind}"><b>{_MARKS[kind]}</b> {html.text(words)}</p></header>'
+    )
+
+
+def _asked(result: Result) -> str:
+    rows = []
+    for load in result.scene.loads():
+        given = {
+            "external force": (load.f_ext, 1.0, "N/m"),
+            "bone height": (load.bone_height, _MM, "mm"),
+            "voltage": (load.voltage, 1.0, "V"),
+            "bone sideways": (load.bone_x, _MM, "mm"),
+        }
+        words = [
+            f"{name} to {value * scale:.4g} {unit}" for name, (value, scale, unit) in given.items() if value is not None
+        ]
+        words += ["ends at full slip"] if load.until_full_slip else []
+        reached = [end for end in result.loads if end.name == load.name]
+        rows.append((load.name, ", ".join(words), _cell(reached)))
+    return html.section(
+        "asked",
+        "What was asked",
+        html.paragraph("A fingertip on a charged screen, loaded in this order:"),
+        html.table(("load", "change", "state at its end"), rows),
+        html.paragraph(PER_LENGTH, "note"),
+    )
+
+
+def _cell(reached: list[Any]) -> str:
+    if not reached:
+        return "–"
+    end = reached[0].end
+    friction = f", f_T {end.f_t:.4g} N/m" if abs(end.f_t) > 1e-9 * max(abs(end.f_ext), 1e-9) else ""
+    return f"{end.f_ext:.4g} N/m, {end.voltage:.4g} V, bone at {_MM * end.bone_x + 0.0:.4g} mm{friction}"
+
+
+def _numbers(result: Result) -> str:
+    if not result.named:
+        return html.section("numbers", "Key numbers", html.paragraph("The run has no named state."))
+    rows = []
+    for key, quantity in QUANTITIES.items():
+        cells = [
+            "–" if key in ("mu_app", "f_t") and name != "full_slip" else cell(key, value, error)
+            for name, state in result.named.items()
+            for value, error in [(getattr(state, key), getattr(state.error, key, math.nan))]
+        ]
+        if set(cells) - {"–"}:
+            rows.append((f"{quantity.words}{f' ({quantity.unit})' if quantity.unit else ''}", *cells))
+    slip = result.full_slip
+    notes = []
+    if any(state.error.known() for state in result.named.values()):
+        notes.append("±: estimated discretisation error, of the mesh alone.")
+    if slip is not None and not math.isnan(slip.penalty.contact_length):
+        change = f"{slip.penalty.mu_app:+.2g}, and the contact length by {_MM * slip.penalty.contact_length:+.2g} mm"
+        notes.append(f"Contact is a penalty: a rigid screen would change µ_app at full slip by {change}.")
+    heads = ("", *(WORDS[name] for name in result.named))
+    return html.section("numbers", "Key numbers", html.table(heads, rows, "numbers"), html.items(notes))
+
+
+def _trust(result: Result) -> str:
+    found = trust.findings(result)
+    lines = "".join(
+        f'<li class="{each.verdict}"><b>{_MARKS[each.verdict]}</b> <span><strong>{html.text(each.what)}.</strong> '
+        f"{html.text(each.words)}</span></li>"
+        for each in found
+    )
+    note = (
+        "All this is about the mathematics. The least certain input is the finger: ridge tips and roughness move µ_app "
+        "by 10 % and more (docs/assumptions.md)."
+    )
+    return html.section(
+        "trust", "Can these numbers be relied on?", f'<ul class="findings">{lines}</ul>', html.paragraph(note)
+    )
+
+
+def _finger(shown: dict[str, Any]) -> str:
+    if not shown:
+        return ""
+    labels = [frame["label"] for frame in shown["frames"]]
+    last = len(labels) - 1
+    options = "".join(f'<option value="{k}">{html.text(label)}</option>' for k, label in enumerate(labels))
+    controls = f"""<div class="controls needs-js">
+<label for="state">State</label><button type="button" id="back" aria-label="state before">◀</button>
+<input type="range" id="state" min="0" max="{last}" step="1" value="{last}">
+<button type="button" id="forth" aria-label="next state">▶</button>
+<select id="states" aria-label="state by name">{options}</select>
+</div><p class="about needs-js" id="about" aria-live="polite"></p>
+<div class="controls needs-js"><label for="ridge">Ridge</label>
+<select id="ridge"></select><output id="under" aria-live="polite"></output></div>"""
+    charts = (
+        html.chart("body", "Strain energy density in the deformed finger near the contact"),
+        html.chart("skin", "Contact pressure, attraction and shear traction along the skin"),
+        html.chart("one", "Contact pressure, attraction and height above the screen along one ridge"),
+    )
+    rows = [(frame["label"], peak, gap) for frame in shown["frames"] for peak, gap in [_extremes(frame["skin"])]]
+    heads = ("state", "highest contact pressure (kPa)", "air gap of the ridges in contact (µm)")
+    return html.section(
+        "finger",
+        "The deformed finger, state by state",
+        html.paragraph(
+            "Move the slider through the saved states. Point at a ridge, or choose it, to read its values.", "needs-js"
+        ),
+        controls,
+        *charts,
+        '<noscript><p class="note">The slider and charts need JavaScript; numbers and pictures do not.</p></noscript>',
+        html.table(heads, rows),
+    )
+
+
+def _extremes(skin: list[dict[str, Any]]) -> tuple[str, str]:
+    peak = max((value for ridge in skin for value in ridge["p"] if value is not None), default=None)
+    gaps = [ridge["gap"] for ridge in skin if ridge["length"] > 0 and ridge["gap"] is not None]
+    return ("–" if peak is None else f"{peak:.1f}", f"{min(gaps):.2f} to {max(gaps):.2f}" if gaps else "–")
+
+
+def _sliding(result: Result) -> str:
+    still = len(before_sliding(result.steps))
+    if still in (0, len(result.steps)):
+        return ""
+    rows = [
+        (
+            str(state.step), f"{_MM * state.bone_x:.4g}", f"{state.f_t:.3f}", f"{state.mu_app:.4f}",
+            f"{_MM * state.contact_length:.4f}", str(state.ridges_in_contact),
+            "jump" if state.record is not None and state.record.jump else "",
+        )
+        for state in result.steps[still - 1 :]
+    ]  # fmt: skip
+    heads = ("step", "bone x (mm)", "f_T (N/m)", "µ_app", "L_R (mm)", "ridges", "jump")
+    return html.section(
+        "sliding",
+        "Friction and contact length over sliding",
+        html.paragraph("Dotted lines and crosses mark steps in which part of the skin jumped."),
+        html.chart("friction", "Friction and contact length over the sideways displacement of the bone"),
+        html.folded("The same as a table", html.table(heads, rows)),
+    )
+
+
+def _pictures(folder: Path | None) -> str:
+    if folder is None:
+        return ""
+    fingers = sorted(folder.glob("finger_*.png"))
+    files = [(folder / name, words) for name, words in _SAID.items()]
+    files += [(file, f"Deformed finger: {file.stem.removeprefix('finger_').replace('_', ' ')}") for file in fingers[:4]]
+    more = f"{len(fingers) - 4} more pictures of the finger are in the folder." if len(fingers) > 4 else ""
+    drawn = [html.picture(file, words) for file, words in files]
+    return html.section("pictures", "Pictures", *drawn, html.paragraph(more, "note") if more else "")
+
+
+def _model(result: Result) -> str:
+    laws = result.record.get("laws") or {}
+    rows = [(name.replace("_", " "), law) for name, law in laws.items()] if isinstance(laws, dict) else []
+    omitted = [f"{each['what']}: {each['reason']}" for each in result.record.get("omitted") or []]
+    always = (
+        "Never in the model: inertia, viscous skin, waves, leakage of charge, moisture, the deformation and roughness "
+        "of the screen, and the direction along the finger (plane strain). See docs/model.md."
+    )
+    kinds = {"full": "Every ridge of the cross-section", "smooth": "A smooth finger with the law of one ridge"}
+    first = f"{kinds.get(result.model, 'A closed form of charged cylinders')} (model {result.model!r})."
+    unknowns = f" {result.cost.unknowns} unknowns." if result.cost.unknowns else ""
+    left = html.items(omitted) if omitted else html.paragraph("Nothing of the scene was left out.")
+    return html.section(
+        "model",
+        "What was modelled, and what was left out",
+        html.paragraph(first + unknowns),
+        html.table(("part", "law"), rows) if rows else "",
+        "<h3>Left out</h3>",
+        left,
+        html.paragraph(always, "note"),
+        "".join(html.paragraph(note, "note") for note in result.notes),
+    )
+
+
+def _solver(result: Result) -> str:
+    cost = result.cost
+    rows = [
+        (name, value)
+        for name, value in (
+            ("wall time", f"{cost.wall_seconds:.0f} s"),
+            ("processor time", f"{cost.processor_seconds:.0f} s"),
+            ("memory", f"{cost.memory_mb:.0f} MB"),
+            ("ranks", str(cost.ranks)),
+            ("unknowns", str(cost.unknowns)),
+            ("Newton iterations of the loading path", str(cost.newton_iterations)),
+            ("its factorisations", str(cost.factorisations)),
+        )
+        if value not in ("0", "0 s", "0 MB")
+    ]
+    known = any(state.record is not None for state in result.steps)
+    drawn = html.chart("work", "Newton iterations, factorisations and cut steps over the steps") if known else ""
+    return html.section("solver", "Solver history", drawn, html.table(("", "whole run"), rows) if rows else "")
+
+
+def _reproduce(result: Result) -> str:
+    found = result.record.get("provenance") or {}
+    versions = found.get("versions", {}) if isinstance(found, dict) else {}
+    rows = [(name, str(version)) for name, version in versions.items()]
+    return html.section(
+        "reproduce",
+        "How to reproduce and cite",
+        parameters.again(_parameters(result), result.model, ""),
+        html.folded("Versions", html.table(("program", "version"), rows)) if rows else "",
+        parameters.cite(),
+    )
+
+
+def _columns(result: Result) -> dict[str, list[Any]]:
+    """Return the steps as columns in the units of tables."""
+    steps = result.steps
+    first = max(len(before_sliding(steps)) - 1, 0) if steps else 0
+    found: dict[str, list[Any]] = {
+        "step": [state.step for state in steps],
+        "load": [state.load for state in steps],
+        "x": [_number(_MM * state.bone_x) for state in steps],
+        "f_t": [_number(state.f_t) for state in steps],
+        "mu_app": [_number(state.mu_app) for state in steps],
+        "length": [_number(_MM * state.contact_length) for state in steps],
+        "first": [first],
+    }
+    for key in ("newton_iterations", "factorisations", "cutbacks", "jump"):
+        found[key] = [0 if state.record is None else int(getattr(state.record, key)) for state in steps]
+    return found
+
+
+def _errors(result: Result) -> list[dict[str, Any]]:
+    """Return the named states with an error, for the charts of sliding."""
+    return [
+        {
+            "name": WORDS[name],
+            "x": _number(_MM * state.bone_x),
+            "mu_app": _number(state.mu_app) if name == "full_slip" else None,
+            "mu_app_error": _number(state.error.mu_app),
+            "length": _number(_MM * state.contact_length),
+            "length_error": _number(_MM * state.error.contact_length),
+        }
+        for name, state in result.named.items()
+        if state.error.known()
+    ]
+
+
+def _number(value: float) -> float | None:
+    return float(f"{value:.6g}") + 0.0 if math.isfinite(value) else None

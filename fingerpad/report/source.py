@@ -1,0 +1,123 @@
+"""What a folder holds: a run, an unfinished run, or a sweep; no dolfinx."""
+
+import csv
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from fingerpad.io.result import Result
+from fingerpad.io.states import by_load, load_result, named
+from fingerpad.scene import SceneError, from_data
+from fingerpad.scene.messages import clip
+from variational.state import ContactState
+
+_STATES = ("uncharged_", "normal_", "slip_")
+_MODELS = ("full", "smooth")
+
+
+@dataclass(frozen=True)
+class Table:
+    """The table of a sweep, as text."""
+
+    folder: Path
+    axes: tuple[str, ...]
+    """Keys that are varied."""
+    rows: tuple[dict[str, str], ...]
+    parameters: dict[str, Any] | None
+    """Every parameter of one of its runs; None where none is in the folder."""
+
+
+def read(folder: Path) -> Result | Table:
+    """Return what is in a folder.
+
+    Raises:
+        SceneError: nothing that a report can be made of, in one sentence.
+    """
+    name = clip(str(folder), 80)
+    if not folder.is_dir():
+        raise SceneError(f"{name} is not a folder; give one that fingerpad run or fingerpad sweep wrote")
+    if (folder / "summary.json").exists():
+        return _run(folder)
+    if (folder / "table.csv").exists():
+        return _sweep(folder)
+    if (folder / "steps.csv").exists():
+        return _unfinished(folder)
+    done = sum(1 for model in _MODELS for _ in (folder / model).glob("*/summary.json"))
+    if done or any((folder / model).glob("*/asked.json") for model in _MODELS if (folder / model).is_dir()):
+        raise SceneError(f"the sweep in {name} has not ended ({done} runs are there); give its command again to go on")
+    if (folder / "scene.json").exists():
+        raise SceneError(f"the run in {name} has no accepted step yet; make the report when it has one")
+    raise SceneError(f"{name} holds no results of fingerpad; give a folder that fingerpad run or fingerpad sweep wrote")
+
+
+def _run(folder: Path) -> Result:
+    name = clip(str(folder), 80)
+    try:
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        if set(summary) == {"failure"}:
+            raise SceneError(f"the run in {name} was refused and has no results: {summary['failure']}")
+        if summary.get("model", "full") == "full" and not (folder / "steps.csv").exists():  # no step was accepted
+            return Result.from_dict(summary, folder)
+        return Result.load(folder)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:  # JSON of other things
+        if isinstance(error, SceneError):
+            raise
+        raise SceneError(f"run {name} cannot be read: summary.json is not whole, or not of a run ({error})") from None
+
+
+def _unfinished(folder: Path) -> Result:
+    """Return the steps that a run has written so far."""
+    try:
+        parameters = json.loads((folder / "scene.json").read_text(encoding="utf-8"))
+        scene = from_data({key: value for key, value in parameters.items() if key not in ("laws", "model")})
+        with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
+            rows = [row for row in csv.DictReader(file) if None not in row.values()]  # the last may be cut short
+        steps = tuple(ContactState.from_row(row) for row in rows)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise SceneError(f"the unfinished run in {clip(str(folder), 80)} cannot be read: {error}") from None
+    if not steps:
+        raise SceneError(
+            f"the run in {clip(str(folder), 80)} has no accepted step yet; make the report when it has one"
+        )
+    found = named(steps)
+    return Result(
+        scene,
+        "full",
+        found.get("uncharged"),
+        found.get("charged"),
+        found.get("full_slip"),
+        steps=steps,
+        loads=tuple(load_result(name, mine, None) for name, mine in by_load(steps)),
+        failure=f"the run has not ended, or was killed, after step {steps[-1].step}: these are its steps so far",
+        folder=folder,
+    )
+
+
+def _sweep(folder: Path) -> Table:
+    name = clip(str(folder), 80)
+    try:
+        with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
+            reader = csv.DictReader(file)
+            rows, columns = tuple(reader), list(reader.fieldnames or ())
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise SceneError(f"the table of {name} cannot be read: {error}") from None
+    axes = tuple(key for key in columns if not key.startswith(_STATES) and key != "failure")
+    if "failure" not in columns or not axes or not rows:
+        raise SceneError(f"table.csv in {name} is not the table of a sweep of fingerpad, or is cut short")
+    whole = [row for row in rows if None not in row and None not in row.values()]
+    if len(whole) < len(rows):
+        raise SceneError(f"table.csv in {name} is cut short; give the command of the sweep again to write it anew")
+    return Table(folder, axes, rows, _parameters(folder))
+
+
+def _parameters(folder: Path) -> dict[str, Any] | None:
+    for model in _MODELS:
+        for file in sorted((folder / model).glob("*/asked.json")):
+            try:
+                found = json.loads(file.read_text(encoding="utf-8"))
+            except (OSError, ValueError):
+                continue
+            if isinstance(found, dict):
+                return found
+    return None

@@ -1,0 +1,161 @@
+"""The report of a sweep: friction and contact length over what was varied, every point, and what failed and why."""
+
+import itertools
+import math
+from typing import Any
+
+from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
+from fingerpad.report import page as html
+from fingerpad.report import parameters
+from fingerpad.report.source import Table
+
+_SHOWN = ("mu_app", "f_t", "contact_length", "f_electrostatic", "ridges_in_contact")
+_CHARTS = {
+    "mu_app": "apparent friction µ_app",
+    "f_t": "friction force f_T (N/m)",
+    "contact_length": "contact length L_R (mm)",
+}
+
+
+def page(table: Table) -> str:
+    """Return the page of a sweep."""
+    title = f"fingerpad: sweep over {', '.join(table.axes)}"
+    parts = [_head(table), _study(table), _points(table), _failed(table), _parameters(table), _cite(table)]
+    return html.page(title, "\n".join(filter(None, parts)), {"sweep": _curves(table)})
+
+
+def _head(table: Table) -> str:
+    values = [value for row in table.rows if (value := _read(row.get("slip_mu_app"))) is not None]
+    if values:
+        number = f"µ<sub>app</sub> from {min(values):.3f} to {max(values):.3f}"
+    else:
+        number = "No point reached full slip"
+    failed = [row for row in table.rows if row["failure"]]
+    missing = len(table.rows) - len(values) - sum(1 for row in failed if _read(row.get("slip_mu_app")) is None)
+    kind, mark, words = "holds", "✓ holds", "Every point was computed."
+    if failed:
+        kind, mark = "fails", "✗ fails"
+        words = f"{len(failed)} of {len(table.rows)} points failed; the table of failures says why."
+    elif missing:
+        kind, mark, words = "care", "! care", f"{missing} of {len(table.rows)} points have no full slip."
+    said = f"at full slip, over {_varied(table)}"
+    return (
+        f'<header><p class="kind">fingerpad · report of a sweep · {html.text(table.folder.resolve().name)}</p>'
+        f'<h1>{number}</h1><p class="said">{html.text(said)}</p>'
+        f'<p class="verdict {kind}"><b>{mark}</b> {html.text(words)}</p></header>'
+    )
+
+
+def _varied(table: Table) -> str:
+    words = []
+    for key in table.axes:
+        values = list(dict.fromkeys(row[key] for row in table.rows))
+        shown = ", ".join(_plain(value) for value in values[:6])
+        words.append(f"{_head_of(key)}: {shown}{', …' if len(values) > 6 else ''}")
+    return "; ".join(words)
+
+
+def _study(table: Table) -> str:
+    charts = [html.chart(f"sweep_{key}", f"{words} at full slip over the sweep") for key, words in _CHARTS.items()]
+    note = "Bars are estimated discretisation errors, where a run has them."
+    without = (
+        '<noscript><p class="note">The charts need JavaScript; the table below has the same numbers.</p></noscript>'
+    )
+    return html.section("study", "Friction and contact at full slip", without, *charts, html.paragraph(note, "note"))
+
+
+def _points(table: Table) -> str:
+    rows = []
+    for row in table.rows:
+        cells = []
+        for key in _SHOWN:
+            value, error = _read(row.get(f"slip_{key}")), _read(row.get(f"slip_{key}_error"))
+            cells.append("–" if value is None else cell(key, value, math.nan if error is None else error))
+        state = "failed" if row["failure"] else "" if cells[0] != "–" else "no full slip"
+        first, *rest = (_plain(row[key]) for key in table.axes)
+        rows.append((first, *rest, *cells, state))
+    heads = [_head_of(key) for key in table.axes]
+    heads += [f"{QUANTITIES[k].words}{f' ({QUANTITIES[k].unit})' if QUANTITIES[k].unit else ''}" for k in _SHOWN]
+    return html.section(
+        "points", "Every point", html.table((*heads, ""), rows, "numbers"), html.paragraph(PER_LENGTH, "note")
+    )
+
+
+def _failed(table: Table) -> str:
+    rows = [
+        (", ".join(f"{key} = {_plain(row[key])}" for key in table.axes), row["failure"])
+        for row in table.rows
+        if row["failure"]
+    ]
+    if not rows:
+        return html.section("failed", "Failures", html.paragraph("No run failed."))
+    note = "A run that crashed or was stopped is started again by the same command; the others stay as they are."
+    return html.section(
+        "failed", "Which runs failed, and why", html.table(("point", "reason"), rows), html.paragraph(note)
+    )
+
+
+def _parameters(table: Table) -> str:
+    if table.parameters is None:
+        words = "The folder holds no scene: a closed form leaves its table alone. Its command has the parameters."
+        return html.section("parameters", "Parameters", html.paragraph(words))
+    return html.section("parameters", "Parameters", parameters.all_of(table.parameters, table.axes))
+
+
+def _cite(table: Table) -> str:
+    over = []
+    for key in table.axes:
+        values = dict.fromkeys(row[key] for row in table.rows)
+        over.append(f"--over {key}={','.join(_plain(value) for value in values)}")
+    given = {} if table.parameters is None else parameters.changed(table.parameters)
+    options = [f"--set {key}={value}" for key, value in given.items() if key not in table.axes and "[" not in key]
+    code = " ".join(["fingerpad sweep", *options, *over, "--out results/again"])
+    note = "Loads of its own in a scene file and a cheaper model are not in this line." if table.parameters else ""
+    return html.section(
+        "reproduce", "How to reproduce and cite", f"<pre><code>{html.text(code)}</code></pre>",
+        html.paragraph(note, "note") if note else "", parameters.cite(),
+    )  # fmt: skip
+
+
+def _curves(table: Table) -> dict[str, Any]:
+    """Return one curve for each value of all axes but the one along x, which is that with most numbers."""
+    numbers = {key: {row[key] for row in table.rows if _read(row[key]) is not None} for key in table.axes}
+    along = max(table.axes, key=lambda key: len(numbers[key]))
+    others = [key for key in table.axes if key != along]
+    curves = []
+
+    def of(row: dict[str, str]) -> tuple[str, ...]:
+        return tuple(row[key] for key in others)
+
+    rows = sorted(table.rows, key=lambda row: list(dict.fromkeys(map(of, table.rows))).index(of(row)))
+    for values, group in itertools.groupby(rows, key=of):
+        mine = list(group)
+        curve: dict[str, Any] = {
+            "name": ", ".join(f"{key} = {_plain(value)}" for key, value in zip(others, values, strict=True)),
+            "x": [_read(row[along]) if numbers[along] else _plain(row[along]) for row in mine],
+        }
+        for key in _CHARTS:
+            scale = QUANTITIES[key].scale
+            for name in (key, f"{key}_error"):
+                found = [_read(row.get(f"slip_{name}")) for row in mine]
+                curve[name] = [None if value is None else value * scale for value in found]
+        curves.append(curve)
+    return {"along": _head_of(along), "curves": curves, "charts": _CHARTS}
+
+
+def _head_of(key: str) -> str:
+    quantity = QUANTITIES.get(key)
+    return f"{quantity.words} ({quantity.unit})" if quantity else f"{key} (SI)"
+
+
+def _read(text: str | None) -> float | None:
+    try:
+        value = float(text or "nan")
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
+
+
+def _plain(text: str) -> str:
+    value = _read(text)
+    return text if value is None else f"{value:.6g}"

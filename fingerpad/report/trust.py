@@ -1,0 +1,147 @@
+"""Whether the numbers of a run can be relied on, in plain words: one finding for each thing that can be wrong."""
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from fingerpad.io.result import Result
+from fingerpad.io.states import WORDS
+from variational.state import ContactState
+
+GOOD, CARE, BAD = "holds", "care", "fails"
+_SMALL, _LARGE = 0.02, 0.1
+"""Relative errors of µ_app below which it is small, and above which the mesh is too coarse for more than a trend."""
+
+
+class Finding(NamedTuple):
+    """One thing that was looked at."""
+
+    what: str
+    verdict: str
+    """One of :data:`GOOD`, :data:`CARE` and :data:`BAD`."""
+    words: str
+
+
+def findings(result: Result) -> list[Finding]:
+    """Return what was looked at, in the order in which a reader needs it."""
+    found = [_end(result)]
+    found += _full_slip(result)
+    if result.model != "full":
+        words = f"The model is {result.model!r}, a cheaper one: see docs/models.md for its error beside the full model."
+        return [*found, Finding("model", CARE, words)]
+    found += [*_mesh(result), *_balance(result), *_stability(result), *_jumps(result), *_restarts(result)]
+    return found
+
+
+def verdict(found: list[Finding]) -> tuple[str, str]:
+    """Return the worst verdict and a sentence for the head of a page."""
+    bad, care = ([each for each in found if each.verdict == kind] for kind in (BAD, CARE))
+    for kind, worst, first in ((BAD, bad, "Do not use these numbers as they are"), (CARE, care, "Use with care")):
+        if worst:
+            return kind, f"{first}: {' and '.join(each.what for each in worst)}. {worst[0].words}"
+    return GOOD, "Everything that was examined holds: the numbers can be used within their ±."
+
+
+def _end(result: Result) -> Finding:
+    if result.interrupted:
+        return Finding("the run was stopped", BAD, f"{result.interrupted} ended the run. {result.failure}".strip())
+    if result.failure:
+        return Finding("the run did not finish", BAD, result.failure)
+    return Finding("end of the run", GOOD, "Every load was reached.")
+
+
+def _full_slip(result: Result) -> Iterator[Finding]:
+    if result.full_slip is not None and result.model == "full":
+        words = "Every point in contact slips one way, and the forces stayed the same over a further 0.2 mm."
+        yield Finding("full slip", GOOD, words)
+    elif result.full_slip is None and any(load.until_full_slip or load.bone_x for load in result.scene.loads()):
+        words = "No full slip was held over a further 0.2 mm, so there is no µ_app of full slip."
+        yield Finding("full slip was not reached", BAD if result.failure else CARE, words)
+
+
+def _mesh(result: Result) -> Iterator[Finding]:
+    state = result.full_slip or result.charged
+    key = "mu_app" if result.full_slip else "contact_length"
+    name = "µ_app" if result.full_slip else "the contact length"
+    if state is None:
+        return
+    error, value = getattr(state.error, key), getattr(state, key)
+    if math.isnan(error) or not value:
+        yield Finding("errors are not estimated", CARE, "This run has no estimate of its discretisation error.")
+        return
+    share = error / abs(value)
+    words = f"The estimated discretisation error of {name} is {100 * share:.2g} % of its value."
+    if share <= _SMALL:
+        yield Finding("mesh", GOOD, words)
+    else:
+        more = "good for trends" if share <= _LARGE else "too coarse for more than a trend"
+        yield Finding("the mesh is coarse", CARE, f"{words} The mesh is {more}; a smaller mesh.contact reduces it.")
+
+
+def _balance(result: Result) -> Iterator[Finding]:
+    state, floor = result.full_slip or result.charged or result.uncharged, result.record.get("force_error")
+    if state is None or math.isnan(state.f_contact):
+        return
+    left = state.f_contact - state.f_electrostatic - state.f_ext
+    words = f"Contact force less attraction less external force leaves {left:.1g} N/m of {state.f_ext:.4g} N/m."
+    if floor is None:
+        yield Finding("balance of forces", GOOD if abs(left) < 1e-3 * abs(state.f_ext) else BAD, words)
+        return
+    words += f" The solver's tolerance allows {floor:.1g} N/m."
+    yield Finding(
+        "balance of forces" if abs(left) <= floor else "forces do not balance", _worse(abs(left) > floor), words
+    )
+
+
+def _stability(result: Result) -> Iterator[Finding]:
+    known = {name: state.stable for name, state in result.named.items() if state.stable is not None}
+    if not known:
+        yield Finding("stability is not examined", CARE, "The stability of the named states was not examined.")
+        return
+    unstable = [WORDS[name] for name, stable in known.items() if not stable]
+    if unstable:
+        words = f"Unstable: {', '.join(unstable)}. A finger would leave such a state by itself."
+        yield Finding("a state is unstable", BAD, words)
+    else:
+        words = f"Examined and stable: {', '.join(WORDS[name] for name in known)}. A small disturbance dies out."
+        yield Finding("stability", GOOD, words)
+
+
+def _jumps(result: Result) -> Iterator[Finding]:
+    steps = [state for state in result.steps if _jumped(state)]
+    if not steps:
+        if result.steps:
+            yield Finding("jumps", GOOD, "No part of the skin jumped.")
+        return
+    places = ", ".join(f"{state.step} ({state.load})" for state in steps[:12]) + (" …" if len(steps) > 12 else "")
+    energy, error = (
+        sum(getattr(state.record, key) for state in steps) for key in ("energy_released", "released_error")
+    )
+    sure = f"They released {energy:.2g} J/m." if energy > error else f"They released less than {error:.1g} J/m."
+    words = f"Skin jumped without the loads in {len(steps)} of {len(result.steps)} steps: {places}. {sure} "
+    yield Finding(
+        "jumps", GOOD, f"{words}A jump is part of the model, as in stick-slip; states between steps are not known."
+    )
+
+
+def _restarts(result: Result) -> Iterator[Finding]:
+    restarts = result.record.get("restarts") or []
+    if restarts:
+        why = "; ".join(str(each.get("reason", "")) for each in restarts if isinstance(each, dict))
+        again = f"The run started again {len(restarts)} times, with more in its model: {why}."
+        words = f"{again} The numbers are of the last run."
+        yield Finding("restarts", GOOD, words)
+    else:
+        yield Finding("restarts", GOOD, "None: no part that was left out turned out to matter.")
+    cuts = sum(state.record.cutbacks for state in result.steps if state.record is not None)
+    if cuts:
+        words = f"{cuts} times a step found no equilibrium and was cut. Each accepted step is in equilibrium."
+        yield Finding("cut steps", GOOD, words)
+
+
+def _jumped(state: ContactState) -> bool:
+    return state.record is not None and state.record.jump
+
+
+def _worse(wrong: bool) -> str:
+    return BAD if wrong else GOOD

@@ -1,0 +1,45 @@
+"""Write the report of a folder; a report that cannot be made costs a line, not the results."""
+
+import sys
+from pathlib import Path
+
+from fingerpad.io.files import replace
+from fingerpad.io.result import Result
+from fingerpad.scene import SceneError
+from fingerpad.scene.messages import clip
+
+NAME = "report.html"
+
+
+def write(folder: Path) -> Path:
+    """Write ``report.html`` into a folder of results; serial.
+
+    Args:
+        folder: of a run or of a sweep.
+
+    Returns:
+        The file.
+
+    Raises:
+        SceneError: the folder holds nothing that a report can be made of, or cannot be written to.
+    """
+    from fingerpad.report import run_page, source, sweep_page
+
+    found = source.read(folder)
+    page = run_page.page(found) if isinstance(found, Result) else sweep_page.page(found)
+    try:
+        replace(folder / NAME, page)
+    except OSError as error:
+        where = clip(str(folder / NAME), 80)
+        raise SceneError(f"the report cannot be written to {where}: {error.strerror}") from None
+    return folder / NAME
+
+
+def attempt(folder: Path) -> Path | None:
+    """Write the report at the end of a run; None and a line on the console where it cannot be made; serial."""
+    try:
+        return write(folder)
+    except Exception as error:  # whatever it is, the results are there
+        again = "fingerpad report makes it again"
+        print(f"fingerpad: no report of {clip(str(folder), 80)}: {clip(str(error), 160)}; {again}", file=sys.stderr)
+        return None

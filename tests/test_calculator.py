@@ -1,0 +1,227 @@
+"""The calculator page in a real browser: its numbers are Python's, its bounds are a scene's, and it can be read."""
+
+import json
+import math
+import random
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fingerpad.calculator import fields
+from fingerpad.calculator.page import page
+from fingerpad.cli import main
+from fingerpad.reduced import cylinders
+from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.reading import put
+from tests.browser import asked
+
+FIELDS = {field.key: field for field in (*fields.fields(), *fields.contact())}
+NUMBERS = ("mu_app", "f_t", "f_electrostatic", "contact_length", "ridges_in_contact")
+KEPT = Path(__file__).parent.parent / "docs" / "calculator.html"
+SAME = 1e-9  # relative; both find the same roots to the last digits
+# What a person does: values into fields, and the next field.
+SET = """
+function set(values) {
+  const given = "length" in values;
+  for (const number of document.querySelectorAll("input[type=number]")) number.value = number.defaultValue;
+  document.getElementById(given ? "finger_given" : "finger_default").checked = true;
+  for (const [key, value] of Object.entries(values)) document.getElementById(key).value = value;
+  document.getElementById("f_ext").dispatchEvent(new Event("change"));
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def whole() -> str:
+    return page()
+
+
+def sets() -> list[dict[str, float]]:
+    """Return values by field, in the units of the fields: each alone at its ends and beyond, corners, and others."""
+    found: list[dict[str, float]] = [{}]
+    scene = [key for key in FIELDS if key not in ("length", "ridges")]
+    for key in scene:
+        found += [{key: end} for end in FIELDS[key].slider]
+    corner = ("voltage", "f_ext", "electric.d_i", "roughness.h_rms")
+    for k in range(16):
+        found.append({key: FIELDS[key].slider[k >> j & 1] for j, key in enumerate(corner)})
+    found += [{"voltage": 0.0}, {"friction": 0.0}, {"voltage": 400.0}, {"f_ext": 1000.0}, {"f_ext": 0.01}]
+    found += [{"roughness.h_rms": 0.001}, {"roughness.p_floor": 1e8}, {"electric.d_i": 1e4}, {"roughness.gamma": 10.0}]
+    found += [{"f_ext": 0.001}, {"f_ext": 0.001, "voltage": 0.0}, {"f_ext": 5000.0}, {"voltage": 5000.0}]
+    for length, ridges in ((1e-5, 1), (100.0, 1), (0.2, 1), (1.581, 16), (4.0, 25), (0.02, 20), (50.0, 3)):
+        found += [{"length": length, "ridges": ridges, "voltage": voltage} for voltage in (0.0, 120.0)]
+    chance = random.Random(21)
+    for _ in range(12):
+        values = {key: chance.uniform(*FIELDS[key].slider) for key in scene}
+        found.append({key: float(f"{value:.4g}") for key, value in values.items()})
+    return found
+
+
+def by_python(values: dict[str, float]) -> dict[str, float] | str:
+    """Return full slip by the Python program, or why there is none."""
+    data: dict[str, Any] = {}
+    si = {key: value / FIELDS[key].per if FIELDS[key].per >= 1 else value * round(1 / FIELDS[key].per)
+          for key, value in values.items()}  # fmt: skip
+    for key in si:
+        if key not in ("length", "ridges"):
+            put(data, key, si[key])
+    try:
+        footprint = cylinders.given(si["length"], int(si["ridges"])) if "length" in si else None
+        found = cylinders.solve(Scene(**data), footprint)
+    except SceneError as error:
+        return str(error)
+    assert found.full_slip is not None
+    more = {key: found.record[f"slip_{key}"] for key in ("p_c", "d_eq")}
+    return {key: getattr(found.full_slip, key) for key in NUMBERS} | more
+
+
+# -- numbers -------------------------------------------------------------------------------------------
+def test_numbers_are_those_of_python(whole, tmp_path):
+    """Where one of the two refuses, so does the other; elsewhere they agree to 1e-9."""
+    program = f"""{SET}
+    return {json.dumps(sets())}.map((values) => {{
+      set(values);
+      const refused = [...document.querySelectorAll("[role=alert]")].map((each) => each.textContent).join("");
+      const cells = [...document.querySelectorAll("[data-value]")];
+      return refused || Object.fromEntries(cells.map((cell) => [cell.id.slice(6), Number(cell.dataset.value)]));
+    }});"""
+    answered = 0
+    for values, found in zip(sets(), asked(whole, program, tmp_path), strict=True):
+        expected = by_python(values)
+        if isinstance(expected, str):
+            assert isinstance(found, str), (values, expected, found)
+        else:
+            assert found == pytest.approx(expected, rel=SAME), values
+            answered += 1
+    assert answered >= 50
+
+
+def test_refusal_says_what_python_says(whole, tmp_path):
+    """In the same words, but for the name of the model."""
+    program = f"""{SET} set({{ voltage: 5000 }}); return document.getElementById("refusal").textContent;"""
+    said = asked(whole, program, tmp_path)
+    expected = by_python({"voltage": 5000.0})
+    assert isinstance(expected, str)
+    assert said == f"No answer at this point: {expected.replace(chr(32) + 'of the model ' + repr('cylinders'), '')}."
+
+
+def test_error_function_against_the_standard_library(whole, tmp_path):
+    """To 1e-13 where the series ends at 2, and better elsewhere."""
+    places = [-3.0, -0.5, 0.0, 1e-9, 0.3, 1.0, 1.999, 2.0, 2.5, 5.0, 20.0]
+    found = asked(whole, f"return {places}.map(closedForm.erfc);", tmp_path)
+    assert found == pytest.approx([math.erfc(x) for x in places], rel=1e-13)
+
+
+def test_curves_hold_the_estimate_of_the_command(whole, tmp_path):
+    """The points of the table under the curves are those of ``fingerpad estimate``."""
+    program = """return [...document.querySelectorAll("#curves tbody tr")].map(
+      (row) => [...row.cells].map((cell) => Number(cell.textContent)));"""
+    rows = asked(whole, program, tmp_path)
+    assert len(rows) == 82
+    for f_ext, voltage, mu in rows[::9]:
+        expected = by_python({"f_ext": f_ext, "voltage": voltage})
+        assert isinstance(expected, dict) and mu == pytest.approx(expected["mu_app"], abs=6e-5)
+
+
+# -- bounds --------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("key", [key for key in FIELDS if key not in ("length", "ridges")])
+def test_bounds_are_those_of_a_scene(key):
+    """Python accepts both ends, and refuses what is beyond them."""
+    field = FIELDS[key]
+    for end, beyond in ((field.low, 0.999), (field.high, 1.001)):
+        assert "must be" not in str(by_python({key: end})) or "p_floor" in str(by_python({key: end}))
+        assert f"{key} is" in str(by_python({key: end * beyond}))
+
+
+def test_values_beyond_bounds_are_refused_beside_their_field(whole, tmp_path):
+    wrong = {"voltage": "-1", "f_ext": "6000", "friction": "", "electric.d_i": "20000", "roughness.young": "1e9",
+             "roughness.h_rms": "0", "length": "0", "ridges": "2.5"}  # fmt: skip
+    program = f"""{SET}
+    return Object.entries({json.dumps(wrong)}).map(([key, value]) => {{
+      set(key === "length" || key === "ridges" ? {{ length: 1, ridges: 10, [key]: value }} : {{ [key]: value }});
+      const field = document.getElementById(key);
+      return [document.getElementById(field.getAttribute("aria-describedby")).textContent,
+        field.getAttribute("aria-invalid"), document.getElementById("answers").className];
+    }});"""
+    found = asked(whole, program, tmp_path)
+    assert [said for said, _, _ in found] == [
+        "voltage is -1 V; it must be 0 or from 0.001 to 5000 V.",
+        "f_ext is 6000 N/m; it must be from 0.001 to 5000 N/m.",
+        "friction is no number; it must be 0 or from 0.000001 to 2.",
+        "d_i is 20000 µm; it must be from 0.001 to 10000 µm.",
+        "young is 1000000000 MPa; it must be from 0.000001 to 1e+6 MPa.",
+        "h_rms is 0 µm; it must be from 0.001 to 1000 µm.",
+        "length is 0 mm; it must be from 0.00001 to 100 mm.",
+        "ridges is 2.5; it must be a whole number.",
+    ]
+    assert all(invalid == "true" and "stale" in name for _, invalid, name in found)
+
+
+# -- to be read ----------------------------------------------------------------------------------------
+@pytest.mark.parametrize("width", [390, 1366])
+def test_nothing_is_cut_off(whole, tmp_path, width):
+    """On a phone and on a laptop no part is wider than the page, and the curves fill their places."""
+    program = """
+    const beyond = [...document.querySelectorAll("body *")].filter(
+      (each) => each.getBoundingClientRect().right > innerWidth + 0.5 || each.scrollWidth > each.clientWidth + 1 &&
+        ["P", "LABEL", "PRE", "TD", "TH", "FIGURE", "DIV"].includes(each.tagName) && each.clientWidth);
+    return [document.documentElement.scrollWidth, beyond.map((each) => each.outerHTML.slice(0, 80)),
+      [...document.querySelectorAll("svg")].map((each) => each.getBoundingClientRect().width)];"""
+    whole_width, beyond, curves = asked(whole, program, tmp_path, width=width, height=800)
+    assert beyond == [] and whole_width <= width
+    assert len(curves) == 2 and min(curves) > 0.55 * min(width, 900)
+
+
+def test_curves_are_told_apart_without_colour(whole, tmp_path):
+    """By their strokes: known, of unknown error, and the default's for comparison."""
+    program = f"""{SET} set({{ voltage: 300, "roughness.h_rms": 4 }});
+    const lines = [...document.querySelectorAll("#over_voltage polyline")];
+    return lines.map((each) => each.getAttribute("stroke-dasharray"));"""
+    assert len(set(asked(whole, program, tmp_path))) == 3
+
+
+def test_page_needs_no_network(whole):
+    """It names no address but a DOI in words, which nothing fetches."""
+    assert not re.search(r"""(src|href)="(?!data:)|@import|url\(|fetch\(|https?://(?!www\.w3\.org/2000/svg)""", whole)
+
+
+def test_numbers_stand_without_javascript(whole, tmp_path):
+    """On a phone too: a table of the default finger, and why there are no fields."""
+    program = """return [document.getElementById("fields").checkVisibility(),
+      document.getElementById("without").checkVisibility(), document.documentElement.scrollWidth,
+      [...document.querySelectorAll("#default tbody tr")].map((row) => [...row.cells].map((td) => td.innerText))];"""
+    shown, said, width, rows = asked(whole, program, tmp_path, width=390, scripts=False)
+    assert (shown, said) == (False, True) and width <= 390
+    assert len(rows) == 5
+    for force, *cells in rows:
+        f_ext = float(force.removesuffix(" N/m"))
+        expected = [by_python({"f_ext": f_ext, "voltage": u}) for u in (0.0, 50.0, 100.0, 150.0, 200.0)]
+        assert cells == [f"{each['mu_app']:.3f}" for each in expected if isinstance(each, dict)]
+
+
+def test_page_in_git_is_that_of_the_command(whole):
+    """But for the last digits of its numbers, which may differ with the version of NumPy: to 1e-12."""
+    parts = [re.split(r"(?m)^const data = (.*);$", text) for text in (KEPT.read_text(encoding="utf-8"), whole)]
+    (before, kept, after), (before_now, now, after_now) = parts
+    assert (before, after) == (before_now, after_now), "run make pages"
+    found, expected = flat(json.loads(kept)), flat(json.loads(now))
+    assert list(found) == list(expected)
+    for name, value in expected.items():
+        assert found[name] == (pytest.approx(value, rel=1e-12) if isinstance(value, float) else value), name
+
+
+def flat(data: Any, name: str = "") -> dict[str, Any]:
+    """Return every value of nested data by its place."""
+    if isinstance(data, dict | list):
+        pairs = data.items() if isinstance(data, dict) else enumerate(data)
+        return {key: value for k, part in pairs for key, value in flat(part, f"{name}.{k}").items()}
+    return {name: data}
+
+
+def test_command_writes_the_page(tmp_path, capsys, whole):
+    file = tmp_path / "mine.html"
+    assert main(["calculator", "--out", str(file)]) == 0
+    assert file.read_text(encoding="utf-8") == whole and str(file) in capsys.readouterr().out
+    assert main(["calculator", "--out", str(tmp_path / "none" / "mine.html")]) == 2

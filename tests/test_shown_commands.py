@@ -1,0 +1,85 @@
+"""Every command line that a page shows runs, with a small scene in the place of the reader's own."""
+
+import re
+import shlex
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fingerpad import cli
+from tests.runs import no_pictures
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGES = [ROOT / "README.md", ROOT / "demos" / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+SHOWN = sorted(
+    {
+        line.split("  #")[0].strip()
+        for page in PAGES
+        for line in re.findall(r"^    (fingerpad .*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    }
+)
+SMALL = """
+f_ext = 1.0
+voltage = 60.0
+[geometry]
+ridge_count = 9
+[mesh]
+contact = 40e-6
+receptor = 100e-6
+interface = 200e-6
+growth = 1.0
+touching_half_arc = 1.0e-3
+[output]
+receptors = false
+errors = false
+"""
+SMALLER = {
+    "50 N/m": "1 N/m",
+    "voltage=0:200:5": "voltage=0:60:2",
+    "0:200:41": "0:200:3",
+    "compare scene.toml": "compare scene.toml --set mesh.contact=2e-5 --contact-length 60e-6 --ridges 3",
+}
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch) -> Path:
+    """A folder with the files that the lines name, as the current one."""
+    (tmp_path / "scene.toml").write_text(SMALL, encoding="utf-8")
+    heights = np.random.default_rng(1).normal(size=(32, 32))
+    np.savetxt(tmp_path / "skin.csv", heights, delimiter=",")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def small(line: str) -> list[str]:
+    for shown, less in SMALLER.items():
+        line = line.replace(shown, less)
+    return shlex.split(line)[1:]
+
+
+def cases() -> list:
+    """Return the lines; those that run several models or loads, which other tests do smaller, take long."""
+    several = ("fingerpad compare", "fingerpad sweep")
+    return [pytest.param(line, marks=pytest.mark.long) if line.startswith(several) else line for line in SHOWN]
+
+
+@pytest.mark.parametrize("line", cases())
+def test_shown_command_runs(line, folder, capsys):
+    """It ends well, prints, and writes the file or folder that it names."""
+    words = small(line)
+    with no_pictures():
+        assert cli.main(words) == 0, capsys.readouterr().err
+    assert capsys.readouterr().out
+    written = [words[k + 1] for k, word in enumerate(words) if word in ("--out", "--plot")]
+    assert [name for name in written if not (folder / name).exists()] == []
+
+
+def test_commands_are_shown():
+    """The lines were found, one for each command of the first page about them at least."""
+    assert len({line.split()[1] for line in SHOWN}) >= 8
+
+
+def test_small_scene_is_one():
+    assert set(tomllib.loads(SMALL)) == {"f_ext", "voltage", "geometry", "mesh", "output"}
