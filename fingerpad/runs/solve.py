@@ -109,9 +109,7 @@ def solved(
     return result
 
 
-def _solved(
-    scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool, bar: bool
-) -> Result:
+def _solved(scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool, bar: bool) -> Result:
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     if model == "cylinders":
