@@ -14,7 +14,7 @@
 # make chart  error over work, one numerical setting after the other; docs/chart.md, hours
 #
 # With SUITE=sid in Debian unstable, that is with a newer dolfinx: make test SUITE=sid
-# All need nothing but Debian 12, root, apt and PyPI: environment/run finds or makes what they run in.
+# All but test-pip need nothing but Debian 12, root, apt and PyPI: environment/run finds or makes what they run in.
 
 run := environment/run
 

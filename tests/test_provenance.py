@@ -1,5 +1,6 @@
 """The summary holds what can change a number."""
 
+import importlib.util
 import json
 import re
 
@@ -8,11 +9,15 @@ from petsc4py import PETSc
 
 from fingerpad.io.provenance import provenance
 
+PETSC_ALONE = importlib.util.find_spec("dolfinx_solver") is not None
+
 
 def test_versions():
     versions = provenance()["versions"]
     names = "fingerpad source dolfinx basix ffcx ufl petsc mumps gmsh numpy scipy python"
     assert set(versions) == set(names.split())
+    linked = PETSC_ALONE and versions.pop("mumps") is None  # into PETSc's own file, which names no version of it
+    assert linked == PETSC_ALONE
     assert all(re.match(r"\d+\.\d+", version) for name, version in versions.items() if name != "source")
 
 
