@@ -102,9 +102,6 @@ def test_what_runs_can_be_imported(name):
     assert importlib.util.find_spec(name) is not None
 
 
-PAGE = ("page.html", "page.css", "closed_form.js", "plot.js", "page.js")
-
-
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory) -> zipfile.ZipFile:
     """The wheel of this checkout, built with what is installed: no network."""
