@@ -4,11 +4,11 @@ environment/run python3 -m benchmarks.pages [NAME ...]     also: make pages
 python3 -m benchmarks.pages --stale                        also: make stale; needs git and no dolfinx
 
 A page is older than the code where a file that computes its numbers differs from that which made them: one of the
-packages (geometry, variational, fingerpad without what starts, reads, refuses, writes and prints), or of the page's own
-program, the module that only draws it left out. Comments and docstrings do not count. The commit that made numbers is
-found by the hash of the packages' files that is kept with them; a program in benchmarks/ is compared with that of the
-commit that brought them into git. Numbers of files that are in no commit count as made by the commit that brought them,
-and so do older numbers, which have no hash.
+packages (geometry, variational, fingerpad without what starts, reads, refuses, orders runs, writes and prints), or of
+the page's own program, the module that only draws it left out. Comments and docstrings do not count. The commit that
+made numbers is found by the hash of the packages' files that is kept with them; a program in benchmarks/ is compared
+with that of the commit that brought them into git. Numbers of files that are in no commit count as made by the commit
+that brought them, and so do older numbers, which have no hash.
 """
 
 import argparse
@@ -38,9 +38,10 @@ PAGES = {
     "verification": "benchmarks.verification.case",
 }
 _PACKAGES = ("geometry", "variational", "fingerpad")
-_WITHOUT_NUMBERS = (  # these start, read, refuse, write and print
-    *(f"fingerpad/{wing}/" for wing in ("cli", "io", "report", "calculator")),
-    *("fingerpad/startup.py", "fingerpad/scene/contradictions.py", "fingerpad/scene/messages.py"),
+_WITHOUT_NUMBERS = (  # these start, read, refuse, order runs, write and print
+    *(f"fingerpad/{wing}/" for wing in ("cli", "io", "report", "calculator", "runs")),
+    *("fingerpad/startup.py", "fingerpad/installed.py", "geometry/meshfile.py"),
+    *("fingerpad/scene/contradictions.py", "fingerpad/scene/messages.py"),
 )
 _REDUCED = "fingerpad/reduced"  # no full run uses it: part of the programs that import it
 _SHARED = ("runs", "limits", "measure", "explicit")  # modules of benchmarks/ that make numbers of several pages
