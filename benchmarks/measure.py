@@ -26,6 +26,7 @@ from petsc4py import PETSc
 from benchmarks import explicit
 from fingerpad.accuracy.refinement import Refinement
 from fingerpad.io.drawing import Drawing
+from fingerpad.io.writing import Writer
 from fingerpad.model.finger import Finger
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.report import Report
@@ -54,7 +55,7 @@ _WATCHED: dict[str, list[tuple[type, str]]] = {
     "tangent": [(Equations, "assemble_tangent")],
     "stability": [(StabilityChecks, "check")],
     "coupling": [(Observer, "state"), (Observer, "ridge_loads")],
-    "output": [(Report, "step"), (Report, "load_reached"), (Report, "final"), (Drawing, "write")],
+    "output": [(Report, "step"), (Report, "load_reached"), (Report, "final"), (Drawing, "write"), (Writer, "dataset")],
 }
 _EVENTS = {"MatLUFactorSym": "factorisation", "MatLUFactorNum": "factorisation", "MatSolve": "back-substitution"}
 

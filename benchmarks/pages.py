@@ -16,6 +16,7 @@ import ast
 import hashlib
 import io
 import json
+import re
 import subprocess
 import sys
 import tarfile
@@ -90,8 +91,10 @@ def changed(before: Mapping[str, bytes], now: Mapping[str, bytes]) -> set[str]:
 def program(name: str) -> list[str]:
     """Return the files and folders in benchmarks/ that make the numbers of a page."""
     _, own, *module = PAGES[name].split(".")
-    shared = [f"benchmarks/{name}.py" for name in _SHARED]
-    return [*shared, f"benchmarks/{own}" if module else f"benchmarks/{own}.py"]
+    path = ROOT / "benchmarks" / (own if module else f"{own}.py")
+    text = "".join(file.read_text(encoding="utf-8") for file in ([path] if path.is_file() else path.glob("*.py")))
+    shared = [name for name in _SHARED if re.search(rf"benchmarks(\.| import (\w+, )*){name}\b", text)]
+    return [*(f"benchmarks/{name}.py" for name in shared), f"benchmarks/{path.name}"]
 
 
 def stale(name: str, docs: Path) -> tuple[str, list[str]]:
