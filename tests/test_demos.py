@@ -15,7 +15,7 @@ from tests.pages import alike
 ROOT = Path(__file__).resolve().parents[1]
 DEMOS = sorted((ROOT / "demos").glob("*.py"))
 OUTPUT = ROOT / "demos" / "output"  # by python3 -m benchmarks.demos
-BODIES = ("ridge_against_hertz", "pull_off_and_energy", "own_mesh")
+BODIES = ("ridge_against_hertz", "pull_off_and_energy", "own_mesh", "results_with_other_tools")
 OWN_LAWS = ("own_closure", "own_material", "own_friction")
 LIMIT = 600  # s
 STRICT = ["-W", "error", "-W", "ignore::ImportWarning"]  # dolfinx's of what it can do without
