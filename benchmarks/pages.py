@@ -5,10 +5,11 @@ python3 -m benchmarks.pages --stale                        also: make stale; nee
 
 A page is older than the code where a file that computes its numbers differs from that which made them: one of the
 packages (geometry, variational, fingerpad without what starts, reads, refuses, orders runs, writes and prints), or of
-the page's own program, the module that only draws it left out. Comments and docstrings do not count. The commit that
-made numbers is found by the hash of the packages' files that is kept with them; a program in benchmarks/ is compared
-with that of the commit that brought them into git. Numbers of files that are in no commit count as made by the commit
-that brought them, and so do older numbers, which have no hash.
+the page's own program, the module that only draws it left out. Comments and docstrings do not count, nor packages
+that were found to compute the same numbers (docs/same.json, by benchmarks/same.py). The commit that made numbers is
+found by the hash of the packages' files that is kept with them; a program in benchmarks/ is compared with that of the
+commit that brought them into git. Numbers of files that are in no commit count as made by the commit that brought them,
+and so do older numbers, which have no hash.
 """
 
 import argparse
@@ -97,6 +98,34 @@ def program(name: str) -> list[str]:
     return [*(f"benchmarks/{name}.py" for name in shared), f"benchmarks/{path.name}"]
 
 
+def since(
+    commit: str, docs: Path, aside: tuple[str, ...], pairs: Sequence[Mapping[str, str]] | None = None
+) -> set[str]:
+    """Return the files of the packages that compute something else since a commit.
+
+    Args:
+        commit: the older commit.
+        docs: folder of the commits that compute the same numbers.
+        aside: beginnings of paths that do not count.
+        pairs: of these commits; all of them by default.
+    """
+
+    def differ(older: str, newer: str) -> set[str]:
+        found = changed(files(older, _PACKAGES), files(newer, _PACKAGES))
+        return {path for path in found if not path.startswith(aside)}
+
+    if not (found := differ(commit, "HEAD")):
+        return set()
+    if pairs is None:
+        path = docs / "same.json"
+        pairs = json.loads(path.read_text(encoding="utf-8")) if path.exists() else []
+    for pair in pairs:
+        others = [other for other in pairs if other is not pair]
+        if not differ(commit, pair["before"]) and not since(pair["now"], docs, aside, others):
+            return set()
+    return found
+
+
 def stale(name: str, docs: Path) -> tuple[str, list[str]]:
     """Return which version made the numbers of a page, in words, and the files of its code that have changed since."""
     made = json.loads((docs / f"{name}.json").read_text(encoding="utf-8"))["made"]
@@ -106,14 +135,12 @@ def stale(name: str, docs: Path) -> tuple[str, list[str]]:
         options = ("--abbrev-commit", f"-n{_SEARCHED}", brought, "--", *_PACKAGES)
         before, states = git("rev-list", *options).decode().split(), made["source"].split(", ")
         found = [next((commit for commit in before if source(commit) == state), brought) for state in states]
-    packages, own = files("HEAD", _PACKAGES), program(name)
-    now = files("HEAD", own)
-    since = {path for commit in found for path in changed(files(commit, _PACKAGES), packages)}
-    since = {path for path in since if not path.startswith((*_WITHOUT_NUMBERS, _REDUCED))}
+    now = files("HEAD", own := program(name))
+    differ = {path for commit in found for path in since(commit, docs, (*_WITHOUT_NUMBERS, _REDUCED))}
     if any(_REDUCED.replace("/", ".").encode() in text for text in now.values()):
-        own = [*own, _REDUCED]
-    since |= {p for p in changed(files(brought, own), files("HEAD", own)) if not p.endswith("/page.py")}
-    return f"version {made['version']} of {made['date']}, commit {', '.join(found)}", sorted(since)
+        differ |= {path for path in since(brought, docs, _WITHOUT_NUMBERS) if path.startswith(_REDUCED)}
+    differ |= {path for path in changed(files(brought, own), now) if not path.endswith("/page.py")}
+    return f"version {made['version']} of {made['date']}, commit {', '.join(found)}", sorted(differ)
 
 
 def main(given: Sequence[str] | None = None) -> int:
@@ -131,9 +158,10 @@ def main(given: Sequence[str] | None = None) -> int:
             print(import_module(PAGES[name]).draw(args.docs))
         return 0
     found = {name: stale(name, args.docs) for name in names}
-    older = {name: (words, since) for name, (words, since) in found.items() if since}
-    for name, (words, since) in older.items():
-        print(f"{name}: {words}; since then changed: {', '.join(since[:_SHOWN])}{' …' if len(since) > _SHOWN else ''}")
+    older = {name: (words, differ) for name, (words, differ) in found.items() if differ}
+    for name, (words, differ) in older.items():
+        shown = f"{', '.join(differ[:_SHOWN])}{' …' if len(differ) > _SHOWN else ''}"
+        print(f"{name}: {words}; since then changed: {shown}")
     print(f"{len(older)} of {len(found)} pages are older than the code that they rest on")
     return 0
 

@@ -1,11 +1,12 @@
 """The harness of the studies: numbers that are kept, and the pages that are drawn from them."""
 
+import json
 import math
 import shutil
 
 import pytest
 
-from benchmarks import harness, pages
+from benchmarks import harness, pages, same
 from benchmarks.harness import DOCS, Made
 
 BY = Made("0.1.0", "abc1234", "2026-11-22", "0123456789ab")
@@ -90,6 +91,26 @@ def test_numbers_of_no_commit_are_as_old_as_in_git(since):
     assert since("errors", Made("0.1.0", "", "", "ff"), old=OLD, new=CHANGED) == ["variational/x.py"]
     assert since("errors", Made("0.1.0", "old", ""), old=OLD, new=CHANGED) == ["variational/x.py"]
     assert since("errors", Made("0.1.0", "new", ""), old=OLD, new=CHANGED) == []
+
+
+def test_page_is_not_older_where_the_same_numbers_were_computed(since, tmp_path):
+    """By the packages of both commits, from pair to pair; a page's own program counts all the same."""
+    commits = {"old": OLD, "mid": OLD | {"variational/x.py": b"x = 3"}, "new": NEW | CHANGED}
+    pairs = [{"before": "mid", "now": "new"}, {"before": "old", "now": "mid"}]
+    for kept, older in ((pairs, []), (pairs[:1], ["variational/x.py"]), (pairs[1:], ["variational/x.py"])):
+        harness.replace(tmp_path / "same.json", json.dumps(kept))
+        assert since("errors", MADE, **commits) == older
+        assert since("chart", MADE, **commits) == ["benchmarks/chart.py", *older]
+
+
+def test_results_differ_by_their_numbers_alone():
+    """Not by seconds; a key that only the present result has is new."""
+    before = {"mu": 0.5, "seconds_path": 3.0, "steps": [{"a": 1}, {"a": float("nan")}]}
+    assert same.numbers(before) == {"mu": 0.5, "steps": before["steps"]}
+    assert list(same.differences(before, before | {"more": 1})) == []
+    now = before | {"mu": 0.5000000000000001, "steps": [{"a": 1}]}
+    assert len(list(same.differences(before, now))) == 2
+    assert list(same.differences(before, {})) and list(same.differences({"a": None}, {"a": 0.0}))
 
 
 def test_program_of_a_page_is_in_git():
