@@ -10,6 +10,7 @@ import pytest
 
 import fingerpad as fp
 from fingerpad import cli
+from fingerpad.model.journal import Journal
 from tests.runs import no_pictures
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -67,11 +68,15 @@ def cases() -> list:
 
 
 @pytest.mark.parametrize("line", cases())
-def test_shown_command_runs(line, folder, capsys):
+def test_shown_command_runs(line, folder, capsys, monkeypatch):
     """It ends well, prints, and writes the file or folder that it names."""
     words = small(line)
     if words[0] == "report":
         fp.run(model="cylinders", out=words[1])
+    if "--resume" in words:  # a run that was killed when its checkpoint was whole
+        with monkeypatch.context() as kept, no_pictures():
+            kept.setattr(Journal, "end", lambda self: None)
+            fp.run(fp.Scene.load("scene.toml"), out=words[-1])
     with no_pictures():
         assert cli.main(words) == 0, capsys.readouterr().err
     assert capsys.readouterr().out

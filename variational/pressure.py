@@ -50,7 +50,8 @@ class LayerwisePressure:
         self.unknown = fem.Function(fem.functionspace(mesh, ("Discontinuous Lagrange", 1)))
         scale = shear_modulus / min(mesh.comm.allgather(float(smallest)))
         self.p = fem.Constant(mesh, np.float64(scale)) * self.unknown  # as a number it would be compiled in
-        self._vertices = fem.functionspace(mesh, ("Lagrange", 1)).dofmap
+        vertices = fem.functionspace(mesh, ("Lagrange", 1))
+        self._vertices, self._x = vertices.dofmap, vertices.tabulate_dof_coordinates()[:, :2]
         self._cells = [cell_tags.find(tag) for tag in layers]
         self._touched = [self._owned_vertices(layer[layer < cells]) for layer in self._cells]
         self.owned = int(np.sum(self._touched))
@@ -61,6 +62,12 @@ class LayerwisePressure:
         marks.array[self._vertices.list[cells]] = 1
         marks.scatter_reverse(la.InsertMode.add)
         return np.asarray(marks.array[: self._vertices.index_map.size_local] > 0)
+
+    def places(self) -> NDArray[np.float64]:
+        """Return where this rank's unknowns are (m), and the number of their layer, shape (owned, 3)."""
+        layers = [self._x[: len(touched)][touched] for touched in self._touched]
+        numbers = np.repeat(np.arange(len(layers), dtype=np.float64), [len(layer) for layer in layers])
+        return np.column_stack([np.concatenate([np.empty((0, 2)), *layers]), numbers])
 
     def rows(self, first: int) -> NDArray[np.int64]:
         """Return the global row of each local degree of freedom of ``unknown``, ghosts included; -1 without one.

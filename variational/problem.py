@@ -200,6 +200,7 @@ class Problem:
             self.pressure_jacobian = fem.form([ufl.derivative(*pair) for pair in pairs], jit_options=jit.OPTIONS)
         nothing = np.zeros((len(surface.pairs), len(surface.weights)))
         self.history = History(nothing, nothing, surface.evaluate(surface.compile([ufl.SpatialCoordinate(mesh)[0]]))[0])
+        self.imposed = self.history
 
     def _laws(self, solids: Mapping[int, Material], cellwise: fem.FunctionSpace) -> dict[tuple[int, ...], Material]:
         """Return the law of each group of layers, one kernel a law: numbers are fields with one value a cell."""
@@ -266,6 +267,7 @@ class Problem:
 
     def correct_history(self, history: History) -> None:
         """Impose anchors and multipliers that are not accepted yet."""
+        self.imposed = history
         if self.anchor is not None:
             self.surface.set_history(self.anchor, history.anchor)
         self.surface.set_history(self.multiplier, history.pressure)

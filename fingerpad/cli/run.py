@@ -1,16 +1,23 @@
 """``fingerpad run``: press, charge and slide a finger, from a scene to tables, pictures and fields."""
 
+from argparse import Namespace
 from collections.abc import Sequence
+from pathlib import Path
 
-from fingerpad.cli.arguments import Parser, echo, scene_of
+from fingerpad.cli.arguments import Parser, echo, path, scene_of
 from fingerpad.io import terminal
 from fingerpad.io.folder import check_folder
+from fingerpad.io.place import full_scene
 from fingerpad.runs.solve import MODELS, solved
+from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
+
+_OUT = Path("results")
 
 _EXAMPLES = """
     fingerpad run --set f_ext="50 N/m" --set voltage=150 --out results/mine
     mpirun -n 2 fingerpad run scene.toml --out results/scene -fingerpad_snes_monitor
+    fingerpad run --resume results/scene
 """
 
 
@@ -22,16 +29,20 @@ def main(argv: Sequence[str]) -> int:
         _EXAMPLES,
     )
     parser.add_scene()
-    parser.add_out("results", "folder of the results (default: results)")
+    parser.add_out(str(_OUT), "folder of the results (default: results)")
     parser.add_argument(
         "--model",
         choices=MODELS,
         default="full",
         help="every ridge (full), a smooth finger with the law of one ridge, or a closed form (default: full)",
     )
+    parser.add_argument("--resume", type=path, metavar="DIR", help="go on with a run that was cut short in this folder")
     parser.add_argument("--quiet", action="store_true", help="print the result alone: no steps, no progress bar")
     args, petsc = parser.read_with_petsc(argv)
-    scene = scene_of(args, meshed=args.model != "cylinders")
+    if args.resume is not None:
+        scene, args.out = _cut_short(args), args.resume
+    else:
+        scene = scene_of(args, meshed=args.model != "cylinders")
     check_folder(args.out)
     if args.model == "cylinders":
         if petsc:
@@ -44,7 +55,24 @@ def main(argv: Sequence[str]) -> int:
     # PETSc has its options from here on.
     from fingerpad.runs.full import exit_code
 
-    result = solved(scene, args.model, args.out, lines=not args.quiet, bar=not args.quiet)
+    result = solved(
+        scene, args.model, args.out, lines=not args.quiet, bar=not args.quiet, resume=args.resume is not None
+    )
     if args.quiet or args.model != "full":
         echo(str(result))
     return exit_code(result)
+
+
+def _cut_short(args: Namespace) -> Scene:
+    """Return the scene of the folder that ``--resume`` names.
+
+    Raises:
+        SceneError: the folder has no scene, or the command line gives another one.
+    """
+    given = {"SCENE": args.scene, "--set": args.set, "--model": args.model != "full", "--out": args.out != _OUT}
+    for name, value in given.items():
+        if value:
+            raise SceneError(
+                f"{name} and --resume are given; the folder of --resume has the scene, and takes the results"
+            )
+    return full_scene(args.resume)

@@ -19,8 +19,8 @@ def no_room(error: BaseException) -> DiskFull | None:
     if isinstance(error, OSError) and error.errno in _FULL:
         return DiskFull(
             error.errno,
-            f"{error.strerror}: no more results can be written; what was written before stays as it is, and the same "
-            "command starts again from the first step",
+            f"{error.strerror}: no more results can be written; what was written before stays as it is, and fingerpad "
+            "run --resume FOLDER goes on when there is room",
         )
     return None
 

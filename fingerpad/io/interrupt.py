@@ -37,8 +37,8 @@ class Interrupted(StepFailed):
     def __init__(self, number: signal.Signals, step: int) -> None:
         """Name the signal and what is kept after a step."""
         super().__init__(
-            f"stopped by {number.name} after step {step}; every accepted step is in the folder of results, and the "
-            "same command starts again from the first"
+            f"stopped by {number.name} after step {step}; every accepted step is in the folder of results, and "
+            "fingerpad run --resume FOLDER goes on from there"
         )
         self.signal = number
 

@@ -4,7 +4,7 @@ The scene is kept in the folder (``scene.json``) and another one is refused ther
 beside a summary of another, and no run is overwritten because ``--out`` was forgotten. The same scene may be run
 again: what its earlier run left stays until the new one has reached its first step, and goes then as a whole.
 Results are not written beside and put in place at the end, since every accepted step is to be seen at once and has
-to outlive the run. A run that resumes an earlier one would begin in :meth:`Place.take`, with the files that are there.
+to outlive the run. A run that goes on with an earlier one writes its files anew, from :mod:`fingerpad.io.checkpoint`.
 """
 
 import contextlib
@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from fingerpad.io.files import replace_json
-from fingerpad.scene import SceneError
+from fingerpad.scene import Scene, SceneError, from_data
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -142,6 +142,26 @@ class Place:
                 shutil.rmtree(file) if file.is_dir() else file.unlink()
             replace_json(self.folder / "scene.json", self._parameters)
         self._comm.barrier()
+
+
+def full_scene(folder: Path) -> Scene:
+    """Return the scene whose full run is in a folder.
+
+    Raises:
+        PlaceError: there is none, or it is of another model, or has laws of its own.
+    """
+    try:
+        kept = dict(json.loads((folder / "scene.json").read_text(encoding="utf-8")))
+    except (OSError, ValueError):
+        raise PlaceError(f"{_short(folder)} has no scene.json, and so no run to go on with") from None
+    if "model" in kept:
+        raise PlaceError(f"{_short(folder)} has a run of the model {kept['model']!r}; only a full one can go on")
+    if "laws" in kept:
+        raise PlaceError(
+            f"the run in {_short(folder)} has laws or a mesh of its own; go on with it from Python, by fp.run with the "
+            "same ones and resume=True"
+        )
+    return from_data(kept)
 
 
 def _difference(old: dict[str, Any], new: dict[str, Any], table: str = "") -> str:

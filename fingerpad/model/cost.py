@@ -30,6 +30,15 @@ class Clock:
         yield
         self.seconds[name] += time.perf_counter() - start
 
+    def earlier(self, wall: float, processor: float) -> None:
+        """Add the time (s) that the run took before it was cut short, all ranks' processor time together."""
+        self._wall -= wall
+        self._processor -= processor / self._comm.size
+
+    def present(self) -> tuple[float, float]:
+        """Return wall time and processor time of all ranks since the start (s); collective."""
+        return time.perf_counter() - self._wall, self.processor_seconds()
+
     def processor_seconds(self) -> float:
         """Return the processor time (s) of all ranks since the start; collective."""
         return float(self._comm.allreduce(time.process_time() - self._processor))
@@ -41,7 +50,6 @@ class Clock:
             counts: iterations of the path's solver.
             unknowns: of the final mesh.
         """
-        processor, memory = self.processor_seconds(), self._comm.allreduce(memory_mb())
-        wall = time.perf_counter() - self._wall
+        memory, (wall, processor) = self._comm.allreduce(memory_mb()), self.present()
         found = Cost(processor, wall, counts.newton, counts.factorisations, unknowns, memory, self._comm.size)
         return self._comm.bcast(found)

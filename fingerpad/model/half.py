@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 from fingerpad.model import symmetry
 from fingerpad.model.finger import Finger, assembled
 from fingerpad.model.options import FingerModel
-from variational.solvers.continuation import Attempt, Target
+from variational.solvers.continuation import Attempt, Continuation, Target
 
 Array = NDArray[np.float64]
 _SAME = 1e-9  # m, within which two nodes are one
@@ -48,6 +48,11 @@ class HalfFinger:
         far, self._nodes = cKDTree(self._together(here)).query(self._flip * there)
         if not comm.allreduce(float(np.max(far, initial=0.0)), op=MPI.MAX) < _SAME:
             raise RuntimeError("the finger's mesh is not its own mirror image")
+
+    @property
+    def path(self) -> Continuation:
+        """What leads the half."""
+        return self._body.continuation
 
     def run(self, target: Target) -> None:
         """Reach a target, see :meth:`variational.solvers.continuation.Continuation.run`; collective."""

@@ -11,6 +11,7 @@ from fingerpad.model.contact_zone import ContactZone, FingerExceeded
 from fingerpad.model.finger import Finger, Step
 from fingerpad.model.full_slip import FullSlip
 from fingerpad.model.half import HalfFinger
+from fingerpad.model.journal import Journal
 from fingerpad.model.options import FingerModel
 from fingerpad.model.stability import StabilityChecks
 from fingerpad.model.state import step_record
@@ -45,6 +46,7 @@ class Simulation:
         comm: MPI.Comm,
         on_step: Callable[[Step, float], None] = lambda step, done: None,
         on_load: Callable[[], None] = lambda: None,
+        journal: Journal | None = None,
     ) -> None:
         """Mesh the finger and set the solver up; collective.
 
@@ -53,13 +55,17 @@ class Simulation:
             comm: communicator of the mesh.
             on_step: called on every rank after each accepted step with the part of the whole history that is done.
             on_load: called on every rank when a load has been reached.
+            journal: keeps what solves leave; None to keep nothing.
         """
         self._model, self._comm = model, comm
         self.on_step, self.on_load = on_step, on_load
         self.finger = finger = Finger(model, comm, self._accepted)
         self.energy = finger.book()
         self.states: list[ContactState] = []
-        self.checks = StabilityChecks(finger)
+        self._journal = journal
+        self.checks = StabilityChecks(finger) if journal is None else StabilityChecks(finger, journal.examine)
+        if journal is not None:
+            journal.follow(finger.continuation)
         self._load, self._loads_done = "", 0
         self._slip = FullSlip(finger)
         count, file = model.geometry.ridge_count, model.mesh_file
@@ -82,6 +88,8 @@ class Simulation:
         half = None
         if moves > 0 and self._model.options.symmetric_start:
             self._half = half = HalfFinger(self._model, self.finger, self._comm, self._accepted)
+            if self._journal is not None:
+                self._journal.follow(half.path)
         try:
             for k, load in enumerate(loads):
                 if k == moves and half is not None:

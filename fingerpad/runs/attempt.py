@@ -16,6 +16,7 @@ from fingerpad.model.balance import broken, force_error
 from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Step
 from fingerpad.model.hints import finer_mesh_may_help, hint
+from fingerpad.model.journal import Journal
 from fingerpad.model.memory import refuse_beyond
 from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Report
@@ -47,14 +48,15 @@ class Attempt:
         console: Console,
         clock: Clock,
         interrupt: Interrupt,
+        journal: Journal | None = None,
     ) -> None:
         """Mesh the finger; collective."""
-        self._model = model
+        self._model, self._journal = model, journal
         self._comm, self._interrupt = comm, interrupt
         self._writer, self._console, self._clock = writer, console, clock
         console.phase("meshing the finger and setting up its equations")
         with clock.phase("setup"):
-            self.simulation = Simulation(model, comm, self._on_step, self._on_load)
+            self.simulation = Simulation(model, comm, self._on_step, self._on_load, journal)
         self.report = Report(self.simulation, model.omitted, writer, console, clock)
         self._recorder = StateRecorder(self.simulation) if model.options.errors else None
         self._refinement: Refinement | None = None
@@ -66,10 +68,14 @@ class Attempt:
         self.report.step(step, done)
         if self._recorder is not None:
             self._recorder.record(step)
+        if self._journal is not None:
+            self._journal.accepted(self._clock.present())
         self._interrupt.stop_if_asked(step.state.step)
 
     def _on_load(self) -> None:
         self.report.load_reached()
+        if self._journal is not None:
+            self._journal.keep(self._clock.present())
 
     def _before_solve(self) -> None:
         """Stop if asked to, or tell how far the error estimate is."""
@@ -129,7 +135,7 @@ class Attempt:
             unknowns, more["accuracy"] = refinement.base.unknowns, refinement.summary()
             notes += refinement.notes
             self.report.final(final)
-        self._on_load()
+        self.report.load_reached()
         failure = self._ended.get("failure", "" if refinement is None else refinement.failure)
         mu_0 = coefficient(scene)
         with self._clock.phase("output"):

@@ -1,8 +1,8 @@
 """Many scenes, each run in a process of its own and kept by what it is made of.
 
-A scene's folder is named by a hash of all its parameters: run again, a sweep computes only what has changed, and one
-that is killed has lost the runs in hand. The hash does not depend on the program: after a change of the mechanics the
-folder must be deleted.
+A scene's folder is named by a hash of all its parameters: run again, a sweep computes only what has changed, and runs
+that were cut short go on from their checkpoints. The hash does not depend on the program: after a change of the
+mechanics the folder must be deleted.
 
     python3 -m fingerpad.runs.batch SCENE.json FOLDER LIMIT MODEL    one run, as the sweep starts it
 """
@@ -89,7 +89,7 @@ def sweep(
 
     Returns:
         The summaries by name. That of a run that crashed, took too long or was asked to stop holds ``failure`` alone,
-        and it is run again the next time; what it left is in its folder.
+        and it goes on the next time; what it left is in its folder.
     """
     found = {name: result(scene, folder) for name, scene in scenes.items()}
     broken: dict[str, Summary] = {}
@@ -131,13 +131,17 @@ def _one(scene: Path, folder: Path, model: str) -> None:
     from fingerpad.startup import MPI, start
 
     start()
+    from fingerpad.io.checkpoint import CheckpointError
     from fingerpad.runs.solve import kept, solved, tables_in
     from fingerpad.scene import SceneError, from_data
 
     asked = from_data(json.loads(scene.read_text(encoding="utf-8")))
     try:
         if model == "full":
-            solved(asked, model, folder, lines=True, report=False)
+            try:
+                solved(asked, model, folder, lines=True, report=False, resume=True)
+            except CheckpointError:  # nothing to go on from
+                solved(asked, model, folder, lines=True, report=False)
         else:
             from fingerpad.reduced import smooth
 

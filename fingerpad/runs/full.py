@@ -8,13 +8,16 @@ from pathlib import Path
 import fingerpad.started  # noqa: F401
 from fingerpad.io import petsc_options
 from fingerpad.io.abort import all_together, no_room
+from fingerpad.io.checkpoint import Checkpoint
 from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt
 from fingerpad.io.place import Place
+from fingerpad.io.provenance import provenance
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
 from fingerpad.model.cost import Clock
 from fingerpad.model.expected import ERRORS, by_load
+from fingerpad.model.journal import Journal
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.touching import by_rule
 from fingerpad.runs.attempt import Attempt
@@ -26,7 +29,9 @@ from geometry.profiles import GeometryError
 from variational import jit
 
 
-def run(scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True, bar: bool = True) -> Result:
+def run(
+    scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True, bar: bool = True, resume: bool = False
+) -> Result:
     """Reach every load of a scene; refine where it asks for an accuracy; collective.
 
     Where the scene does not give the number of ridges that can touch, a rule of thumb does. All loads are gone through
@@ -40,6 +45,7 @@ def run(scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True, b
         comm: communicator of the run.
         lines: whether to print the steps.
         bar: whether to show the progress bar.
+        resume: go on from the checkpoint in the folder.
 
     Returns:
         The result, the same on every rank. It has a ``failure`` if a load or an accuracy could not be reached; every
@@ -48,6 +54,7 @@ def run(scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True, b
 
     Raises:
         PlaceError: the folder is in use, holds another scene's results, or cannot be written to.
+        CheckpointError: the run cannot go on from what is in the folder.
         OptionError: PETSc refuses an option.
         SceneError: the finger cannot be meshed; on every rank.
         DiskFull: there is no more room for results; on the ranks that found out, which end the others.
@@ -57,7 +64,8 @@ def run(scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True, b
     console = Console(comm, lines, bar)
     try:
         with nullcontext() if folder is None else Place(folder, scene.parameters(), comm) as place:
-            return _run(scene, Writer(place, comm), comm, console)
+            journal = None if place is None else Journal(comm, _checkpoint(scene, place.folder), resume)
+            return _run(scene, Writer(place, comm), comm, console, journal)
     except GeometryError as error:
         what = "the finger cannot be meshed" if scene.laws.mesh is None else "mesh"
         raise SceneError(f"{what}: {error}") from error
@@ -65,17 +73,28 @@ def run(scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True, b
         console.close()
 
 
-def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console) -> Result:
+def _checkpoint(scene: Scene, folder: Path) -> Checkpoint:
+    """Return the checkpoint of a scene by the present program."""
+    versions = provenance()["versions"]
+    return Checkpoint(folder, scene.parameters(), {"source": versions["source"], "dolfinx": versions["dolfinx"]})
+
+
+def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console, journal: Journal | None) -> Result:
     """Run a scene until nothing must be added to its model."""
     jit.delete_unfinished(comm)
     writer.log.info("scene %s", json.dumps(scene.parameters()))
     clock, restarts = Clock(comm), Restarts(writer.log, console)
+    if journal is not None:
+        clock.earlier(*journal.seconds)
+        if journal.parts:
+            writer.log.info("takes over what an earlier run solved, %d parts of its checkpoint", journal.parts)
+            console.show(f"fingerpad: going on with a run of {journal.seconds[0]:.0f} s; its steps are listed again")
     model = FingerModel(by_rule(scene), plan(scene))
     try:
         with Interrupt(comm) as interrupt:
             while True:
                 _expect(scene, model, comm, console)
-                attempt = Attempt(model, comm, writer, console, clock, interrupt)
+                attempt = Attempt(model, comm, writer, console, clock, interrupt, journal)
                 restart = attempt.follow()
                 if restart is None:
                     break
@@ -85,6 +104,8 @@ def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console) -> Resu
             result = attempt.result(scene, restarts)
             console.show(f"\n{result}\n{_work(result)}")
             writer.close()
+            if journal is not None and not result.interrupted:
+                journal.end()
             return result
     except BaseException as error:
         # On more ranks than this, or not: what waits for the others would never return.

@@ -38,6 +38,7 @@ def run(
     friction: "Friction | float | None" = None,
     mesh: str | Path | None = None,
     comm: "MPI.Comm | None" = None,
+    resume: bool = False,
 ) -> Result:
     """Return what a model answers to a scene; collective.
 
@@ -51,6 +52,7 @@ def run(
         friction: friction law, see :mod:`variational.contact.friction`.
         mesh: file of a gmsh mesh in place of the finger's own, see :mod:`geometry.meshfile`.
         comm: communicator; by default of all ranks.
+        resume: go on from where a run of the same scene in ``out`` was cut short; only of the full model.
 
     Returns:
         The result. A load that could not be reached is its ``failure``, with a warning; the states before are in it.
@@ -65,7 +67,11 @@ def run(
         scene = scene.with_laws(closure=closure, materials=materials, friction=friction, mesh=mesh)
     if not isinstance(scene, Scene):
         raise SceneError(f"scene is {show(scene)}; it must be a Scene, and a file is read by Scene.load(path)")
-    result = solved(scene, model, None if out is None else Path(out), comm)
+    if resume and (out is None or model != "full"):
+        raise SceneError(
+            f"resume is true, out is {show(out)} and model {show(model)}; a full run in a folder can go on"
+        )
+    result = solved(scene, model, None if out is None else Path(out), comm, resume=resume)
     if result.interrupted:
         raise _ended(result)
     if result.failure and terminal.rank() == 0:
@@ -89,6 +95,7 @@ def solved(
     lines: bool = False,
     bar: bool = True,
     report: bool = True,
+    resume: bool = False,
 ) -> Result:
     """Return what a model answers to a scene with all its laws; collective; arguments as of :func:`run`.
 
@@ -100,8 +107,9 @@ def solved(
         lines: whether the full model prints its steps.
         bar: whether it shows a progress bar.
         report: whether ``report.html`` is written beside the results.
+        resume: whether the full model goes on from where a run in the folder was cut short.
     """
-    result = _solved(scene, model, out, comm, lines, bar)
+    result = _solved(scene, model, out, comm, lines, bar, resume)
     if report and out is not None and (terminal.rank() if comm is None else comm.rank) == 0:
         from fingerpad.report.write import attempt
 
@@ -109,7 +117,9 @@ def solved(
     return result
 
 
-def _solved(scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool, bar: bool) -> Result:
+def _solved(
+    scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool, bar: bool, resume: bool
+) -> Result:
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     if model == "cylinders":
@@ -118,11 +128,11 @@ def _solved(scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None",
         found = cylinders.solve(scene)
         return kept(found, out, Serial()) if terminal.rank() == 0 else found
     with needed_by(f"the model {model!r}"):
-        return _with_finite_elements(scene, model, out, comm, lines, bar)
+        return _with_finite_elements(scene, model, out, comm, lines, bar, resume)
 
 
 def _with_finite_elements(
-    scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool, bar: bool
+    scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool, bar: bool, resume: bool
 ) -> Result:
     import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
     from fingerpad.startup import MPI
@@ -132,7 +142,7 @@ def _with_finite_elements(
     if model == "full":
         from fingerpad.runs import full
 
-        return full.run(scene, out, comm, lines, bar)
+        return full.run(scene, out, comm, lines, bar, resume)
     from fingerpad.reduced import smooth
 
     return kept(smooth.solve(scene, tables_in(out), comm), out, comm)

@@ -127,6 +127,7 @@ class Continuation:
 
     Attributes:
         steps: accepted steps so far.
+        solve: solves at a load, see :meth:`variational.solvers.coupling.Coupling.solve`.
         surface_state: the skin in the accepted state, as solved, before its friction history moved on.
         slip: part of its contact points at the friction cone, and whether all slip one way.
     """
@@ -147,7 +148,7 @@ class Continuation:
             touch_depth: how far the bone is lowered by displacement before force takes over (m).
             step_scale: factor on the largest steps of force, voltage and displacement.
         """
-        self.coupling, self.solver = coupling, coupling.solver
+        self.coupling, self.solver, self.solve = coupling, coupling.solver, coupling.solve
         self.problem, self.observer = self.solver.problem, coupling.observer
         self.on_accept, self.touch_depth, self.step_scale = on_accept, touch_depth, step_scale
         self.steps, self.slip = 0, (0.0, False)
@@ -314,7 +315,7 @@ class Continuation:
         moves = load[0].x != self._now.control.x
         self.solver.new_load(*load, slipping=moves and self.slip[0] > _MANY, on_cone=on_cone)
         try:
-            self.coupling.solve(pseudo_transient)
+            self.solve(pseudo_transient)
         finally:
             attempt.newton += counts.newton - newton
             attempt.factorisations += counts.factorisations - factorisations

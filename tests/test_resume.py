@@ -1,0 +1,314 @@
+"""A run that is cut short goes on from its checkpoint, and computes what a run never stopped does."""
+
+import csv
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+import fingerpad as fp
+from fingerpad.cli import run as command
+from fingerpad.io.checkpoint import Checkpoint, CheckpointError
+from fingerpad.io.drawing import Drawing
+from fingerpad.io.writing import Writer
+from fingerpad.model.journal import Journal
+from fingerpad.runs.batch import key, sweep
+from fingerpad.scene import SceneError
+from variational.solvers.coupling import Coupling
+
+ROOT = Path(__file__).resolve().parents[1]
+TABLES = ("steps", "ridges", "coupling")
+PRESS, CHARGE = {"name": "press", "f_ext": 2.0}, {"name": "charge", "voltage": 100.0}
+SLIDE = {"name": "slide", "bone_x": 0.5e-3, "until_full_slip": True}
+HISTORIES = {
+    "charged at rest": ([PRESS, CHARGE, SLIDE], {}),
+    "there and back": ([PRESS, SLIDE, CHARGE, {"name": "back", "bone_x": -0.1e-3}], {}),
+    "bone height": ([{"name": "press", "bone_height": -0.2e-3}, CHARGE, SLIDE], {}),
+    "Nitsche": ([PRESS, CHARGE, SLIDE], {"contact": {"formulation": "nitsche"}}),
+    "augmented": ([PRESS, CHARGE, SLIDE], {"contact": {"formulation": "augmented"}}),
+    "more ridges": ([PRESS, CHARGE, SLIDE], {"mesh": {"touching_half_arc": 0.5e-3}}),  # all loads again
+    "mixed": ([PRESS, CHARGE, SLIDE], {"numerics": {"element": "P2-P1"}}),
+}
+
+
+class Killed(BaseException):
+    """In the place of a kill."""
+
+
+def scene(history="charged at rest", **more) -> fp.Scene:
+    loads, changes = HISTORIES[history]
+    small = fp.Scene.load(ROOT / "demos" / "scenes" / "small_finger.toml")
+    small = small.replace(mesh={"contact": 40e-6}, output={"errors": False}, numerics={"step_scale": 0.6})
+    return small.replace(history=loads, **changes).replace(**more)
+
+
+def tables(folder: Path) -> dict[str, list[dict[str, str]]]:
+    """Return all tables as text, without the time that steps took."""
+    found = {}
+    for name in TABLES:
+        with (folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+            found[name] = [{k: v for k, v in row.items() if "seconds" not in k} for row in csv.DictReader(file)]
+    return found
+
+
+@pytest.fixture(autouse=True)
+def bare(monkeypatch):
+    """Nothing but tables and the summary is written."""
+    monkeypatch.setattr(Drawing, "write", lambda self, folder: None)
+    monkeypatch.setattr(Writer, "dataset", lambda self, result: "")
+    monkeypatch.setattr("fingerpad.report.write.attempt", lambda folder: None)
+
+
+@pytest.fixture
+def killed_at(monkeypatch):
+    """Have a run end at its solve of a number, from 1; none is left to do by a run that takes them all over."""
+    plain = Coupling.solve
+
+    def killed_at(number):
+        count = [0]
+
+        def solve(self, pseudo_transient=False):
+            count[0] += 1
+            if count[0] == number:
+                raise Killed
+            plain(self, pseudo_transient)
+
+        monkeypatch.setattr(Coupling, "solve", solve)
+        return count
+
+    return killed_at
+
+
+# -- the same numbers ------------------------------------------------------------------------------------
+LONG = [pytest.param(name, marks=pytest.mark.long) for name in list(HISTORIES)[2:]]
+
+
+@pytest.mark.parametrize("history", [*list(HISTORIES)[:2], *LONG])
+def test_goes_on_to_the_last_bit(history, tmp_path, killed_at):
+    """Killed twice on the way; the solves of earlier runs are not done again."""
+    whole, cut = tmp_path / "whole", tmp_path / "cut"
+    count = killed_at(None)
+    reference = fp.run(scene(history), out=whole)
+    total = count[0]
+    first, second = sorted(random.Random(history).sample(range(8, total - 3), 2))
+    killed_at(first)
+    with pytest.raises(Killed):
+        fp.run(scene(history), out=cut)
+    killed_at(second - first)
+    with pytest.raises(Killed):
+        fp.run(scene(history), out=cut, resume=True)
+    count = killed_at(None)
+    found = fp.run(scene(history), out=cut, resume=True)
+    assert 0 < count[0] < total - first + 12  # at most a part of the checkpoint was solved for again
+    assert tables(cut) == tables(whole)
+    assert found.values() == reference.values()
+    assert found.cost.newton_iterations == reference.cost.newton_iterations
+    assert found.cost.factorisations == reference.cost.factorisations
+    assert not (cut / "checkpoint").exists()
+
+
+WRAPPER = """
+import os, sys, random
+kind, number = sys.argv.pop(1), int(sys.argv.pop(1))
+from variational.solvers.coupling import Coupling
+from fingerpad.io import checkpoint, files
+def kill_at(owner, name, do=lambda *args: None):
+    plain, count = getattr(owner, name), [0]
+    def call(*args, **more):
+        count[0] += 1
+        if count[0] == number:
+            do(*args)
+            os.kill(os.getpid(), 9)
+        return plain(*args, **more)
+    setattr(owner, name, call)
+if kind == "solve":
+    kill_at(Coupling, "solve")
+elif kind == "part":
+    kill_at(checkpoint.np, "savez", lambda stream, *rest: stream.write(b"PK half of it"))
+elif kind == "row":
+    kill_at(files.Table, "write")
+from fingerpad.io.drawing import Drawing
+Drawing.write = lambda self, folder: None
+from fingerpad.__main__ import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def process(kind: str, number: int, *words: str) -> int:
+    """Run a command that kills itself at a solve, in writing a part of the checkpoint, or at a row of a table."""
+    done = subprocess.run(
+        [sys.executable, "-c", WRAPPER, kind, str(number), *words],
+        env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True, check=False, timeout=600,
+    )  # fmt: skip
+    assert done.returncode in (0, -signal.SIGKILL), done.stderr[-2000:]
+    return done.returncode
+
+
+MOMENTS = [("solve", 9), ("part", 3), ("row", 40), *(("solve", n) for n in random.Random(1).sample(range(2, 36), 7))]
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory):
+    """Return a file of a scene with an error estimate, and the tables of its run."""
+    folder = tmp_path_factory.mktemp("undisturbed")
+    file = folder / "scene.toml"
+    text = (ROOT / "demos" / "scenes" / "small_finger.toml").read_text(encoding="utf-8")
+    file.write_text(text.replace("contact = 20e-6", "contact = 40e-6"), encoding="utf-8")
+    assert process("", 0, "run", str(file), "--quiet", "--out", str(folder / "run")) == 0
+    return file, tables(folder / "run"), (folder / "run" / "summary.json").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("kind", "number"), [MOMENTS[0], *(pytest.param(*m, marks=pytest.mark.long) for m in MOMENTS[1:])]
+)
+def test_kill_9(undisturbed, tmp_path, kind, number):
+    """At a solve of the path or of the error estimate, in writing a part, between two rows."""
+    file, whole, summary = undisturbed
+    out = tmp_path / "run"
+    assert process(kind, number, "run", str(file), "--quiet", "--out", str(out)) == -signal.SIGKILL
+    resumed = (out / "checkpoint").exists()
+    words = ["--resume", str(out)] if resumed else [str(file), "--out", str(out)]
+    assert process("", 0, "run", "--quiet", *words) == 0
+    assert tables(out) == whole
+
+    def lines(text):
+        return [line for line in text.splitlines() if not any(word in line for word in ("seconds", "memory"))]
+
+    assert lines((out / "summary.json").read_text(encoding="utf-8")) == lines(summary)
+
+
+def test_on_another_number_of_ranks(tmp_path, killed_at):
+    """Begun on one rank and finished on all; to 1e-8 the numbers of one rank."""
+    comm = MPI.COMM_WORLD
+    place = Path(comm.bcast(str(tmp_path)))
+    if comm.rank == 0:
+        fp.run(scene(), out=place / "whole", comm=MPI.COMM_SELF)
+        killed_at(15)
+        with pytest.raises(Killed):
+            fp.run(scene(), out=place / "cut", comm=MPI.COMM_SELF)
+    comm.barrier()
+    killed_at(None)
+    fp.run(scene(), out=place / "cut", resume=True)
+    whole, cut = tables(place / "whole"), tables(place / "cut")
+    assert len(whole["steps"]) == len(cut["steps"])
+    for name in ("f_ext", "f_t", "f_contact", "contact_length", "mu_app", "bone_height"):
+        values = [[float(row[name]) for row in found["steps"]] for found in (whole, cut)]
+        assert np.allclose(*values, rtol=1e-8, atol=1e-8 * np.abs(values[0]).max())
+
+
+# -- refusals -------------------------------------------------------------------------------------------
+@pytest.fixture
+def cut_short(tmp_path, killed_at):
+    killed_at(12)
+    with pytest.raises(Killed):
+        fp.run(scene(), out=tmp_path)
+    killed_at(None)
+    return tmp_path
+
+
+def refused(match: str, folder: Path, **more) -> None:
+    with pytest.raises(SceneError, match=match):
+        fp.run(scene(**more), out=folder, resume=True)
+
+
+def test_refusals(cut_short, tmp_path_factory, capsys):
+    """Of nothing to go on from, another scene, a damaged or foreign checkpoint; each in one sentence."""
+    refused("has no checkpoint to go on from: its run had not come to one", tmp_path_factory.mktemp("empty"))
+    refused("holds the results of another scene", cut_short, friction=0.3)
+    head, part = cut_short / "checkpoint" / "head.json", sorted((cut_short / "checkpoint").glob("*.npz"))[-1]
+    whole, text = part.read_bytes(), head.read_text(encoding="utf-8")
+    for damaged in (whole[: len(whole) // 2], b"", whole[:200] + bytes([whole[200] ^ 1]) + whole[201:]):
+        part.write_bytes(damaged)
+        refused(f"{part.name} is not whole; delete it", cut_short)
+    part.unlink()
+    other = tmp_path_factory.mktemp("other")
+    shutil.copytree(cut_short / "checkpoint", other / "checkpoint")
+    refused("is of another scene", other, friction=0.3)
+    for old, new, match in (
+        ('"format": 1', '"format": 0', "another format"),
+        ('"source": "', '"source": "x', "source"),
+    ):
+        head.write_text(text.replace(old, new), encoding="utf-8")
+        refused(match, cut_short)
+    head.write_text("{", encoding="utf-8")
+    refused("head.json cannot be read", cut_short)
+    head.write_text(text, encoding="utf-8")
+    fp.run(scene(), out=cut_short, resume=True)  # from the part before the one that was deleted
+    refused("its run has reached its end", cut_short)
+
+
+def test_refused_options(tmp_path):
+    with pytest.raises(SceneError, match="a full run in a folder can go on"):
+        fp.run(resume=True)
+    with pytest.raises(SceneError, match="a full run in a folder can go on"):
+        fp.run(out=tmp_path, model="cylinders", resume=True)
+    for words in (["scene.toml"], ["--set", "voltage=1"], ["--model", "smooth"], ["--out", "x"]):
+        with pytest.raises(SceneError, match="and --resume are given"):
+            command.main([*words, "--resume", str(tmp_path)])
+    with pytest.raises(SceneError, match=r"has no scene.json, and so no run to go on with"):
+        command.main(["--resume", str(tmp_path)])
+    for kept, match in (('{"model": "smooth"}', "only a full one can go on"), ('{"laws": {}}', "resume=True")):
+        (tmp_path / "scene.json").write_text(kept, encoding="utf-8")
+        with pytest.raises(SceneError, match=match):
+            command.main(["--resume", str(tmp_path)])
+
+
+def test_a_run_without_a_folder_keeps_nothing(monkeypatch):
+    """Its solves use the factorisations that they would always use."""
+    monkeypatch.setattr(Journal, "__init__", lambda *args: pytest.fail("a journal"))
+    fp.run(scene(history="charged at rest").replace(history=[PRESS]))
+
+
+def test_checkpoint_of_another_mesh(cut_short, monkeypatch):
+    """As by another version of gmsh: the places are compared, not trusted."""
+    read = Checkpoint.read
+
+    def elsewhere(self, number):
+        facts, arrays = read(self, number)
+        return facts, {k: v + 1e-6 * k.startswith("body/") for k, v in arrays.items()}
+
+    monkeypatch.setattr(Checkpoint, "read", elsewhere)
+    with pytest.raises(CheckpointError, match="of another mesh"):
+        fp.run(scene(), out=cut_short, resume=True)
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # a full disk leaves tables open
+def test_full_disk_under_the_checkpoint(tmp_path, monkeypatch):
+    """What is there stays whole, and the run goes on from it when there is room."""
+    write = Checkpoint.write
+
+    def full(self, number, facts, arrays):
+        if number == 3:
+            raise OSError(28, "No space left on device")
+        write(self, number, facts, arrays)
+
+    monkeypatch.setattr(Checkpoint, "write", full)
+    with pytest.raises(OSError, match="fingerpad run --resume FOLDER goes on when there is room"):
+        fp.run(scene(), out=tmp_path)
+    monkeypatch.setattr(Checkpoint, "write", write)
+    assert fp.run(scene(), out=tmp_path, resume=True).full_slip is not None
+
+
+# -- sweeps ---------------------------------------------------------------------------------------------
+@pytest.mark.long
+def test_sweep_goes_on(tmp_path, killed_at, monkeypatch):
+    """The run that was cut short takes its outcomes over; where that is not possible it starts anew."""
+    one = scene()
+    folder = tmp_path / key(one)
+    for head in (None, "{}"):
+        killed_at(12)
+        with pytest.raises(Killed):
+            fp.run(one, out=folder)
+        if head is not None:
+            (folder / "checkpoint" / "head.json").write_text(head, encoding="utf-8")
+        found = sweep({"one": one}, tmp_path, jobs=1, quiet=True)["one"]
+        assert "failure" not in found
+        assert ("earlier" in (folder / "run.log").read_text(encoding="utf-8")) == (head is None)
+        (folder / "summary.json").unlink()
