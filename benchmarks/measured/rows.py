@@ -1,0 +1,217 @@
+"""Our numbers beside measured ones, and a verdict each; all words are in ``rows.csv`` and ``sources.csv``.
+
+The friction, contact lengths and ridges are those of the paper's page (docs/paper.json: default mesh). Depths and
+attraction are of docs/models.json, at a contact size of 10 µm. The difference of the two meshes is the stated error.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+from benchmarks import models
+from benchmarks.measured import scenes
+from benchmarks.measured.verdict import EXPONENT, MISS, RATIO, by_factor, by_fit, by_share
+from benchmarks.runs import FORCES, VOLTAGES
+from fingerpad.scene import Scene
+
+Array = NDArray[np.float64]
+Numbers = dict[str, float]
+_FITS = (0.95, 0.8)  # R² that is a hit, and one that is met partly
+_MISFITS = (0.1, 0.2)  # rms of the logarithm of a fitted curve: the same
+_MORE, _SAME = 0.25, 0.1  # relative changes that count as strikingly higher, and as similar
+
+
+class Grid(NamedTuple):
+    """Kept numbers over force and voltage; arrays of shape (forces, voltages), SI units."""
+
+    fine: Mapping[str, Array]
+    """Default mesh: ``normal_…`` and ``slip_…`` of ``f_t``, ``contact_length`` and ``ridges_in_contact``."""
+    coarse: Mapping[str, Array]
+    """Contact size of 10 µm: the same, and ``f_electrostatic`` and ``bone_height``."""
+    gaps: tuple[float, float]
+    """Least and largest air gap (m) of all runs with a voltage."""
+
+
+def grid(paper: Mapping[str, Any], full: Mapping[str, Any]) -> Grid:
+    """Return the grid from the numbers of docs/paper.json and docs/models.json."""
+    fine = {name: np.array(values) for name, values in paper["grid"].items()}
+    names = [f"{state}_{key}" for state in ("normal", "slip") for key in _COARSE]
+    coarse = {n: np.array([[_of(full, f, u)[n] for u in VOLTAGES] for f in FORCES], float) for n in names}
+    low, high = fine["gaps_range"]
+    return Grid(fine, coarse, (float(low), float(high)))
+
+
+_COARSE = ("f_t", "contact_length", "ridges_in_contact", "f_electrostatic", "bone_height")
+
+
+def _of(full: Mapping[str, Any], force: float, voltage: float) -> Mapping[str, float]:
+    found: Mapping[str, float] = full["scenes"][models.name(force, voltage)]["full"]["summary"]
+    return found
+
+
+def _width(ridges: Any) -> Any:
+    """Return the width (m) over a number of touching ridges."""
+    return ridges * Scene().geometry.ridge_wavelength
+
+
+# -- over the voltage ----------------------------------------------------------------------------------------
+def exponents(values: Array, voltages: tuple[float, ...]) -> Array:
+    """Return the exponent of the rise over the value at 0 V, fitted to logarithms, at each force; shape (forces,)."""
+    at = [VOLTAGES.index(u) for u in voltages]
+    rise = values[:, at] - values[:, :1]
+    return np.polyfit(np.log(voltages), np.log(np.maximum(rise, 1e-15)).T, 1)[0]
+
+
+def _power(g: Grid, name: str, voltages: tuple[float, ...]) -> tuple[Numbers, str]:
+    found, other = exponents(g.fine[name], voltages), exponents(g.coarse[name], voltages)
+    near = np.abs(found - 2) <= EXPONENT
+    numbers = {"low": found.min(), "high": found.max(), "error": np.abs(found - other).max()}
+    return numbers | {"holds": near.sum(), "loads": near.size}, by_share(near.mean())
+
+
+def _trend(holds: NDArray[np.bool_], **more: float) -> tuple[Numbers, str]:
+    return {"holds": holds.sum(), "loads": holds.size} | more, by_share(float(holds.mean()))
+
+
+def _friction_slip(g: Grid) -> tuple[Numbers, str]:
+    f_t = g.fine["slip_f_t"]
+    return _trend(f_t[:, -1] > f_t[:, 0], least=float((f_t[:, -1] / f_t[:, 0]).min() - 1))
+
+
+def _area_before(g: Grid) -> tuple[Numbers, str]:
+    ridges = g.fine["normal_ridges_in_contact"]
+    change = np.abs(ridges[:, -1] / ridges[:, 0] - 1)
+    return _trend(change == 0, most=float(change.max()))
+
+
+def _area_after(g: Grid) -> tuple[Numbers, str]:
+    ridges = g.fine["slip_ridges_in_contact"]
+    return _trend(ridges[:, -1] < ridges[:, 0])
+
+
+# -- over the load -------------------------------------------------------------------------------------------
+def _shear(g: Grid) -> Array:
+    """Return the relative change of the contact length from rest to full slip at 0 V, shape (forces,)."""
+    change: Array = g.fine["slip_contact_length"][:, 0] / g.fine["normal_contact_length"][:, 0] - 1
+    return change
+
+
+def _area_shear(g: Grid) -> tuple[Numbers, str]:
+    return _trend(_shear(g) < 0, most=float(-_shear(g).min()))
+
+
+def _area_load(g: Grid) -> tuple[Numbers, str]:
+    steps = [np.diff(g.fine[f"normal_{name}"][:, 0]) for name in ("contact_length", "ridges_in_contact")]
+    return _trend((steps[0] > 0) & (steps[1] > 0))
+
+
+def exponential(depth: Array, force: Array) -> tuple[float, float]:
+    """Fit a (exp(b depth) - 1) to forces by logarithms; return b (1/m) and the rms of the logarithm's misfit."""
+
+    def misfit(b: float) -> float:
+        return float(np.std(np.log(force) - np.log(np.expm1(b * depth))))
+
+    found = minimize_scalar(misfit, bounds=(1e-3 / depth.max(), 50 / depth.max()), method="bounded")
+    return float(found.x), float(found.fun)
+
+
+def _force_depth(g: Grid) -> tuple[Numbers, str]:
+    depth, force = -g.coarse["normal_bone_height"][:, 0], np.array(FORCES)
+    b, misfit = exponential(depth, force)
+    line = np.polyfit(np.log(depth), np.log(force), 1)
+    power = float(np.std(np.log(force) - np.polyval(line, np.log(depth))))
+    return {"exponential": misfit, "power": power, "slope": b / 1e3}, by_fit(-misfit, *(-each for each in _MISFITS))
+
+
+def _ridges(g: Grid) -> tuple[Numbers, str]:
+    found, other = (
+        each["normal_contact_length"][:, 0] / _width(each["normal_ridges_in_contact"][:, 0])
+        for each in (g.fine, g.coarse)
+    )
+    low, high = float(found.min()), float(found.max())
+    numbers = {"low": low, "high": high, "error": float(np.abs(found - other).max())}
+    return numbers, by_factor(low, high, 0.67, 0.67, RATIO)
+
+
+def _gap_sliding(g: Grid) -> tuple[Numbers, str]:
+    """Impedance of equal plates: attraction F over length L gives the capacitance, in proportion to (F L)^(1/2)."""
+    plates = [np.sqrt(g.coarse[f"{s}_f_electrostatic"] * g.coarse[f"{s}_contact_length"]) for s in ("normal", "slip")]
+    rise = (plates[0][:, 1:] / plates[1][:, 1:]) - 1
+    low, high = float(rise.min()), float(rise.max())
+    return {"low": low, "high": high}, by_factor(*(max(each, 1e-9) for each in (low, high)), 1.0, 10.0, RATIO)
+
+
+# -- runs of this page ---------------------------------------------------------------------------------------
+def paraboloid(place: Array, pressure: Array) -> tuple[float, float, float]:
+    """Fit p_0 (1 - (x/a)²) to pressures; return p_0, a and the coefficient of determination."""
+    slope, top = np.polyfit(place**2, pressure, 1)
+    rest = pressure - np.polyval((slope, top), place**2)
+    return float(top), float(np.sqrt(-top / slope)), float(1 - (rest**2).sum() / ((pressure - pressure.mean()) ** 2).sum())
+
+
+def _pressure(runs: Mapping[str, Any]) -> tuple[Numbers, str]:
+    coarse, fine = (
+        paraboloid(np.array(runs[f"dry {size * 1e6:.0f}"]["place"]), np.array(runs[f"dry {size * 1e6:.0f}"]["pressure"]))[2]
+        for size in scenes.SIZES
+    )
+    numbers = {"r2": fine, "error": abs(fine - coarse), "ridges": runs["dry 20"]["ridges"]}
+    return numbers, by_fit(fine, *_FITS)
+
+
+def _change(runs: Mapping[str, Any], kind: str, name: str = "length") -> tuple[float, float]:
+    """Return a kind's relative change from the dry finger on the finer mesh, and its error."""
+    coarse, fine = (runs[f"{kind} {s * 1e6:.0f}"][name] / runs[f"dry {s * 1e6:.0f}"][name] - 1 for s in scenes.SIZES)
+    return fine, abs(fine - coarse)
+
+
+def _softer(runs: Mapping[str, Any]) -> tuple[Numbers, str]:
+    (real, error), (gross, _) = _change(runs, "soft"), _change(runs, "soft", "ridges")
+    numbers = {"real": real, "gross": gross, "error": error, "softer": scenes.SOFTER}
+    return numbers, by_share(((real >= _MORE) + (abs(gross) <= _SAME)) / 2)
+
+
+def _modulus(runs: Mapping[str, Any]) -> tuple[Numbers, str]:
+    (soft, error), (rough, _) = _change(runs, "soft"), _change(runs, "rough")
+    numbers = {"soft": soft, "rough": rough, "error": error, "softer": scenes.SOFTER}
+    return numbers, by_share(float(abs(soft) > abs(rough)))
+
+
+# -- all -----------------------------------------------------------------------------------------------------
+def _constant(verdict: str) -> tuple[Numbers, str]:
+    return {}, verdict
+
+
+def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, tuple[Numbers, str]]:
+    """Return our numbers and the verdict of every row, by its key."""
+    mu_0 = Scene().friction
+    gap = tuple(1e6 * each for each in g.gaps)
+    found: dict[str, Callable[[], tuple[Numbers, str]]] = {
+        "friction_voltage": lambda: _power(g, "slip_f_t", VOLTAGES[1:]),
+        "friction_range": lambda: _power(g, "slip_f_t", VOLTAGES[1:4]),
+        "area_voltage": lambda: _power(g, "slip_contact_length", VOLTAGES[1:4]),
+        "frequency": lambda: _constant(by_share(1.0)),
+        "frequency_wide": lambda: _constant(MISS),
+        "friction_slip": lambda: _friction_slip(g),
+        "area_before": lambda: _area_before(g),
+        "area_after": lambda: _area_after(g),
+        "area_shear": lambda: _area_shear(g),
+        "real_sliding": lambda: _trend(_shear(g) > 0),
+        "area_load": lambda: _area_load(g),
+        "force_depth": lambda: _force_depth(g),
+        "pressure_shape": lambda: _pressure(runs),
+        "friction_load": lambda: _constant(by_share(1.0)),
+        "friction_acrylic": lambda: _constant(by_share(0.0)),
+        "softer": lambda: _softer(runs),
+        "modulus": lambda: _modulus(runs),
+        "time": lambda: _constant(MISS),
+        "ridges": lambda: _ridges(g),
+        "gap_sliding": lambda: _gap_sliding(g),
+        "friction_occluded": lambda: _constant(by_factor(1.0, 1.0, 5.0, 5.0, RATIO)),
+        "gap": lambda: ({"low": gap[0], "high": gap[1]}, by_factor(*gap, 1.5, 2.5)),
+        "friction_input": lambda: _constant(by_factor(mu_0, mu_0, 0.25, 0.25)),
+        "friction_glass": lambda: _constant(by_factor(mu_0, mu_0, 0.4, 0.8)),
+    }
+    return {key: row() for key, row in found.items()}
