@@ -35,7 +35,12 @@ def compute(args: argparse.Namespace) -> None:
     """Run what is missing and keep the numbers."""
     wanted = scenes.scenes()
     summaries = run(wanted, args, _LIMIT)
-    keep("measured", {"runs": {name: numbers(s, args.out) for name, s in wanted.items()}}, made(summaries.values()), args.docs)
+    keep(
+        "measured",
+        {"runs": {name: numbers(s, args.out) for name, s in wanted.items()}},
+        made(summaries.values()),
+        args.docs,
+    )
 
 
 if __name__ == "__main__":

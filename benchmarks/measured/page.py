@@ -47,7 +47,13 @@ def judged(docs: Path) -> list[Row]:
         if text["built"] and verdict == HIT:
             verdict = BUILT
         because = text["why"] if verdict != HIT else ""
-        words = text["key"], text["kind"], text["measured"], sources[text["source"]], text["ours"].format(**numbers).replace("%", " %")
+        words = (
+            text["key"],
+            text["kind"],
+            text["measured"],
+            sources[text["source"]],
+            text["ours"].format(**numbers).replace("%", " %"),
+        )
         judged.append(Row(*words, numbers, text["fitted"], verdict, because))
     assert not found, f"no words for {', '.join(found)}"
     return judged

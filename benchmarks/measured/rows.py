@@ -141,7 +141,8 @@ def _gap_sliding(g: Grid) -> tuple[Numbers, str]:
     plates = [np.sqrt(g.coarse[f"{s}_f_electrostatic"] * g.coarse[f"{s}_contact_length"]) for s in ("normal", "slip")]
     rise = (plates[0][:, 1:] / plates[1][:, 1:]) - 1
     low, high = float(rise.min()), float(rise.max())
-    return {"low": low, "high": high}, by_factor(*(max(each, 1e-9) for each in (low, high)), 1.0, 10.0, RATIO)
+    seen = max(low, 1e-9), max(high, 1e-9)
+    return {"low": low, "high": high}, by_factor(seen[0], seen[1], 1.0, 10.0, RATIO)
 
 
 # -- runs of this page ---------------------------------------------------------------------------------------
@@ -149,14 +150,13 @@ def paraboloid(place: Array, pressure: Array) -> tuple[float, float, float]:
     """Fit p_0 (1 - (x/a)²) to pressures; return p_0, a and the coefficient of determination."""
     slope, top = np.polyfit(place**2, pressure, 1)
     rest = pressure - np.polyval((slope, top), place**2)
-    return float(top), float(np.sqrt(-top / slope)), float(1 - (rest**2).sum() / ((pressure - pressure.mean()) ** 2).sum())
+    r2 = 1 - (rest**2).sum() / ((pressure - pressure.mean()) ** 2).sum()
+    return float(top), float(np.sqrt(-top / slope)), float(r2)
 
 
 def _pressure(runs: Mapping[str, Any]) -> tuple[Numbers, str]:
-    coarse, fine = (
-        paraboloid(np.array(runs[f"dry {size * 1e6:.0f}"]["place"]), np.array(runs[f"dry {size * 1e6:.0f}"]["pressure"]))[2]
-        for size in scenes.SIZES
-    )
+    pressed = (runs[f"dry {size * 1e6:.0f}"] for size in scenes.SIZES)
+    coarse, fine = (paraboloid(np.array(run["place"]), np.array(run["pressure"]))[2] for run in pressed)
     numbers = {"r2": fine, "error": abs(fine - coarse), "ridges": runs["dry 20"]["ridges"]}
     return numbers, by_fit(fine, *_FITS)
 
@@ -187,7 +187,7 @@ def _constant(verdict: str) -> tuple[Numbers, str]:
 def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, tuple[Numbers, str]]:
     """Return our numbers and the verdict of every row, by its key."""
     mu_0 = Scene().friction
-    gap = tuple(1e6 * each for each in g.gaps)
+    low, high = (1e6 * each for each in g.gaps)
     found: dict[str, Callable[[], tuple[Numbers, str]]] = {
         "friction_voltage": lambda: _power(g, "slip_f_t", VOLTAGES[1:]),
         "friction_range": lambda: _power(g, "slip_f_t", VOLTAGES[1:4]),
@@ -210,7 +210,7 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, tuple[Numbers, str]]:
         "ridges": lambda: _ridges(g),
         "gap_sliding": lambda: _gap_sliding(g),
         "friction_occluded": lambda: _constant(by_factor(1.0, 1.0, 5.0, 5.0, RATIO)),
-        "gap": lambda: ({"low": gap[0], "high": gap[1]}, by_factor(*gap, 1.5, 2.5)),
+        "gap": lambda: ({"low": low, "high": high}, by_factor(low, high, 1.5, 2.5)),
         "friction_input": lambda: _constant(by_factor(mu_0, mu_0, 0.25, 0.25)),
         "friction_glass": lambda: _constant(by_factor(mu_0, mu_0, 0.4, 0.8)),
     }
