@@ -23,7 +23,7 @@ _EXAMPLES = """
     fingerpad compare-data data/measured/ayyildiz2018.csv --run results/mine
 """
 _SCALES = {"m": ("mm", 1e3), "N/m": ("N/m", 1.0), "1": ("", 1.0)}
-_MOST_CURVES = 5
+_NAMED = 4  # curves in the legend of a picture
 
 
 def main(argv: Sequence[str]) -> int:
@@ -61,9 +61,7 @@ class _Compared:
         self.ours = known.at(self.force, self.voltage)
         self.ratio = self.ours / self.measured
         if not self.within.any():
-            spans = ", ".join(
-                f"{axis[0]:g} to {axis[-1]:g} {unit}" for axis, unit in ((known.force, "N/m"), (known.voltage, "V"))
-            )
+            spans = ", ".join(_span(axis, unit) for axis, unit in ((known.force, "N/m"), (known.voltage, "V")))
             raise SceneError(f"no row of {clip(str(table.file), 80)} is within ours, which has {spans}")
 
     @property
@@ -107,6 +105,10 @@ class _Compared:
             yield f"Not compared, since ours has no result there: {len(self.ratio) - count} of {len(self.ratio)} rows."
 
 
+def _span(axis: Array, unit: str) -> str:
+    return f"{axis[0]:g} {unit}" if len(axis) == 1 else f"{axis[0]:g} to {axis[-1]:g} {unit}"
+
+
 def draw(file: Path, compared: Sequence[_Compared]) -> None:
     """Draw each table over ours, in a panel of its own."""
     from fingerpad.cli import plot  # Matplotlib
@@ -124,10 +126,10 @@ def _panel(ax: "Axes", each: _Compared) -> None:
     over_voltage = len(np.unique(each.voltage)) > len(np.unique(each.force))
     x, other = (each.voltage, each.force) if over_voltage else (each.force, each.voltage)
     along, name = (each.known.voltage, "N/m") if over_voltage else (each.known.force, "V")
-    for k, held in enumerate(np.unique(other)[:_MOST_CURVES]):
+    for k, held in enumerate(np.unique(other)):
         mine, level = other == held, np.full(len(along), held)
         curve = each.known.at(level, along) if over_voltage else each.known.at(along, level)
-        plot.curve(ax, k, along, scale * curve, f"ours, {held:g} {name}")
+        plot.curve(ax, k, along, scale * curve, f"ours, {held:g} {name}" if k < _NAMED else "_")
         spread = None if np.isnan(each.spread).all() else scale * each.spread[mine]
         ax.errorbar(
             x[mine],
@@ -138,7 +140,7 @@ def _panel(ax: "Axes", each: _Compared) -> None:
             mfc="white",
             ms=7,
             capsize=3,
-            label=f"measured, {held:g} {name}",
+            label=f"measured, {held:g} {name}" if k < _NAMED else "_",
         )
     ax.set(xlabel="voltage (V)" if over_voltage else "force per length (N/m)")
     ax.set(ylabel=f"{each.table.quantity} ({unit or '–'})", title=clip(each.table.source, 40))

@@ -33,11 +33,16 @@ class Ours:
     """Shape (forces, voltages); NaN where a run has no result."""
 
     def at(self, force: Array, voltage: Array) -> Array:
-        """Return ours at pairs of force and voltage, linear between ours; NaN outside of ours."""
-        pairs = zip(force, voltage, strict=True)
-        return np.array(
-            [_between(f, self.force, [_between(u, self.voltage, row) for row in self.values]) for f, u in pairs]
-        )
+        """Return ours at pairs of force and voltage; NaN outside of ours.
+
+        Between two forces ours is taken as linear, between two voltages as linear in U², as which attraction rises.
+        """
+        squares = self.voltage**2
+        found = []
+        for f, u in zip(force, voltage, strict=True):
+            over = [_between(u**2, squares, row) for row in self.values]
+            found.append(_between(f, self.force, over))
+        return np.array(found)
 
 
 def _between(x: float, known: Array, values: Sequence[float] | Array) -> float:
@@ -106,6 +111,11 @@ def _of_sweep(found: Table, table: Measured) -> Ours:
             "give one of its runs by --run"
         )
     fixed = found.parameters or {}
+    if unknown := [name for key, name in CONDITIONS.items() if key not in found.axes and key not in fixed]:
+        raise SceneError(
+            f"the sweep in {clip(str(found.folder), 80)} does not give its {unknown[0]}; "
+            "give one over f_ext and voltage"
+        )
     points = {}
     try:
         for row in found.rows:
