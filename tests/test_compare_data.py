@@ -39,7 +39,7 @@ def table(tmp_path):
 # -- tables --------------------------------------------------------------------------------------------------
 def test_units_are_converted(table):
     """To SI; comments, empty lines and a mark of the byte order are no rows."""
-    lines = "# people: 5\n# state: uncharged\n# remark\n\nForce (N/mm), contact length (mm), spread (um)\n0.05, 1.2, 30\n"
+    lines = "# people: 5\n# state: uncharged\n# else\n\nForce (N/mm), contact length (mm), spread (um)\n0.05, 1.2, 30\n"
     found = read(table(lines, "\ufeff" + SOURCE))
     assert (found.quantity, found.state, found.about["people"]) == ("contact length", "uncharged", "5")
     assert found.conditions == {"f_ext": pytest.approx((50.0,))}
