@@ -213,5 +213,6 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, tuple[Numbers, str]]:
         "gap": lambda: ({"low": low, "high": high}, by_factor(low, high, 1.5, 2.5)),
         "friction_input": lambda: _constant(by_factor(mu_0, mu_0, 0.25, 0.25)),
         "friction_glass": lambda: _constant(by_factor(mu_0, mu_0, 0.4, 0.8)),
+        "adhesion": lambda: _constant(MISS),
     }
     return {key: row() for key, row in found.items()}
