@@ -1,7 +1,8 @@
 """Our numbers beside measured ones, and a verdict each; all words are in ``rows.csv`` and ``sources.csv``.
 
 The friction, contact lengths and ridges are those of the paper's page (docs/paper.json: default mesh). Depths and
-attraction are of docs/models.json, at a contact size of 10 µm. The difference of the two meshes is the stated error.
+attraction are of docs/models.json, at a contact size of 10 µm. The stated error is the difference of the two meshes, or
+of the full model and the smooth finger where one mesh alone has a number. Of trends the other mesh has a count.
 """
 
 from collections.abc import Callable, Mapping
@@ -31,24 +32,28 @@ class Grid(NamedTuple):
     """Default mesh: ``normal_…`` and ``slip_…`` of ``f_t``, ``contact_length`` and ``ridges_in_contact``."""
     coarse: Mapping[str, Array]
     """Contact size of 10 µm: the same, and ``f_electrostatic`` and ``bone_height``."""
+    smooth: Mapping[str, Array]
+    """The smooth finger: likewise."""
     gaps: tuple[float, float]
     """Least and largest air gap (m) of all runs with a voltage."""
 
 
-def grid(paper: Mapping[str, Any], full: Mapping[str, Any]) -> Grid:
+_KEPT = ("f_t", "contact_length", "ridges_in_contact", "f_electrostatic", "bone_height")  # of docs/models.json
+
+
+def grid(paper: Mapping[str, Any], known: Mapping[str, Any]) -> Grid:
     """Return the grid from the numbers of docs/paper.json and docs/models.json."""
     fine = {name: np.array(values) for name, values in paper["grid"].items()}
-    names = [f"{state}_{key}" for state in ("normal", "slip") for key in _COARSE]
-    coarse = {n: np.array([[_of(full, f, u)[n] for u in VOLTAGES] for f in FORCES], float) for n in names}
     low, high = fine["gaps_range"]
-    return Grid(fine, coarse, (float(low), float(high)))
+    return Grid(fine, _of(known, "full"), _of(known, "smooth"), (float(low), float(high)))
 
 
-_COARSE = ("f_t", "contact_length", "ridges_in_contact", "f_electrostatic", "bone_height")
-
-
-def _of(full: Mapping[str, Any], force: float, voltage: float) -> Mapping[str, float]:
-    found: Mapping[str, float] = full["scenes"][models.name(force, voltage)]["full"]["summary"]
+def _of(known: Mapping[str, Any], model: str) -> dict[str, Array]:
+    """Return a model's numbers over force and voltage."""
+    found = {}
+    for name in (f"{state}_{key}" for state in ("normal", "slip") for key in _KEPT):
+        values = [[models.value(known["scenes"][models.name(f, u)], model, name) for u in VOLTAGES] for f in FORCES]
+        found[name] = np.array(values, dtype=float)
     return found
 
 
@@ -72,40 +77,45 @@ def _power(g: Grid, name: str, voltages: tuple[float, ...]) -> tuple[Numbers, st
     return numbers | {"holds": near.sum(), "loads": near.size}, by_share(near.mean())
 
 
-def _trend(holds: NDArray[np.bool_], **more: float) -> tuple[Numbers, str]:
-    return {"holds": holds.sum(), "loads": holds.size} | more, by_share(float(holds.mean()))
+def _trend(g: Grid, holds: Callable[[Mapping[str, Array]], NDArray[np.bool_]], **more: float) -> tuple[Numbers, str]:
+    """Return at how many loads a statement holds, on either mesh, and the verdict by the finer one."""
+    fine, coarse = holds(g.fine), holds(g.coarse)
+    return {"holds": fine.sum(), "other": coarse.sum(), "loads": fine.size} | more, by_share(float(fine.mean()))
 
 
 def _friction_slip(g: Grid) -> tuple[Numbers, str]:
     f_t = g.fine["slip_f_t"]
-    return _trend(f_t[:, -1] > f_t[:, 0], least=float((f_t[:, -1] / f_t[:, 0]).min() - 1))
+    return _trend(g, lambda a: a["slip_f_t"][:, -1] > a["slip_f_t"][:, 0], least=(f_t[:, -1] / f_t[:, 0]).min() - 1)
 
 
 def _area_before(g: Grid) -> tuple[Numbers, str]:
-    ridges = g.fine["normal_ridges_in_contact"]
-    change = np.abs(ridges[:, -1] / ridges[:, 0] - 1)
-    return _trend(change == 0, most=float(change.max()))
+    def change(a: Mapping[str, Array]) -> Array:
+        ridges = a["normal_ridges_in_contact"]
+        return np.asarray(ridges[:, -1] / ridges[:, 0] - 1)
+
+    return _trend(g, lambda a: change(a) == 0, most=np.abs(change(g.fine)).max())
 
 
 def _area_after(g: Grid) -> tuple[Numbers, str]:
-    ridges = g.fine["slip_ridges_in_contact"]
-    return _trend(ridges[:, -1] < ridges[:, 0])
+    return _trend(g, lambda a: a["slip_ridges_in_contact"][:, -1] < a["slip_ridges_in_contact"][:, 0])
 
 
 # -- over the load -------------------------------------------------------------------------------------------
-def _shear(g: Grid) -> Array:
+def _shear(a: Mapping[str, Array]) -> Array:
     """Return the relative change of the contact length from rest to full slip at 0 V, shape (forces,)."""
-    change: Array = g.fine["slip_contact_length"][:, 0] / g.fine["normal_contact_length"][:, 0] - 1
-    return change
+    return np.asarray(a["slip_contact_length"][:, 0] / a["normal_contact_length"][:, 0] - 1)
 
 
 def _area_shear(g: Grid) -> tuple[Numbers, str]:
-    return _trend(_shear(g) < 0, most=float(-_shear(g).min()))
+    return _trend(g, lambda a: _shear(a) < 0, most=-_shear(g.fine).min())
 
 
 def _area_load(g: Grid) -> tuple[Numbers, str]:
-    steps = [np.diff(g.fine[f"normal_{name}"][:, 0]) for name in ("contact_length", "ridges_in_contact")]
-    return _trend((steps[0] > 0) & (steps[1] > 0))
+    def grow(a: Mapping[str, Array]) -> NDArray[np.bool_]:
+        steps = [np.diff(a[f"normal_{name}"][:, 0]) for name in ("contact_length", "ridges_in_contact")]
+        return np.asarray((steps[0] > 0) & (steps[1] > 0))
+
+    return _trend(g, grow)
 
 
 def exponential(depth: Array, force: Array) -> tuple[float, float]:
@@ -121,9 +131,11 @@ def exponential(depth: Array, force: Array) -> tuple[float, float]:
 def _force_depth(g: Grid) -> tuple[Numbers, str]:
     depth, force = -g.coarse["normal_bone_height"][:, 0], np.array(FORCES)
     b, misfit = exponential(depth, force)
+    error = abs(exponential(-g.smooth["normal_bone_height"][:, 0], force)[1] - misfit)
     line = np.polyfit(np.log(depth), np.log(force), 1)
     power = float(np.std(np.log(force) - np.polyval(line, np.log(depth))))
-    return {"exponential": misfit, "power": power, "slope": b / 1e3}, by_fit(-misfit, *(-each for each in _MISFITS))
+    numbers = {"exponential": misfit, "error": error, "power": power, "slope": b / 1e3}
+    return numbers, by_fit(-misfit, *(-each for each in _MISFITS))
 
 
 def _ridges(g: Grid) -> tuple[Numbers, str]:
@@ -138,11 +150,15 @@ def _ridges(g: Grid) -> tuple[Numbers, str]:
 
 def _gap_sliding(g: Grid) -> tuple[Numbers, str]:
     """Impedance of equal plates: attraction F over length L gives the capacitance, in proportion to (F L)^(1/2)."""
-    plates = [np.sqrt(g.coarse[f"{s}_f_electrostatic"] * g.coarse[f"{s}_contact_length"]) for s in ("normal", "slip")]
-    rise = (plates[0][:, 1:] / plates[1][:, 1:]) - 1
-    low, high = float(rise.min()), float(rise.max())
+
+    def rise(a: Mapping[str, Array]) -> Array:
+        plates = [np.sqrt(a[f"{s}_f_electrostatic"] * a[f"{s}_contact_length"])[:, 1:] for s in ("normal", "slip")]
+        return np.asarray(plates[0] / plates[1] - 1)
+
+    found = rise(g.coarse)
+    low, high, error = float(found.min()), float(found.max()), float(np.abs(found - rise(g.smooth)).max())
     seen = max(low, 1e-9), max(high, 1e-9)
-    return {"low": low, "high": high}, by_factor(seen[0], seen[1], 1.0, 10.0, RATIO)
+    return {"low": low, "high": high, "error": error}, by_factor(seen[0], seen[1], 1.0, 10.0, RATIO)
 
 
 # -- runs of this page ---------------------------------------------------------------------------------------
@@ -198,7 +214,7 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, tuple[Numbers, str]]:
         "area_before": lambda: _area_before(g),
         "area_after": lambda: _area_after(g),
         "area_shear": lambda: _area_shear(g),
-        "real_sliding": lambda: _trend(_shear(g) > 0),
+        "real_sliding": lambda: _trend(g, lambda a: _shear(a) > 0),
         "area_load": lambda: _area_load(g),
         "force_depth": lambda: _force_depth(g),
         "pressure_shape": lambda: _pressure(runs),
