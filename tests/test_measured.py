@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks.harness import DOCS, kept
+from benchmarks.measured import __main__ as command
 from benchmarks.measured import page, rows, scenes
 from benchmarks.measured.verdict import BUILT, HIT, MISS, PART, by_factor, by_fit, by_share
 from benchmarks.runs import FORCES, VOLTAGES
@@ -78,6 +79,23 @@ def test_friction_follows_the_attraction():
     forces = np.array(FORCES)[:, None]
     # The slide ends where f_T is steady to 1e-6 of itself.
     np.testing.assert_allclose(coarse["slip_f_t"], 0.25 * (forces + coarse["slip_f_electrostatic"]), rtol=1e-6)
+
+
+def test_kept_rows_are_those_of_the_other_pages(judged):
+    """Where docs/paper.json or docs/models.json are made anew, ``make measured`` has to be given again."""
+    own = kept("measured").numbers
+    again = command.numbers(own["runs"], DOCS)
+    assert {key: row["verdict"] for key, row in again["rows"].items()} == {
+        k: r["verdict"] for k, r in own["rows"].items()
+    }
+    for key, row in again["rows"].items():
+        assert row["numbers"] == pytest.approx(own["rows"][key]["numbers"], rel=1e-6, abs=1e-9), key
+    for name, values in again["curves"].items():
+        assert values == pytest.approx(own["curves"][name], rel=1e-9)
+
+
+def test_every_row_has_words():
+    assert [row["key"] for row in page._read("rows")] == list(kept("measured").numbers["rows"])
 
 
 def test_runs_of_the_page():

@@ -19,7 +19,6 @@ from fingerpad.io import style
 _HERE = Path(__file__).parent
 _KINDS = {"shape": "Shapes, exponents and trends", "ratio": "Ratios", "value": "Absolute values"}
 _HEAD = ("measured", "by whom, on how many people, read in", "this model", "fitted parameters", "verdict")
-_SHOWN = (10.0, 75.0)  # N/m, of the curves over the voltage
 
 
 class Row(NamedTuple):
@@ -38,12 +37,11 @@ class Row(NamedTuple):
 
 def judged(docs: Path) -> list[Row]:
     """Return the rows of the page from the kept numbers of a folder."""
-    grid = rows.grid(kept("paper", docs).numbers, kept("models", docs).numbers)
-    found = rows.numbers(grid, kept("measured", docs).numbers["runs"])
+    found = dict(kept("measured", docs).numbers["rows"])
     sources = {source.pop("key"): source for source in _read("sources")}
     judged = []
     for text in _read("rows"):
-        numbers, verdict = found.pop(text["key"])
+        numbers, verdict = (found[text["key"]][part] for part in ("numbers", "verdict"))
         if text["built"] and verdict == HIT:
             verdict = BUILT
         because = text["why"] if verdict != HIT else ""
@@ -55,7 +53,6 @@ def judged(docs: Path) -> list[Row]:
             text["ours"].format(**numbers).replace("%", " %"),
         )
         judged.append(Row(*words, numbers, text["fitted"], verdict, because))
-    assert not found, f"no words for {', '.join(found)}"
     return judged
 
 
@@ -74,37 +71,35 @@ def _table(judged: list[Row]) -> str:
 
 
 def draw(docs: Path) -> Path:
-    """Write docs/measured.md and its picture from docs/measured.json, docs/paper.json and docs/models.json."""
+    """Write docs/measured.md and its picture from docs/measured.json."""
     text, found = prose("measured"), judged(docs)
     count = Counter(row.verdict for row in found)
     words = {"n": len(found), "hit": count[HIT], "part": count[PART], "miss": count[MISS], "built": count[BUILT]}
     own = kept("measured", docs)
-    grid = rows.grid(kept("paper", docs).numbers, kept("models", docs).numbers)
     path, caption = docs / "measured.png", " ".join(text["caption"].split())
-    body = [picture(path, (10, 3.6), lambda figure: _paint(figure, grid, own.numbers["runs"]), caption)]
+    body = [picture(path, (10, 3.6), lambda figure: _paint(figure, own.numbers), caption)]
     body += [f"## {head}\n\n{_table([row for row in found if row.kind == kind])}" for kind, head in _KINDS.items()]
     body += [text["meaning"], text["missing"], text["tables"]]
     how = text["how"].format(softer=scenes.SOFTER)
-    names = ["measured", "paper", "models"]
     title, finding = "Beside measured fingers", text["finding"].format(**words)
-    return page(docs / "measured.md", title, finding, how, body, "make measured", own.made, names)
+    return page(docs / "measured.md", title, finding, how, body, "make measured", own.made, ["measured"])
 
 
 # -- picture -------------------------------------------------------------------------------------------------
-def _paint(figure: Figure, grid: rows.Grid, runs: Mapping[str, Any]) -> None:
+def _paint(figure: Figure, numbers: Mapping[str, Any]) -> None:
     voltage, force, pressure = figure.subplots(1, 3)
-    _over_voltage(voltage, grid)
-    _over_depth(force, grid)
-    _over_width(pressure, runs["dry 20"])
+    _over_voltage(voltage, numbers["curves"])
+    _over_depth(force, np.array(numbers["curves"]["depth"]))
+    _over_width(pressure, numbers["runs"]["dry 20"])
 
 
-def _over_voltage(ax: Axes, grid: rows.Grid) -> None:
-    u, names = np.array(VOLTAGES[1:]), {"f_t": "friction", "contact_length": "contact length"}
-    for k, (force, (name, words)) in enumerate((f, each) for f in _SHOWN for each in names.items()):
-        values = grid.fine[f"slip_{name}"][FORCES.index(force)]
+def _over_voltage(ax: Axes, curves: Mapping[str, list[float]]) -> None:
+    u, words = np.array(VOLTAGES[1:]), dict(zip(rows.DRAWN, ("friction", "contact length"), strict=True))
+    for k, (force, name) in enumerate((f, name) for f in rows.DRAWN_FORCES for name in rows.DRAWN):
+        values = np.array(curves[f"{name} {force:g}"])
         rise = (values[1:] - values[0]) / (values[VOLTAGES.index(100.0)] - values[0])
         look = {"color": style.CATEGORIES[k], "marker": style.MARKERS[k], "ms": 5}
-        ax.loglog(u, rise, **look, label=f"{words}, {force:g} N/m")
+        ax.loglog(u, rise, **look, label=f"{words[name]}, {force:g} N/m")
     ax.loglog(u, (u / 100) ** 2, color="black", ls="--", zorder=0, label="U², measured")
     ax.set(xlabel="voltage (V)", ylabel="rise over 0 V / rise at 100 V (–)", title="A  full slip")
     ax.set_xticks(u, [f"{each:g}" for each in u])
@@ -112,8 +107,8 @@ def _over_voltage(ax: Axes, grid: rows.Grid) -> None:
     ax.legend(fontsize=8)
 
 
-def _over_depth(ax: Axes, grid: rows.Grid) -> None:
-    depth, force = -grid.coarse["normal_bone_height"][:, 0], np.array(FORCES)
+def _over_depth(ax: Axes, depth: rows.Array) -> None:
+    force = np.array(FORCES)
     b, _ = rows.exponential(depth, force)
     power, factor = np.polyfit(np.log(depth), np.log(force), 1)
     fine = np.linspace(depth.min(), depth.max(), 200)

@@ -38,6 +38,7 @@ class Grid(NamedTuple):
     """Least and largest air gap (m) of all runs with a voltage."""
 
 
+DRAWN, DRAWN_FORCES = ("f_t", "contact_length"), (10.0, 75.0)  # N/m, of the curves over the voltage
 _KEPT = ("f_t", "contact_length", "ridges_in_contact", "f_electrostatic", "bone_height")  # of docs/models.json
 
 
@@ -204,31 +205,37 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, tuple[Numbers, str]]:
     """Return our numbers and the verdict of every row, by its key."""
     mu_0 = Scene().friction
     low, high = (1e6 * each for each in g.gaps)
-    found: dict[str, Callable[[], tuple[Numbers, str]]] = {
-        "friction_voltage": lambda: _power(g, "slip_f_t", VOLTAGES[1:]),
-        "friction_range": lambda: _power(g, "slip_f_t", VOLTAGES[1:4]),
-        "area_voltage": lambda: _power(g, "slip_contact_length", VOLTAGES[1:4]),
-        "frequency": lambda: _constant(by_share(1.0)),
-        "frequency_wide": lambda: _constant(MISS),
-        "friction_slip": lambda: _friction_slip(g),
-        "area_before": lambda: _area_before(g),
-        "area_after": lambda: _area_after(g),
-        "area_shear": lambda: _area_shear(g),
-        "real_sliding": lambda: _trend(g, lambda a: _shear(a) > 0),
-        "area_load": lambda: _area_load(g),
-        "force_depth": lambda: _force_depth(g),
-        "pressure_shape": lambda: _pressure(runs),
-        "friction_load": lambda: _constant(by_share(1.0)),
-        "friction_acrylic": lambda: _constant(by_share(0.0)),
-        "softer": lambda: _softer(runs),
-        "modulus": lambda: _modulus(runs),
-        "time": lambda: _constant(MISS),
-        "ridges": lambda: _ridges(g),
-        "gap_sliding": lambda: _gap_sliding(g),
-        "friction_occluded": lambda: _constant(by_factor(1.0, 1.0, 5.0, 5.0, RATIO)),
-        "gap": lambda: ({"low": low, "high": high}, by_factor(low, high, 1.5, 2.5)),
-        "friction_input": lambda: _constant(by_factor(mu_0, mu_0, 0.25, 0.25)),
-        "friction_glass": lambda: _constant(by_factor(mu_0, mu_0, 0.4, 0.8)),
-        "adhesion": lambda: _constant(MISS),
+    return {
+        "friction_voltage": _power(g, "slip_f_t", VOLTAGES[1:]),
+        "friction_range": _power(g, "slip_f_t", VOLTAGES[1:4]),
+        "area_voltage": _power(g, "slip_contact_length", VOLTAGES[1:4]),
+        "frequency": _constant(by_share(1.0)),
+        "frequency_wide": _constant(MISS),
+        "friction_slip": _friction_slip(g),
+        "area_before": _area_before(g),
+        "area_after": _area_after(g),
+        "area_shear": _area_shear(g),
+        "real_sliding": _trend(g, lambda a: _shear(a) > 0),
+        "area_load": _area_load(g),
+        "force_depth": _force_depth(g),
+        "pressure_shape": _pressure(runs),
+        "friction_load": _constant(by_share(1.0)),
+        "friction_acrylic": _constant(by_share(0.0)),
+        "softer": _softer(runs),
+        "modulus": _modulus(runs),
+        "time": _constant(MISS),
+        "ridges": _ridges(g),
+        "gap_sliding": _gap_sliding(g),
+        "friction_occluded": _constant(by_factor(1.0, 1.0, 5.0, 5.0, RATIO)),
+        "gap": ({"low": low, "high": high}, by_factor(low, high, 1.5, 2.5)),
+        "friction_input": _constant(by_factor(mu_0, mu_0, 0.25, 0.25)),
+        "friction_glass": _constant(by_factor(mu_0, mu_0, 0.4, 0.8)),
+        "adhesion": _constant(MISS),
     }
-    return {key: row() for key, row in found.items()}
+
+
+def curves(g: Grid) -> dict[str, list[float]]:
+    """Return what the page draws: values at full slip over the voltages, by name and force; depths over the forces."""
+    depth = (-g.coarse["normal_bone_height"][:, 0]).tolist()
+    shown = {f"{name} {f:g}": g.fine[f"slip_{name}"][FORCES.index(f)].tolist() for name in DRAWN for f in DRAWN_FORCES}
+    return shown | {"depth": depth}
