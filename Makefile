@@ -10,6 +10,7 @@
 # make docs   the documentation site, in build/docs/index.html; a minute
 # make verify every number with a known answer, some minutes; docs/verification.md
 # make paper  the statements of the paper beside this model's numbers; docs/paper.md, an hour or two
+# make measured  measured fingers beside this model's numbers; docs/measured.md, two minutes
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour
 # make chart  error over work, one numerical setting after the other; docs/chart.md, hours
 #
@@ -18,7 +19,7 @@
 
 run := environment/run
 
-.PHONY: help demo lint test check test-pip test-order fuzz docs pages stale verify paper chart performance
+.PHONY: help demo lint test check test-pip test-order fuzz docs pages stale verify paper measured chart performance
 
 help:
 	@sed -n 's/^# make/make/p' Makefile
@@ -66,6 +67,9 @@ verify:
 
 paper:
 	$(run) python3 -m benchmarks.paper
+
+measured:
+	$(run) python3 -m benchmarks.measured
 
 chart:
 	$(run) python3 -m benchmarks.errors

@@ -32,6 +32,7 @@ PAGES = {
     "chart": "benchmarks.chart",
     "errors": "benchmarks.errors",
     "hero": "benchmarks.hero",
+    "measured": "benchmarks.measured.page",
     "models": "benchmarks.models",
     "paper": "benchmarks.paper.page",
     "peers": "benchmarks.peers.page",

@@ -23,7 +23,7 @@ def test_each_module_is_imported_by_a_quick_test():
     names = {".".join(file.with_suffix("").parts) for file in files if file.stem != "__main__"}
     imports = [
         *(f"tests.{name}" for name in QUICK),
-        *(f"fingerpad.cli.{name}" for name in [*COMMANDS, "plot", "section"]),
+        *(f"fingerpad.cli.{name.replace('-', '_')}" for name in [*COMMANDS, "plot", "section"]),
         *("fingerpad.report.run_page", "fingerpad.report.sweep_page"),
     ]
     code = "\n".join(["import sys", *(f"import {name}" for name in imports), "print(*sys.modules)"])

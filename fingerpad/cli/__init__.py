@@ -23,6 +23,7 @@ COMMANDS = {
     "sweep": "a scene over values of its keys: a table; a stopped sweep continues",
     "report": "a folder of a run or of a sweep as one HTML file, to read and to pass on",
     "compare": "models of a scene side by side: their results and their cost",
+    "compare-data": "tables of measurements beside a run or a sweep: misfit as a ratio, picture",
     "check": "what a run contains, omits and costs, and a picture of its mesh; solves nothing",
     "mesh": "the mesh of the finger as a file for gmsh, with names of its parts",
     "calculator": "the closed form as one HTML page with sliders, for a browser without Python or network",
@@ -80,7 +81,7 @@ def _call(words: list[str]) -> int:
     if terminal.rank() and name not in _COLLECTIVE:
         return 0
     try:
-        return int(importlib.import_module(f"fingerpad.cli.{name}").main(words[1:]))
+        return int(importlib.import_module(f"fingerpad.cli.{name.replace('-', '_')}").main(words[1:]))
     except SystemExit as stop:  # of --help
         return int(stop.code or 0)
 
@@ -94,7 +95,7 @@ def version() -> str:
 
 
 def _help() -> str:
-    commands = "\n".join(f"  {name:11s} {what}" for name, what in COMMANDS.items())
+    commands = "\n".join(f"  {name:12s} {what}" for name, what in COMMANDS.items())
     return f"""usage: fingerpad COMMAND [SCENE] [--set KEY=VALUE ...]
 
 How a fingertip sticks, slides and feels on a touchscreen under electroadhesion.

@@ -1,0 +1,148 @@
+"""``fingerpad compare-data``: tables of measurements beside a run or a sweep."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fingerpad.cli import ours
+from fingerpad.cli.arguments import Parser, echo, path, writable
+from fingerpad.cli.measured import QUANTITIES, Measured, read
+from fingerpad.cli.tables import Column, text
+from fingerpad.io.states import WORDS
+from fingerpad.scene.messages import SceneError, clip
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Array = NDArray[np.float64]
+_EXAMPLES = """
+    fingerpad compare-data mine.csv --sweep results/sweep --out mine.png
+    fingerpad compare-data data/measured/ayyildiz2018.csv --run results/mine
+"""
+_SCALES = {"m": ("mm", 1e3), "N/m": ("N/m", 1.0), "1": ("", 1.0)}
+_NAMED = 4  # curves in the legend of a picture
+
+
+def main(argv: Sequence[str]) -> int:
+    """Compare tables of measurements with ours; return the exit code."""
+    parser = Parser(
+        "fingerpad compare-data",
+        "Print measurements beside a finished run or sweep, and their misfit as a ratio; draw both.",
+        _EXAMPLES,
+    )
+    parser.add_argument("tables", nargs="+", type=path, metavar="TABLE", help="CSV with a header of units and a source")
+    which = parser.add_mutually_exclusive_group(required=True)
+    which.add_argument("--run", type=path, metavar="DIR", help="folder of a run")
+    which.add_argument("--sweep", type=path, metavar="DIR", help="folder of a sweep over f_ext, voltage or both")
+    parser.add_out(None, "picture (PNG) of tables and ours")
+    args = parser.read(argv)
+    writable(args.out)
+    tables = [read(file) for file in args.tables]
+    found = ours.read(args.run or args.sweep, sweep=args.sweep is not None)
+    compared = [_Compared(table, ours.ours(found, table)) for table in tables]
+    echo("\n\n".join("\n".join(each.lines()) for each in compared))
+    if args.out:
+        draw(args.out, compared)
+        echo(f"Written: {args.out}")
+    return 0
+
+
+class _Compared:
+    """A table of measurements with ours at the same conditions."""
+
+    def __init__(self, table: Measured, known: ours.Ours) -> None:
+        """Interpolate ours; SceneError where no row of the table is within ours."""
+        self.table, self.known = table, known
+        self.force, self.voltage = ours.conditions(table, known)
+        self.measured, self.spread = np.array(table.values), np.array(table.spread)
+        self.ours = known.at(self.force, self.voltage)
+        self.ratio = self.ours / self.measured
+        if not self.within.any():
+            spans = ", ".join(_span(axis, unit) for axis, unit in ((known.force, "N/m"), (known.voltage, "V")))
+            raise SceneError(f"no row of {clip(str(table.file), 80)} is within ours, which has {spans}")
+
+    @property
+    def within(self) -> NDArray[np.bool_]:
+        """Return which rows are within ours and have a ratio."""
+        return np.isfinite(self.ratio) & (self.ratio > 0)
+
+    def lines(self) -> Iterator[str]:
+        """Yield the table and the misfit as text."""
+        unit, scale = _SCALES[QUANTITIES[self.table.quantity][1]]
+        columns = [
+            Column("force", "force", "N/m"),
+            Column("voltage", "voltage", "V"),
+            Column("measured", "measured", unit, scale),
+            Column("spread", "spread", unit, scale),
+            Column("ours", "ours", unit, scale),
+            Column("ratio", "ours/measured", digits=".3g"),
+        ]
+        rows = []
+        for k in range(len(self.measured)):
+            cells = {"force": self.force, "voltage": self.voltage, "measured": self.measured}
+            cells |= {"spread": self.spread, "ours": self.ours, "ratio": self.ratio}
+            rows.append({name: v if np.isfinite(v := float(values[k])) else None for name, values in cells.items()})
+        yield f"{self.table.quantity} at {WORDS[self.table.state]}: {clip(self.table.source, 200)}"
+        more = [f"{name} {self.table.about[name]}" for name in ("doi", "url", "people") if name in self.table.about]
+        yield from [clip("; ".join(more), 200)] if more else []
+        yield text(columns, rows)
+        yield from self._misfit()
+
+    def _misfit(self) -> Iterator[str]:
+        log, count = np.log(self.ratio[self.within]), int(self.within.sum())
+        mean, most = float(np.exp(log.mean())), float(np.exp(np.abs(log).max()))
+        yield f"Misfit: ours over measured {mean:.3g} (geometric mean of {count}), at most a factor of {most:.3g}."
+        if count > 1:
+            shape = float(np.exp(np.abs(log - log.mean()).max()))
+            yield f"Shape alone, ours scaled by one factor ({1 / mean:.3g}): at most a factor of {shape:.3g}."
+        if np.isfinite(self.spread).all():
+            near = np.abs(self.ours - self.measured)[self.within] <= self.spread[self.within]
+            yield f"Within the spread: {near.sum()} of {count}."
+        if count < len(self.ratio):
+            yield f"Not compared, since ours has no result there: {len(self.ratio) - count} of {len(self.ratio)} rows."
+
+
+def _span(axis: Array, unit: str) -> str:
+    return f"{axis[0]:g} {unit}" if len(axis) == 1 else f"{axis[0]:g} to {axis[-1]:g} {unit}"
+
+
+def draw(file: Path, compared: Sequence[_Compared]) -> None:
+    """Draw each table over ours, in a panel of its own."""
+    from fingerpad.cli import plot  # Matplotlib
+
+    with plot.panels(file, "Measured, and ours as lines", len(compared)) as (_, panels):
+        for ax, each in zip(panels, compared, strict=True):
+            _panel(ax, each)
+
+
+def _panel(ax: "Axes", each: _Compared) -> None:
+    from fingerpad.cli import plot
+    from fingerpad.io import style
+
+    unit, scale = _SCALES[QUANTITIES[each.table.quantity][1]]
+    over_voltage = len(np.unique(each.voltage)) > len(np.unique(each.force))
+    x, other = (each.voltage, each.force) if over_voltage else (each.force, each.voltage)
+    along, name = (each.known.voltage, "N/m") if over_voltage else (each.known.force, "V")
+    for k, held in enumerate(np.unique(other)):
+        mine, level = other == held, np.full(len(along), held)
+        curve = each.known.at(level, along) if over_voltage else each.known.at(along, level)
+        plot.curve(ax, k, along, scale * curve, f"ours, {held:g} {name}" if k < _NAMED else "_")
+        spread = None if np.isnan(each.spread).all() else scale * each.spread[mine]
+        ax.errorbar(
+            x[mine],
+            scale * each.measured[mine],
+            spread,
+            fmt=style.MARKERS[k % len(style.MARKERS)],
+            color=style.CATEGORIES[k % len(style.CATEGORIES)],
+            mfc="white",
+            ms=7,
+            capsize=3,
+            label=f"measured, {held:g} {name}" if k < _NAMED else "_",
+        )
+    ax.set(xlabel="voltage (V)" if over_voltage else "force per length (N/m)")
+    ax.set(ylabel=f"{each.table.quantity} ({unit or '–'})", title=clip(each.table.source, 40))
+    ax.set_ylim(bottom=0)
+    ax.legend()

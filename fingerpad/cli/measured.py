@@ -1,0 +1,185 @@
+"""Tables of measurements: CSV with a header of names and units, and comments that name the source.
+
+    # source: Surname and Surname 2020, Journal 1, 2-3
+    # doi: 10.1000/example
+    # people: 5
+    # state: full slip
+    force (N/m), voltage (V), friction (1), spread (1)
+    50, 100, 0.31, 0.04
+
+The conditions are ``force`` and ``voltage``, each optional; one more column is the quantity, and ``spread`` is its
+standard deviation, in the same unit. Only the source is required of the comments; without a state it is full slip.
+"""
+
+import csv
+import io
+import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from fingerpad.scene.messages import SceneError, clip
+from geometry.units import to_si
+
+CONDITIONS = {"force": ("f_ext", "N/m"), "voltage": ("voltage", "V")}
+"""Names of the columns that are conditions: key of ours, and its SI unit."""
+QUANTITIES = {
+    "friction": ("mu_app", "1"),
+    "friction force": ("f_t", "N/m"),
+    "attraction": ("f_electrostatic", "N/m"),
+    "contact length": ("contact_length", "m"),
+    "ridges": ("ridges_in_contact", "1"),
+    "depth": ("depth", "m"),
+}
+"""The same of the columns that are compared; ``depth`` is the way that the bone has come down."""
+STATES = {"uncharged": "uncharged", "charged": "charged", "full slip": "full_slip"}
+"""What ``# state:`` can be, and the name of ours."""
+_COMMENT = re.compile(r"#\s*(source|doi|url|people|state)\s*:\s*(.*?)\s*")
+_HEAD = re.compile(r"\s*(.*?)\s*\(\s*(.*?)\s*\)\s*")
+_NEWTONS = re.compile(r"(?:[a-zA-Zµμ]{0,2}N|[a-z]*newtons?)")
+_LARGEST = 1_000_000  # bytes of a file
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A table of measurements, in SI units."""
+
+    file: Path
+    source: str
+    state: str
+    """A name of :data:`fingerpad.io.states.STATES`."""
+    quantity: str
+    """A name of :data:`QUANTITIES`."""
+    conditions: dict[str, tuple[float, ...]]
+    """Values by key, ``f_ext`` and ``voltage``; those of the columns that the table has."""
+    values: tuple[float, ...]
+    spread: tuple[float, ...]
+    """NaN in every row of a table without it."""
+    about: dict[str, str] = field(default_factory=dict)
+    """The comments by name."""
+
+
+@dataclass(frozen=True)
+class _Column:
+    name: str
+    unit: str
+    factor: float
+
+
+def read(file: Path) -> Measured:
+    """Return the measurements in a file.
+
+    Raises:
+        SceneError: what is wrong in the file, with the line and the column.
+    """
+    name = clip(str(file), 80)
+    try:
+        if file.stat().st_size > _LARGEST:
+            raise SceneError(f"{name} has more than {_LARGEST / 1e6:g} MB; a table of measurements is smaller")
+        lines = file.read_text(encoding="utf-8-sig").splitlines()
+    except OSError as error:
+        raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise SceneError(f"{name} is not text in UTF-8; save it as CSV in UTF-8") from None
+    about, rows = _parts(lines)
+    if not about.get("source"):
+        raise SceneError(f"{name} has no source; add a first line such as '# source: Surname 2020, Journal 1, 2-3'")
+    if (state := about.get("state", "full slip")) not in STATES:
+        raise SceneError(f"{name}: state is {clip(repr(state))}; it must be one of {', '.join(STATES)}")
+    if len(rows) < 2:
+        raise SceneError(f"{name} has no rows of numbers below a header such as 'force (N/m), friction (1)'")
+    columns = _columns(name, *rows[0])
+    found = [_numbers(name, line, cells, columns) for line, cells in rows[1:]]
+    by_name = dict(zip((column.name for column in columns), zip(*found, strict=True), strict=True))
+    quantity = next(each for each in by_name if each in QUANTITIES)
+    conditions = {key: by_name[each] for each, (key, _) in CONDITIONS.items() if each in by_name}
+    spread = by_name.get("spread", (math.nan,) * len(found))
+    return Measured(file, about["source"], STATES[state], quantity, conditions, by_name[quantity], spread, about)
+
+
+def _parts(lines: Sequence[str]) -> tuple[dict[str, str], list[tuple[int, list[str]]]]:
+    """Return the comments by name, and the cells of the other lines that are not empty, with their numbers."""
+    about, rows = {}, []
+    for number, line in enumerate(lines, start=1):
+        if line.lstrip().startswith("#"):
+            if comment := _COMMENT.fullmatch(line.strip()):
+                about[comment[1]] = comment[2]
+        elif line.strip():
+            rows.append((number, [cell.strip() for cell in next(csv.reader(io.StringIO(line), skipinitialspace=True))]))
+    return about, rows
+
+
+def _columns(name: str, line: int, heads: Sequence[str]) -> list[_Column]:
+    columns = [_column(f"{name}, line {line}, column {k}", head) for k, head in enumerate(heads, start=1)]
+    names = [column.name for column in columns]
+    if twice := next((each for each in names if names.count(each) > 1), None):
+        raise SceneError(f"{name}, line {line}: two columns have the name {twice}; give one")
+    quantities = [column for column in columns if column.name in QUANTITIES]
+    if len(quantities) != 1:
+        which = ", ".join(column.name for column in quantities) or "none"
+        raise SceneError(f"{name}, line {line} must have one quantity out of {', '.join(QUANTITIES)}; it has {which}")
+    return list(_with_spread(name, line, columns, quantities[0]))
+
+
+def _with_spread(name: str, line: int, columns: Sequence[_Column], quantity: _Column) -> Iterator[_Column]:
+    """Yield the columns; that of the spread has the dimension of the quantity."""
+    for column in columns:
+        if column.name == "spread":
+            where = f"{name}, line {line}, column {columns.index(column) + 1}"
+            yield _Column("spread", column.unit, _factor(where, "spread", column.unit, QUANTITIES[quantity.name][1]))
+        else:
+            yield column
+
+
+def _column(where: str, head: str) -> _Column:
+    known = CONDITIONS | QUANTITIES
+    parts = _HEAD.fullmatch(head)
+    if parts is None or not parts[2]:
+        raise SceneError(f"{where}: {clip(repr(head))} has no unit; write 'name (unit)', and (1) for a number without")
+    name, unit = parts[1].lower(), parts[2]
+    if name == "spread":
+        return _Column(name, unit, 1.0)
+    if "area" in name:
+        raise SceneError(f"{where}: {clip(repr(name))} is of a whole finger; ours is a cross-section and has lengths")
+    if name not in known:
+        raise SceneError(f"{where}: ours has no {clip(repr(name))}; columns are {', '.join(known)} and spread")
+    return _Column(name, unit, _factor(where, name, unit, known[name][1]))
+
+
+def _factor(where: str, name: str, unit: str, wanted: str) -> float:
+    """Return the factor from a unit to the SI unit of a column."""
+    if wanted == "1":
+        if unit != "1":
+            raise SceneError(f"{where}: the unit of {name} is {clip(repr(unit))}; it must be 1")
+        return 1.0
+    if wanted == "N/m" and _NEWTONS.fullmatch(unit):
+        raise SceneError(
+            f"{where}: {name} is in {clip(unit)}, of a whole finger; ours is a force per length, so give it in N/m"
+        )
+    try:
+        return to_si(f"1 {unit}", wanted)
+    except ValueError as error:
+        raise SceneError(f"{where}: the unit of {name} is {clip(repr(unit))}; {error}") from None
+
+
+def _numbers(name: str, line: int, cells: Sequence[str], columns: Sequence[_Column]) -> list[float]:
+    if len(cells) > len(columns):
+        raise SceneError(
+            f"{name}, line {line} has {len(cells)} cells below {len(columns)} columns; decimals have points, not commas"
+        )
+    found = []
+    for k, column in enumerate(columns):
+        where, text = f"{name}, line {line}, column {k + 1}", cells[k] if k < len(cells) else ""
+        if not text:
+            raise SceneError(f"{where}: the {column.name} is missing; leave the row out or give the number")
+        try:
+            value = float(text)
+        except ValueError:
+            raise SceneError(f"{where}: the {column.name} is {clip(repr(text))}; it must be a number") from None
+        least = 0.0 if column.name in ("voltage", "spread") else None
+        if not math.isfinite(value) or (value < 0 if least is not None else value <= 0):
+            allowed = "0 or more" if least is not None else "greater than 0"
+            raise SceneError(f"{where}: the {column.name} is {clip(text)}; it must be finite and {allowed}")
+        found.append(value * column.factor)
+    return found

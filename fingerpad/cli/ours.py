@@ -1,0 +1,156 @@
+"""What a finished run or sweep has at the conditions of a measurement; no dolfinx."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fingerpad.cli.measured import QUANTITIES, Measured
+from fingerpad.io.result import Result
+from fingerpad.io.states import PREFIXES, WORDS, before_sliding
+from fingerpad.report.source import Table
+from fingerpad.report.source import read as folder_of
+from fingerpad.scene.messages import SceneError, clip
+from variational.state import ContactState
+
+Array = NDArray[np.float64]
+CONDITIONS = {"f_ext": "force", "voltage": "voltage"}
+_NEAR = 1e-6  # relative, of conditions that count as the same
+
+
+@dataclass(frozen=True, eq=False)
+class Ours:
+    """A quantity of ours over force and voltage; SI units."""
+
+    force: Array
+    """Increasing, shape (forces,)."""
+    voltage: Array
+    """Increasing, shape (voltages,)."""
+    values: Array
+    """Shape (forces, voltages); NaN where a run has no result."""
+
+    def at(self, force: Array, voltage: Array) -> Array:
+        """Return ours at pairs of force and voltage; NaN outside of ours.
+
+        Between two forces ours is taken as linear, between two voltages as linear in U², as which attraction rises.
+        """
+        squares = self.voltage**2
+        found = []
+        for f, u in zip(force, voltage, strict=True):
+            over = [_between(u**2, squares, row) for row in self.values]
+            found.append(_between(f, self.force, over))
+        return np.array(found)
+
+
+def _between(x: float, known: Array, values: Sequence[float] | Array) -> float:
+    """Return a value at one of the known places up to roundoff, or between two of them; NaN beyond."""
+    near = np.flatnonzero(np.isclose(known, x, rtol=_NEAR, atol=0.0))
+    if near.size:
+        return float(values[near[0]])
+    return float(np.interp(x, known, values)) if known[0] < x < known[-1] else math.nan
+
+
+def read(folder: Path, sweep: bool) -> Result | Table:
+    """Return the run or the sweep in a folder.
+
+    Raises:
+        SceneError: it is not there, or is of the other kind.
+    """
+    found = folder_of(folder)
+    if isinstance(found, Table) != sweep:
+        given, right = ("--run", "--sweep") if isinstance(found, Table) else ("--sweep", "--run")
+        kind = "a sweep" if isinstance(found, Table) else "a run"
+        raise SceneError(f"{given} {clip(str(folder), 80)} holds {kind}; give it by {right}")
+    return found
+
+
+def ours(found: Result | Table, table: Measured) -> Ours:
+    """Return the quantity of a table in a run or a sweep.
+
+    Raises:
+        SceneError: ours does not have it.
+    """
+    if isinstance(found, Table):
+        return _of_sweep(found, table)
+    states = _states(found, table.state)
+    if not states:
+        raise SceneError(f"the run has no state {WORDS[table.state]}, of which {_name(table)} is; compare another run")
+    points = {(s.f_ext, s.voltage): _value(s, table) for s in states}
+    return _grid(points, table)
+
+
+def _states(found: Result, state: str) -> list[ContactState]:
+    """Return the states of a run: the whole press of the uncharged one, else the named one."""
+    pressed = [s for s in before_sliding(found.steps) if s.voltage == 0 and s.ridges_in_contact and s.f_ext > 0]
+    if state == "uncharged" and pressed:
+        return pressed
+    named = found.named.get(state)
+    return [] if named is None else [named]
+
+
+def _value(state: ContactState, table: Measured) -> float:
+    key = QUANTITIES[table.quantity][0]
+    value = -state.bone_height if key == "depth" else float(getattr(state, key))
+    return value
+
+
+def _of_sweep(found: Table, table: Measured) -> Ours:
+    others = [axis for axis in found.axes if axis not in CONDITIONS]
+    if others:
+        raise SceneError(
+            f"the sweep in {clip(str(found.folder), 80)} is over {others[0]}, which no measurement has; "
+            "give one over f_ext and voltage alone"
+        )
+    column = f"{PREFIXES[table.state]}_{QUANTITIES[table.quantity][0]}"
+    if column not in found.rows[0]:
+        raise SceneError(
+            f"the table of the sweep has no {table.quantity} of {WORDS[table.state]}, which {_name(table)} has; "
+            "give one of its runs by --run"
+        )
+    fixed = found.parameters or {}
+    if unknown := [name for key, name in CONDITIONS.items() if key not in found.axes and key not in fixed]:
+        raise SceneError(
+            f"the sweep in {clip(str(found.folder), 80)} does not give its {unknown[0]}; "
+            "give one over f_ext and voltage"
+        )
+    points = {}
+    try:
+        for row in found.rows:
+            force, voltage = (float(row[key] if key in found.axes else fixed[key]) for key in CONDITIONS)
+            points[force, 0.0 if table.state == "uncharged" else voltage] = (
+                float(row[column]) if row[column] else np.nan
+            )
+    except (ValueError, KeyError, TypeError) as error:
+        raise SceneError(f"the table of the sweep in {clip(str(found.folder), 80)} cannot be read: {error}") from None
+    return _grid(points, table)
+
+
+def _grid(points: dict[tuple[float, float], float], table: Measured) -> Ours:
+    forces, voltages = (np.array(sorted(set(values))) for values in zip(*points, strict=True))
+    values = np.array([[points.get((f, u), np.nan) for u in voltages] for f in forces])
+    if np.isnan(values).all():
+        raise SceneError(f"ours has no {table.quantity} of {WORDS[table.state]}, which {_name(table)} has")
+    return Ours(forces, voltages, values)
+
+
+def conditions(table: Measured, known: Ours) -> tuple[Array, Array]:
+    """Return force and voltage of each row of a table; those it does not have are ours, where ours has a single one.
+
+    Raises:
+        SceneError: ours has several.
+    """
+    found = []
+    for key, axis in (("f_ext", known.force), ("voltage", known.voltage)):
+        if key not in table.conditions and len(axis) > 1:
+            name = CONDITIONS[key]
+            unit = "N/m" if name == "force" else "V"
+            raise SceneError(f"{_name(table)} has no {name}, and ours has {len(axis)}; add a column '{name} ({unit})'")
+        found.append(np.array(table.conditions.get(key, (axis[0],) * len(table.values))))
+    return found[0], found[1]
+
+
+def _name(table: Measured) -> str:
+    return clip(str(table.file), 80)

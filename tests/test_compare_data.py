@@ -1,0 +1,201 @@
+"""Tables of measurements beside ours: what is read, what is compared, and what is refused in one sentence."""
+
+import csv
+import re
+
+import numpy as np
+import pytest
+
+from fingerpad.cli import main, ours
+from fingerpad.cli.compare_data import _Compared
+from fingerpad.cli.measured import Measured, read
+from fingerpad.io.result import Result
+from fingerpad.runs.sweep import sweep
+from fingerpad.scene import Scene, SceneError
+from tests.commands import ROOT, refused
+from variational.state import ContactState
+
+SOURCE = "# source: Somebody 2020\n"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A sweep of the closed form over three voltages and two forces."""
+    place = tmp_path_factory.mktemp("sweep")
+    sweep(Scene(), place, model="cylinders", voltage=[0, 100, 200], f_ext=[25, 75])
+    return place
+
+
+@pytest.fixture
+def table(tmp_path):
+    def table(text, source=SOURCE):
+        file = tmp_path / "mine.csv"
+        file.write_text(source + text, encoding="utf-8")
+        return file
+
+    return table
+
+
+# -- tables --------------------------------------------------------------------------------------------------
+def test_units_are_converted(table):
+    """To SI; comments, empty lines and a mark of the byte order are no rows."""
+    lines = "# people: 5\n# state: uncharged\n# else\n\nForce (N/mm), contact length (mm), spread (um)\n0.05, 1.2, 30\n"
+    found = read(table(lines, "\ufeff" + SOURCE))
+    assert (found.quantity, found.state, found.about["people"]) == ("contact length", "uncharged", "5")
+    assert found.conditions == {"f_ext": pytest.approx((50.0,))}
+    assert found.values == pytest.approx((1.2e-3,)) and found.spread == pytest.approx((3e-5,))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("force, friction (1)\n1, 2\n", "line 2, column 1: 'force' has no unit; write 'name (unit)', and (1) for"),
+        ("force (furlong), friction (1)\n1, 2\n", "line 2, column 1: the unit of force is 'furlong'; its unit is not"),
+        ("force (wibble), friction (1)\n1, 2\n", "the unit of force is 'wibble'; its unit is not known"),
+        ("voltage (V), friction (N)\n1, 2\n", "line 2, column 2: the unit of friction is 'N'; it must be 1"),
+        ("force (N), friction (1)\n1, 2\n", "force is in N, of a whole finger; ours is a force per length"),
+        ("force (mN), friction (1)\n1, 2\n", "force is in mN, of a whole finger"),
+        ("force (N/m), contact area (mm^2)\n1, 2\n", "column 2: 'contact area' is of a whole finger"),
+        ("force (N/m), perceived intensity (1)\n1, 2\n", "ours has no 'perceived intensity'; columns are force, volt"),
+        ("force (N/m), friction (1)\n1, 2\n3,\n", "line 4, column 2: the friction is missing; leave the row out"),
+        ("force (N/m), friction (1)\n1, 2\n\n3\n", "line 5, column 2: the friction is missing"),
+        ("force (N/m), friction (1)\n, 2\n", "line 3, column 1: the force is missing"),
+        ("force (N/m), friction (1)\n1, nan\n", "line 3, column 2: the friction is nan; it must be finite and greater"),
+        ("force (N/m), friction (1)\n1, -0.2\n", "the friction is -0.2; it must be finite and greater than 0"),
+        ("voltage (V), friction (1)\ninf, 0.2\n", "the voltage is inf; it must be finite and 0 or more"),
+        ("force (N/m), friction (1)\n1, high\n", "line 3, column 2: the friction is 'high'; it must be a number"),
+        ("force (N/m), friction (1)\n1, 0,2\n", "line 3 has 3 cells below 2 columns; decimals have points"),
+        ("force (N/m), friction (1)\n", "has no rows of numbers below a header"),
+        ("", "has no rows of numbers below a header"),
+        ("force (N/m), voltage (V)\n1, 2\n", "must have one quantity out of friction, friction force"),
+        ("friction (1), attraction (N/m)\n1, 2\n", "it has friction, attraction"),
+        ("force (N/m), force (N/mm), friction (1)\n1, 2, 3\n", "two columns have the name force"),
+        ("force (N/m), friction (1), spread (mm)\n1, 2, 3\n", "column 3: the unit of spread is 'mm'; it must be 1"),
+        (
+            "# state: sideways\nforce (N/m), friction (1)\n1, 2\n",
+            "state is 'sideways'; it must be one of uncharged, ch",
+        ),
+    ],
+)
+def test_tables_are_refused(table, capsys, text, words):
+    """In one sentence, before the folder of ours is looked at."""
+    assert words in refused(capsys, "compare-data", str(table(text)), "--run", "nowhere")
+
+
+def test_source_is_asked_for(table, capsys):
+    file = table("force (N/m), friction (1)\n1, 2\n", source="")
+    assert "has no source; add a first line such as '# source:" in refused(
+        capsys, "compare-data", str(file), "--run", "x"
+    )
+
+
+def test_files_that_are_no_text(table, tmp_path, capsys):
+    (tmp_path / "mine.csv").write_bytes(b"\xff\xfe\x00")
+    assert "is not text in UTF-8" in refused(capsys, "compare-data", str(tmp_path / "mine.csv"), "--run", "x")
+    assert "cannot be read" in refused(capsys, "compare-data", str(tmp_path / "none.csv"), "--run", "x")
+
+
+def test_tables_in_the_repository_are_read():
+    """Each has its source and a DOI or a link."""
+    files = sorted((ROOT / "data" / "measured").glob("*.csv"))
+    assert files
+    for file in files:
+        assert {"source", "people"} <= set(read(file).about) and {"doi", "url"} & set(read(file).about)
+
+
+# -- ours ----------------------------------------------------------------------------------------------------
+def known(folder, **values):
+    """Return ours of a sweep's folder for a table of friction."""
+    table = Measured(ROOT / "x.csv", "X", "full_slip", "friction", values, (0.3,), (np.nan,))
+    return ours.ours(ours.read(folder, sweep=True), table)
+
+
+def test_ours_is_the_sweep(folder):
+    """At its points to roundoff; between them linear in force and in U²; not beyond."""
+    with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
+        rows = {(float(r["f_ext"]), float(r["voltage"])): float(r["slip_mu_app"]) for r in csv.DictReader(file)}
+    found = known(folder)
+    for (force, voltage), value in rows.items():
+        assert found.at(np.array([force * (1 + 1e-9)]), np.array([voltage]))[0] == pytest.approx(value, rel=1e-12)
+    between = found.at(np.array([50.0, 25.0]), np.array([100.0, 50.0]))
+    assert between[0] == pytest.approx((rows[25, 100] + rows[75, 100]) / 2, rel=1e-12)
+    assert between[1] == pytest.approx(0.75 * rows[25, 0] + 0.25 * rows[25, 100], rel=1e-12)
+    assert np.isnan(found.at(np.array([10.0, 25.0]), np.array([100.0, 201.0]))).all()
+
+
+def test_missing_points_are_not_compared(folder):
+    """A failed run leaves its neighbours as they are."""
+    found = known(folder)
+    found.values[0, 1] = np.nan
+    at = found.at(np.array([25.0, 25.0, 75.0, 50.0]), np.array([0.0, 100.0, 100.0, 100.0]))
+    assert list(np.isnan(at)) == [False, True, False, True]
+
+
+def state(step, f_ext, voltage=0.0, bone_x=0.0, **more):
+    values = {"f_t": 0.0, "mu_app": 0.0, "f_contact": f_ext, "f_electrostatic": 0.0, "ridges_in_contact": 3}
+    return ContactState(
+        step=step,
+        f_ext=f_ext,
+        voltage=voltage,
+        bone_x=bone_x,
+        bone_height=-1e-5 * f_ext,
+        contact_length=1e-4 * f_ext,
+        **values | more,
+    )
+
+
+def test_press_of_a_run_is_compared(table):
+    """The states on the way down and no later ones; full slip is one state."""
+    steps = (state(1, 10.0), state(2, 20.0), state(3, 20.0, 100.0), state(4, 20.0, 100.0, 1e-3, mu_app=0.4))
+    run = Result(Scene(), "full", steps[1], steps[2], steps[3], steps=steps)
+    pressed = read(table("# state: uncharged\nforce (N/m), depth (mm)\n15, 0.3\n"))
+    found = _Compared(pressed, ours.ours(run, pressed))
+    assert found.ours == pytest.approx([1.5e-4]) and found.ratio == pytest.approx([0.5])
+    slip = read(table("friction (1)\n0.2\n"))
+    assert _Compared(slip, ours.ours(run, slip)).ratio == pytest.approx([2.0])
+    with pytest.raises(SceneError, match="no state full slip"):
+        ours.ours(Result(Scene(), "full", steps[1], None, None, steps=steps[:2]), slip)
+
+
+# -- the command ---------------------------------------------------------------------------------------------
+def test_misfit_is_printed_and_drawn(folder, table, tmp_path, capsys):
+    """Measured as twice ours: the ratio is a half everywhere and the shape is exact."""
+    found = known(folder)
+    lines = [f"75, {u:g}, {2 * v:.17g}, {3 * v:g}" for u, v in zip(found.voltage, found.values[1], strict=True)]
+    file = table(
+        "\n".join(["# doi: 10.1/x", "force (N/m), voltage (V), friction (1), spread (1)", *lines, "500, 0, 1, 1"])
+    )
+    assert main(["compare-data", str(file), "--sweep", str(folder), "--out", str(tmp_path / "out.png")]) == 0
+    out = capsys.readouterr().out
+    assert "friction at full slip: Somebody 2020\ndoi 10.1/x\n" in out
+    assert "Misfit: ours over measured 0.5 (geometric mean of 3), at most a factor of 2.\n" in out
+    assert "ours scaled by one factor (2): at most a factor of 1.\n" in out
+    assert "Within the spread: 3 of 3." in out and "no result there: 1 of 4 rows." in out
+    assert re.search(r"^ +75 +0 +0\.5 +0\.75 +0\.25 +0\.5$", out, re.MULTILINE)
+    assert (tmp_path / "out.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("force (N/m), friction (1)\n25, 0.3\n", "has no voltage, and ours has 3; add a column 'voltage (V)'"),
+        ("voltage (V), friction (1)\n100, 0.3\n", "has no force, and ours has 2; add a column 'force (N/m)'"),
+        ("force (N/m), voltage (V), friction (1)\n5, 0, 0.3\n", "is within ours, which has 25 to 75 N/m, 0 to 200 V"),
+        ("force (N/m), voltage (V), depth (mm)\n25, 0, 0.3\n", "the table of the sweep has no depth of full slip"),
+    ],
+)
+def test_what_ours_does_not_have(folder, table, capsys, text, words):
+    assert words in refused(capsys, "compare-data", str(table(text)), "--sweep", str(folder))
+
+
+def test_folders_are_told_apart(folder, table, tmp_path, capsys):
+    file = str(table("friction (1)\n0.3\n"))
+    assert "holds a sweep; give it by --sweep" in refused(capsys, "compare-data", file, "--run", str(folder))
+    assert "is not a folder" in refused(capsys, "compare-data", file, "--run", str(tmp_path / "none"))
+    assert "one of the arguments --run --sweep is required" in refused(capsys, "compare-data", file)
+    assert "its folder is not there" in refused(capsys, "compare-data", file, "--run", "x", "--out", "none/x.png")
+    other = tmp_path / "other"
+    sweep(Scene(), other, model="cylinders", voltage=[0, 100])
+    assert "does not give its force" in refused(capsys, "compare-data", file, "--sweep", str(other))
+    sweep(Scene(), other, model="cylinders", friction=[0.2, 0.3])
+    assert "is over friction, which no measurement has" in refused(capsys, "compare-data", file, "--sweep", str(other))
