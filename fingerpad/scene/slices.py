@@ -61,5 +61,7 @@ class Slices(Part):
                 raise ValueError(f"{name} has {len(values)} values and z has {len(self.z)}; each place needs one value")
         if self.height is not None:
             for name in {"radius", "length"} & self.model_fields_set:
-                raise ValueError(f"{name} is {show(getattr(self, name))} and height is given too; leave out one of them")
+                raise ValueError(
+                    f"{name} is {show(getattr(self, name))} and height is given too; leave out one of them"
+                )
         return self

@@ -17,7 +17,7 @@ from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene, SceneError
 from fingerpad.slices.finger import WholeFinger, errors, in_order
 from fingerpad.slices.profile import profile
-from fingerpad.slices.total import Total, at_force, at_indentation
+from fingerpad.slices.total import at_force, at_indentation, deepest
 from fingerpad.slices.trace import Trace, TraceError, columns, trace
 from variational.state import ContactState
 
@@ -44,7 +44,7 @@ def with_newtons(result: Result) -> Result:
 
 
 def estimate(scene: Scene, press: Sequence[ContactState], named: Mapping[str, ContactState]) -> WholeFinger:
-    """Return the finger whose centre bears the scene's force in the last of its named states.
+    """Return the finger whose centre bears the scene's force in one of its named states, and less in the others.
 
     Args:
         scene: press, charge and slide.
@@ -58,21 +58,10 @@ def estimate(scene: Scene, press: Sequence[ContactState], named: Mapping[str, Co
     finger, count, wavelength = profile(scene.slices), scene.slices.count, scene.geometry.ridge_wavelength
     pressed = _thinned(press)
     traces = {name: _scaled(scene, pressed, name, state, wavelength) for name, state in named.items()}
-    last = list(in_order({name: None for name in named}))[-1]  # type: ignore[arg-type]
-    touch = finger.lowest()
-    force = at_indentation(finger, traces[last], _lowered(touch, traces[last]), count).totals["f_ext"]
-    found: dict[str, Total] = {}
-    for name, each in traces.items():
-        try:
-            found[name] = at_force(finger, each, force, count)
-        except SceneError:
-            if name == last:
-                raise
+    # At one indentation the states bear other forces: the least is one that every trace reaches.
+    force = min(at_indentation(finger, each, deepest(finger, each), count).totals["f_ext"] for each in traces.values())
+    found = {name: at_force(finger, each, force * (1 - 1e-9), count) for name, each in traces.items()}
     return WholeFinger(in_order(found), SOURCE, {name: errors(found[name], named[name]) for name in found})
-
-
-def _lowered(touch: float, of: Trace) -> float:
-    return touch + of.end[0]
 
 
 def _thinned(press: Sequence[ContactState]) -> list[ContactState]:

@@ -83,7 +83,9 @@ class WholeFinger:
         for name, state in data["states"].items():
             arrays = {key: np.array(values) for key, values in state["slices"].items()}
             columns = {key: arrays[key] for key in NAMES}
-            states[name] = Total(state["indentation"], arrays["z"], arrays["thickness"], arrays["indentation"], columns)
+            centre = data["f_ext"] / state["effective_width"]
+            places = arrays["z"], arrays["thickness"], arrays["indentation"]
+            states[name] = Total(state["indentation"], *places, centre, columns)
         return cls(states, data["source"], {name: state["error"] for name, state in data["states"].items()})
 
     def rows(self) -> Iterator[list[str]]:

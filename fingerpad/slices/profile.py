@@ -33,8 +33,8 @@ class Profile:
         """Return how far slices stand above the bone's lowest place, s + θ z (m)."""
         return np.asarray(self.height(z) + self.tilt * z, dtype=float)
 
-    def lowest(self) -> float:
-        """Return the least rise (m), at which the finger first touches.
+    def lowest(self) -> tuple[float, float]:
+        """Return the place (m) where the finger first touches, and the rise (m) there, the least one.
 
         Raises:
             SceneError: it is at an end of the finger, whose pad then touches nothing.
@@ -48,7 +48,8 @@ class Profile:
                 "and its pad has no contact; give a smaller tilt, a smaller radius or a longer finger"
             )
         fine = np.linspace(z[max(k - 1, 0)], z[min(k + 1, len(z) - 1)], _SEARCHED)
-        return float(self.rise(fine).min())
+        found = self.rise(fine)
+        return float(fine[found.argmin()]), float(found.min())
 
     def contact(self, delta: float) -> list[tuple[float, float]]:
         """Return the stretches (m) of the finger that touch, from one end of contact to the other.

@@ -38,6 +38,8 @@ class Total:
     """Thickness of each slice (m); its weight in the sum."""
     depth: Array
     """Indentation of each slice (m)."""
+    centre: float
+    """External force of the slice that is indented most (N/m)."""
     columns: dict[str, Array]
     """Of each slice, by the names of :data:`fingerpad.slices.trace.NAMES`: N/m and m."""
 
@@ -57,11 +59,6 @@ class Total:
         borne = self.columns["f_ext"] + self.columns["f_electrostatic"]
         length = self.columns["contact_length"]
         return np.divide(borne, length, out=np.zeros_like(borne), where=length > 0)
-
-    @property
-    def centre(self) -> float:
-        """External force of the slice that bears most (N/m)."""
-        return float(self.columns["f_ext"].max(initial=0.0))
 
 
 def at_indentation(profile: Profile, trace: Trace, delta: float, count: int) -> Total:
@@ -96,7 +93,10 @@ def at_indentation(profile: Profile, trace: Trace, delta: float, count: int) -> 
             f"m under {force:.4g} N/m; give a trace to a larger force"
         )
     values = trace.at(np.minimum(relative, deepest))
-    return Total(delta, z, thickness, depth, {name: width * values[name] for name in NAMES})
+    place, lowest = profile.lowest()
+    scale = float(profile.width(np.array([place]))[0])
+    most = trace.at(np.clip([(delta - lowest) / scale], 0.0, deepest))["f_ext"][0]
+    return Total(delta, z, thickness, depth, scale * float(most), {name: width * values[name] for name in NAMES})
 
 
 def at_force(profile: Profile, trace: Trace, force: float, count: int) -> Total:
@@ -112,7 +112,7 @@ def at_force(profile: Profile, trace: Trace, force: float, count: int) -> Total:
         BeyondTrace: the trace ends before the force is reached; the message has the largest force.
         SceneError: the pad has no contact, or more of it than the finger has.
     """
-    touch, most = profile.lowest(), deepest(profile, trace)
+    (_, touch), most = profile.lowest(), deepest(profile, trace)
 
     def excess(delta: float) -> float:
         return at_indentation(profile, trace, delta, count).totals["f_ext"] - force
