@@ -88,10 +88,10 @@ class Result:
         return self.steps[-1] if self.steps else (self.full_slip or self.charged or self.uncharged)
 
     def plot(self, kind: str = "surface", path: str | Path | None = None) -> "Figure | None":
-        """Draw the skin (``"surface"``), the deformed finger (``"finger"``) or the history of sliding (``"history"``).
+        """Draw the skin, the deformed finger, the history of sliding, or the footprint of the whole finger.
 
         Args:
-            kind: ``"surface"``, ``"finger"`` or ``"history"``.
+            kind: ``"surface"``, ``"finger"``, ``"history"`` or ``"footprint"``.
             path: PNG file to write; None for the figure alone.
 
         Returns:
@@ -100,6 +100,10 @@ class Result:
         Raises:
             ValueError: another kind, or a kind without data in this result.
         """
+        if kind == "footprint" and self.finger is not None:
+            from fingerpad.io.footprint_picture import footprint  # Matplotlib
+
+            return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None
         if self.drawing is not None:
             return self.drawing.figure(kind, None if path is None else Path(path))
         if self.model != "full":

@@ -112,8 +112,9 @@ def solved(
     else:
         result = _whole(scene, force, model, out, comm, lines, bar)
     if report and out is not None and (terminal.rank() if comm is None else comm.rank) == 0:
-        from fingerpad.report.write import attempt
+        from fingerpad.report.write import attempt, draw_footprint
 
+        draw_footprint(result)
         attempt(out)
     return result
 

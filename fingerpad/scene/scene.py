@@ -42,7 +42,7 @@ class Scene(Part):
     """
 
     f_ext: Annotated[Finite, within(1e-3, 5e3, "N/m")] = 75.0
-    """External normal force on the bone (N/m). Range: the weight of a grain of sand to 100 N on 20 mm of finger."""
+    """External normal force on the bone (N/m). Range: the weight of a grain of sand to more than 100 N on a finger."""
     voltage: Voltage = 200.0
     """Instantaneous voltage U (V). *Assumption*: U is that of Eq. 3, not the peak-to-peak value of Table 3. Range:
     from 1 mV, which attracts with less than 1 µPa, to ten times the voltage of displays; 0 is no voltage."""

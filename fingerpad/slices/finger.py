@@ -71,8 +71,7 @@ class WholeFinger:
         """Return all values, ready for JSON; SI units."""
         found: dict[str, Any] = {"f_ext": self.f_ext, "source": self.source, "model_error": MODEL_ERROR, "states": {}}
         for name, total in self.states.items():
-            slices = {"z": total.z, "thickness": total.thickness, "indentation": total.depth, **total.columns}
-            arrays = {key: values.tolist() for key, values in slices.items()}
+            arrays = {key: values.tolist() for key, values in total.slices().items()}
             found["states"][name] = self.values(name) | {"error": self.error.get(name, {}), "slices": arrays}
         return found
 

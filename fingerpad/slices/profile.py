@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from scipy.optimize import brentq
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.slices import Slices
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 _SEARCHED = 2001  # places along the finger between which ends of contact are looked for
 
 

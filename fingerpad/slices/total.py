@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from fingerpad.slices.profile import Profile
 from fingerpad.slices.trace import NAMES, Trace
 
 Array = NDArray[np.float64]
+_SEARCHED = 4001  # places along the finger among which the first to end its trace is looked for
 TOTALS = {
     "f_ext": "f_ext",
     "f_t": "f_t",
@@ -60,6 +62,11 @@ class Total:
         length = self.columns["contact_length"]
         return np.divide(borne, length, out=np.zeros_like(borne), where=length > 0)
 
+    def slices(self) -> dict[str, Array]:
+        """Return all values of the slices by name; m, N/m and Pa, shape (slices,)."""
+        places = {"z": self.z, "thickness": self.thickness, "indentation": self.depth}
+        return places | self.columns | {"pressure": self.pressure}
+
 
 def at_indentation(profile: Profile, trace: Trace, delta: float, count: int) -> Total:
     """Return the finger at an indentation.
@@ -78,7 +85,8 @@ def at_indentation(profile: Profile, trace: Trace, delta: float, count: int) -> 
     """
     nodes, weights = np.polynomial.legendre.leggauss(count)
     phi = np.pi / 2 * nodes
-    places, thicknesses = [np.empty(0)], [np.empty(0)]
+    places: list[Array] = [np.empty(0)]
+    thicknesses: list[Array] = [np.empty(0)]
     for first, last in profile.contact(delta):
         half = (last - first) / 2
         places.append((first + last) / 2 + half * np.sin(phi))
@@ -89,7 +97,7 @@ def at_indentation(profile: Profile, trace: Trace, delta: float, count: int) -> 
     deepest, force = trace.end
     if relative.size and relative.max() > deepest * (1 + 1e-9):
         raise BeyondTrace(
-            f"a slice is indented by {relative.max():.4g} m, and the trace of the cross-section ends at {deepest:.4g} "
+            f"a slice is indented by {relative.max():.3g} m, and the trace of the cross-section ends at {deepest:.3g} "
             f"m under {force:.4g} N/m; give a trace to a larger force"
         )
     values = trace.at(np.minimum(relative, deepest))
@@ -133,8 +141,10 @@ def at_force(profile: Profile, trace: Trace, force: float, count: int) -> Total:
 
 def deepest(profile: Profile, trace: Trace) -> float:
     """Return the lowering (m) at which the first slice comes to the end of the trace."""
-    z = np.linspace(*profile.ends, 4001)
-    ends = profile.rise(z) + trace.end[0] * np.asarray(profile.width(z), dtype=float)
-    k = int(np.argmin(ends))
-    fine = np.linspace(z[max(k - 1, 0)], z[min(k + 1, len(z) - 1)], 4001)
-    return float((profile.rise(fine) + trace.end[0] * np.asarray(profile.width(fine), dtype=float)).min())
+
+    def lowered(z: NDArray[Any]) -> NDArray[Any]:
+        return np.asarray(profile.rise(z) + trace.end[0] * profile.width(z))
+
+    z = np.linspace(*profile.ends, _SEARCHED)
+    k = int(np.argmin(lowered(z)))
+    return float(lowered(np.linspace(z[max(k - 1, 0)], z[min(k + 1, len(z) - 1)], _SEARCHED)).min())

@@ -1,9 +1,9 @@
 """Traces of the cross-section for a force in newtons, by any model, as ordinary scenes.
 
-The full model follows three histories: pressed without voltage; pressed lightly, charged and pressed on; pressed lightly,
-charged, slid to full slip and pressed on while it slides. In the last one every accepted step at full slip is a point of
-the trace. The models "smooth" and "cylinders" solve one scene for each of :data:`FORCES` forces. A trace that ends before
-the force is reached is made again to a larger one.
+The full model follows three histories. The finger is pressed without voltage. It is pressed lightly, charged and
+pressed on. It is pressed lightly, charged, slid to full slip and pressed on while it slides; every accepted step at
+full slip is then a point of the trace. The models "smooth" and "cylinders" solve one scene for each of :data:`FORCES`
+forces. A trace that ends before the force is reached is made again to a larger one.
 """
 
 from collections.abc import Iterator
