@@ -226,7 +226,7 @@ def _skin(named: Mapping[str, ContactState]) -> Variables:
 
 
 def _finger(finger: "WholeFinger | None") -> Variables:
-    """Return the whole finger along ``state``, and its slices along ``state`` and ``slice``; NaN where one is missing."""
+    """Return the whole finger along ``state``, and its slices along ``state`` and ``slice``; NaN if missing."""
     if finger is None:
         return {}
     count = max(len(total.z) for total in finger.states.values())

@@ -16,7 +16,8 @@ _MM = 1e3
 _MARKS = {trust.GOOD: "✓ holds", trust.CARE: "! care", trust.BAD: "✗ fails"}
 _LINKS = {
     "asked": "Asked", "numbers": "Numbers", "newtons": "Newtons", "trust": "Trust", "finger": "Finger",
-    "sliding": "Sliding", "pictures": "Pictures", "model": "Model", "solver": "Solver", "parameters": "Parameters", "reproduce": "Reproduce",
+    "sliding": "Sliding", "pictures": "Pictures", "model": "Model", "solver": "Solver", "parameters": "Parameters",
+    "reproduce": "Reproduce",
 }  # fmt: skip
 _SAID = {
     "footprint.png": "Gross and ridge contact of the whole finger, slice by slice, and the pressure along it",
