@@ -33,6 +33,7 @@ PAGES = {
     "errors": "benchmarks.errors",
     "hero": "benchmarks.hero",
     "models": "benchmarks.models",
+    "newtons": "benchmarks.newtons",
     "paper": "benchmarks.paper.page",
     "peers": "benchmarks.peers.page",
     "performance": "benchmarks.performance",
