@@ -245,11 +245,11 @@ def test_refusals(cut_short, tmp_path_factory, capsys):
 
 
 def test_refused_options(tmp_path):
-    with pytest.raises(SceneError, match="a full run in a folder can go on"):
+    with pytest.raises(SceneError, match="only a full run in a folder, of one scene, can go on"):
         fp.run(resume=True)
-    with pytest.raises(SceneError, match="a full run in a folder can go on"):
+    with pytest.raises(SceneError, match="only a full run in a folder, of one scene, can go on"):
         fp.run(out=tmp_path, model="cylinders", resume=True)
-    for words in (["scene.toml"], ["--set", "voltage=1"], ["--model", "smooth"], ["--out", "x"]):
+    for words in (["scene.toml"], ["--set", "voltage=1"], ["--model", "smooth"], ["--out", "x"], ["--force", "1"]):
         with pytest.raises(SceneError, match="and --resume are given"):
             command.main([*words, "--resume", str(tmp_path)])
     with pytest.raises(SceneError, match=r"has no scene.json, and so no run to go on with"):

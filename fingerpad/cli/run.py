@@ -16,6 +16,7 @@ _OUT = Path("results")
 
 _EXAMPLES = """
     fingerpad run --set f_ext="50 N/m" --set voltage=150 --out results/mine
+    fingerpad run --force "0.5 N" --model smooth --out results/newtons
     mpirun -n 2 fingerpad run scene.toml --out results/scene -fingerpad_snes_monitor
     fingerpad run --resume results/scene
 """
@@ -37,6 +38,11 @@ def main(argv: Sequence[str]) -> int:
         help="every ridge (full), a smooth finger with the law of one ridge, or a closed form (default: full)",
     )
     parser.add_argument("--resume", type=path, metavar="DIR", help="go on with a run that was cut short in this folder")
+    parser.add_argument(
+        "--force",
+        metavar="FORCE",
+        help="force on the whole finger, as '0.5 N', in place of f_ext: sums slices over traces of the model",
+    )
     parser.add_argument("--quiet", action="store_true", help="print the result alone: no steps, no progress bar")
     args, petsc = parser.read_with_petsc(argv)
     if args.resume is not None:
@@ -47,7 +53,7 @@ def main(argv: Sequence[str]) -> int:
     if args.model == "cylinders":
         if petsc:
             raise SceneError(f"{petsc[0]} is given and --model is cylinders, which solves nothing by PETSc")
-        echo(str(solved(scene, args.model, args.out if terminal.rank() == 0 else None)))
+        echo(str(solved(scene, args.model, args.out if terminal.rank() == 0 else None, force=args.force)))
         return 0
     from fingerpad.startup import start
 
@@ -56,10 +62,18 @@ def main(argv: Sequence[str]) -> int:
     from fingerpad.runs.full import exit_code
 
     result = solved(
-        scene, args.model, args.out, lines=not args.quiet, bar=not args.quiet, resume=args.resume is not None
+        scene,
+        args.model,
+        args.out,
+        lines=not args.quiet,
+        bar=not args.quiet,
+        force=args.force,
+        resume=args.resume is not None,
     )
     if args.quiet or args.model != "full":
         echo(str(result))
+    elif args.force is not None:
+        echo(f"\n{result.finger}")
     return exit_code(result)
 
 
@@ -69,7 +83,13 @@ def _cut_short(args: Namespace) -> Scene:
     Raises:
         SceneError: the folder has no scene, or the command line gives another one.
     """
-    given = {"SCENE": args.scene, "--set": args.set, "--model": args.model != "full", "--out": args.out != _OUT}
+    given = {
+        "SCENE": args.scene,
+        "--set": args.set,
+        "--force": args.force,
+        "--model": args.model != "full",
+        "--out": args.out != _OUT,
+    }
     for name, value in given.items():
         if value:
             raise SceneError(
