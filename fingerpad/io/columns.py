@@ -43,6 +43,7 @@ STEPS = {
     "jump": Column("1", "whether skin or an air gap moved without the loads"),
     "mesh_contact": Column("m", "contact size of the mesh"),
     "processor_seconds": Column("s", "processor time of all ranks since the start of the run"),
+    "time": Column("s", "time since the start of the first load over time"),
 }
 RIDGES = {
     "contact_length": Column("m", "length of the ridge in contact"),

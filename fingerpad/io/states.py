@@ -55,8 +55,8 @@ def full_slip(rows: Sequence[ContactState], row: ContactState, steady: float, le
 
 
 def unchanged(first: ContactState, row: ContactState, steady: float, least: float) -> bool:
-    """Return whether two states have the same voltage and forces; arguments as for :func:`full_slip`."""
-    same = abs(row.voltage - first.voltage) <= _ROUNDOFF * abs(first.voltage)
+    """Return whether two states have the same voltage, but for its sign, and forces; arguments as for :func:`full_slip`."""
+    same = abs(abs(row.voltage) - abs(first.voltage)) <= _ROUNDOFF * abs(first.voltage)
     pairs = ((first.f_t, row.f_t), (first.f_ext, row.f_ext))
     return bool(same and all(abs(b - a) <= steady * abs(a) + least for a, b in pairs))
 
@@ -64,7 +64,7 @@ def unchanged(first: ContactState, row: ContactState, steady: float, least: floa
 def named(rows: Sequence[ContactState]) -> dict[str, ContactState]:
     """Return the states of :data:`STATES` in a history so far, by name."""
     still = [row for row in before_sliding(rows) if row.ridges_in_contact > 0]
-    uncharged = still[: next((k for k, row in enumerate(still) if row.voltage > 0), len(still))]
+    uncharged = still[: next((k for k, row in enumerate(still) if row.voltage != 0), len(still))]
     held = next((row.slip_began for row in reversed(rows) if row.slip_held), None)
     found = {"uncharged": uncharged[-1:], "charged": still[-1:], "full_slip": [r for r in rows if r.step == held][:1]}
     return {name: part[0] for name, part in found.items() if len(part)}
