@@ -66,6 +66,10 @@ SKIN = {
     "t_t": Column("Pa", "shear traction on the skin per current area, positive towards x > 0"),
     "p_el": Column("Pa", "electrostatic pressure per current area"),
 }
+SPECTRUM = {
+    "frequency": Column("Hz", "frequency of the amplitude of friction"),
+    "f_t_amplitude": Column("N/m", "amplitude of the friction force at the frequency per metre of finger"),
+}
 STATES = {name: STEPS[name] for name in ("step", "f_ext", "voltage", "bone_x", "bone_height", "f_t", "mu_app")} | {
     name: STEPS[name] for name in ("f_contact", "f_electrostatic", "ridges_in_contact", "contact_length")
 }

@@ -87,13 +87,13 @@ def _refuse_history(history: Sequence[Load], given: Mapping[str, Any]) -> None:
 
 def _refuse_floating(history: Sequence[Load]) -> None:
     """Refuse loads that leave the bone neither held nor pressed nor attracted."""
-    f_ext, voltage = None, 0.0
-    for key, load, way in _ways(history):
+    f_ext: float | None = None
+    voltage = 0.0
+    for key, load, way in ways(history):
         if load.f_ext is not None or load.bone_height is not None:
             f_ext = load.f_ext
-        if load.wave is None:
-            voltage = voltage if load.voltage is None else load.voltage
-        else:
+        voltage = voltage if load.level is None else load.level
+        if load.wave is not None:
             along = [value for _, value in load.wave.samples(load.seconds(way or 0.0), 1.0)]
             if f_ext == 0 and 0 in along:
                 raise ValueError(
@@ -108,7 +108,7 @@ def _refuse_floating(history: Sequence[Load]) -> None:
             )
 
 
-def _ways(history: Sequence[Load]) -> Iterator[tuple[str, Load, float | None]]:
+def ways(history: Sequence[Load]) -> Iterator[tuple[str, Load, float | None]]:
     """Yield the key of each load, the load, and how far the bone goes (m); None where the run decides that."""
     place: float | None = 0.0  # of the bone; None where a load before may have stopped early
     for k, load in enumerate(history):
@@ -124,7 +124,7 @@ def _ways(history: Sequence[Load]) -> Iterator[tuple[str, Load, float | None]]:
 
 def _refuse_times(history: Sequence[Load], step_scale: float) -> None:
     """Refuse waveforms whose length is not known before the run, or whose samples are too many or end too early."""
-    for key, load, way in _ways(history):
+    for key, load, way in ways(history):
         if load.wave is None:
             continue
         if load.speed is not None and way is None:

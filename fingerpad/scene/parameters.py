@@ -120,9 +120,21 @@ class Load(Part):
         return self.voltage if isinstance(self.voltage, Waveform) else None
 
     @property
+    def level(self) -> float | None:
+        """The voltage (V) to go to; None where it is over time or stays."""
+        return None if isinstance(self.voltage, Waveform) else self.voltage
+
+    @property
     def moves(self) -> bool:
         """Whether the load may take the bone away from where it was unloaded."""
         return bool(self.bone_x or self.bone_x_by)
+
+    @property
+    def pace(self) -> str:
+        """Speed or duration in words; empty without."""
+        if self.speed is not None:
+            return f"at {1e3 * self.speed:g} mm/s"
+        return "" if self.duration is None else f"in {self.duration:g} s"
 
     @property
     def takes_time(self) -> bool:
@@ -258,6 +270,8 @@ class Output(Part):
     errors: Switch = True
     """Whether discretisation errors are estimated; see :mod:`fingerpad.accuracy.refinement`. With an accuracy they
     always are."""
+    each_load: Switch = True
+    """Whether the finger and its skin are drawn at the end of each load. A load over time has one end."""
 
 
 class Numerics(Part):

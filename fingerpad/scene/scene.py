@@ -199,6 +199,8 @@ class Scene(Part):
         unused |= {"accuracy": True} if self.accuracy is None else {}
         if self.output == Output():  # not a word of it, so that runs made before it was a key are found
             unused["output"] = True
+        elif self.output.each_load:
+            unused["output"] = {"each_load"}
         default = Numerics()  # likewise
         unused["numerics"] = {n for n in ("step_scale", "memory") if getattr(self.numerics, n) == getattr(default, n)}
         found = self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})

@@ -161,6 +161,14 @@ class Waveform(Part):
             before = time, values[-1]
         return found
 
+    def corners(self, seconds: float) -> list[float]:
+        """Return the times (s) at which the voltage bends sharply, up to some seconds; jumps are not among them."""
+        if self.times is not None:
+            return [time for time in self.times if time <= seconds]
+        if self.waveform != "triangle":
+            return []
+        return [(k + 0.5) / 2 * self.period for k in range(math.ceil(2 * seconds / self.period))]
+
     def _sine(self, time: float) -> float:
         return self._value(math.sin(2 * math.pi * math.fmod(time * (self.frequency or 0.0), 1.0)))
 
