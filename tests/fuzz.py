@@ -283,7 +283,7 @@ def _unready(scene: Scene) -> str:
         horny = scene.materials.stratum_corneum
         ridge = Cylinder(tip_radius(scene.geometry), 2 * horny.shear_modulus / (1 - horny.poisson), scene.h_0, closure)
         ridge.under_load(
-            max(load.f_ext or 1.0 for load in scene.loads()) / 9, max(l.voltage or 0 for l in scene.loads())
+            max(load.f_ext or 1.0 for load in scene.loads()) / 9, max(l.wave.peak if l.wave else l.level or 0 for l in scene.loads())
         )
     except (NoEquilibriumError, SceneError) as error:
         return "" if len(str(error)) < LONGEST else str(error)

@@ -12,6 +12,7 @@ from fingerpad.scene import Load
 from fingerpad.scene.waveform import Waveform
 from variational.solvers.continuation import Target
 
+_BEGIN = 60e-6  # m, with which a slide begins
 Piece = tuple[Target, float, float]
 """What to reach, from when to when (s) in its load."""
 
@@ -63,8 +64,8 @@ class Course:
             aim = place
             if place is not None and time < self._whole:
                 aim = x + time / self._whole * (place - x)
-            # Neither a jump, nor the begin of a slide, which has a shorter step.
-            continues = time > before and (place is None or len(found) > 1)
+            begins = len(found) == 1 and aim is not None and abs(aim - x) > self._step_scale * _BEGIN
+            continues = time > before and not begins  # what jumps, or begins with a long slide, is cut into steps
             found.append((Target(load, voltage=voltage, bone_x=aim, continues=continues), before, time))
         return found
 
