@@ -112,7 +112,7 @@ def _integral(time: Array, value: Array, corners: Sequence[float], turn: float =
     jumps = np.flatnonzero(np.diff(time) <= near) + 1
     bends = [k for k, at in enumerate(time) if any(abs(at - corner) <= near for corner in corners)]
     # A segment begins with the state after a jump; a state in a corner belongs to both.
-    starts = sorted({0, *jumps.tolist(), *bends})
+    starts = sorted({0, *bends, *map(int, jumps)})
     for a, b in zip(starts, [*starts[1:], len(time) - 1], strict=True):
         last = b - 1 if b in jumps else b
         if last <= a:

@@ -18,7 +18,7 @@ from itertools import count
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from fingerpad.scene.messages import clip, show
 from fingerpad.scene.reading import read_bytes
@@ -38,6 +38,8 @@ Sample = tuple[float, float]
 """Time (s) since the start of the load, and voltage (V)."""
 Volts = Annotated[Finite, within(1e-3, _HIGHEST, "V", zero=True, sides=2)]
 Seconds = Annotated[Finite, within(1e-9, 1e5, "s", zero=True)]
+# Behind a validator that reads a file, strict rules no longer take a list for a tuple.
+_LISTED = BeforeValidator(lambda value: tuple(value) if isinstance(value, list) else value)
 _WAVES = ("amplitude", "frequency")
 
 
@@ -55,9 +57,9 @@ class Waveform(Part):
     file: Annotated[str | None, Field(exclude=True)] = None
     """CSV file with the header ``time (s),voltage (V)``, straight between its points; a relative path starts at the
     scene file. The times start at 0 and increase. The file is read at once: a scene stores only its points."""
-    times: tuple[Seconds, ...] | None = None
+    times: Annotated[tuple[Seconds, ...], _LISTED] | None = None
     """Times (s) of a file's points, or in place of a file."""
-    voltages: tuple[Volts, ...] | None = None
+    voltages: Annotated[tuple[Volts, ...], _LISTED] | None = None
     """Voltages (V) at these times."""
 
     @model_validator(mode="before")
@@ -91,7 +93,7 @@ class Waveform(Part):
     def _refuse_table(self) -> None:
         for name in (*_WAVES, "offset"):
             if name in self.model_fields_set and getattr(self, name) not in (None, 0.0):
-                raise ValueError(f"{name} is {show(getattr(self, name))} and waveform is 'file'; a file has no {name}")
+                raise ValueError(f"{name} is {show(getattr(self, name))} and waveform is 'file', which has none")
         if self.times is None or self.voltages is None:
             raise ValueError("file is missing; waveform is 'file' and needs it")
         if len(self.times) != len(self.voltages):
@@ -247,7 +249,7 @@ def _table(file: str) -> dict[str, Any]:
     except OSError as error:
         raise ValueError(f"{name}, which cannot be read: {error.strerror or error}") from None
     except (ValueError, csv.Error) as error:
-        raise ValueError(f"{name}, which is no CSV file: {clip(str(error), 100)}") from None
+        raise ValueError(f"{name}, which is no table in CSV: {clip(str(error), 100)}") from None
     rows = [(k, [cell.strip() for cell in row]) for k, row in enumerate(lines, start=1) if any(map(str.strip, row))]
     header = rows[0][1] if rows else []
     if header != [_TIME, _VOLTAGE]:
