@@ -24,6 +24,9 @@ _SLIPS = {
     "Pa/m": ("stiffnesses are in Pa/m", (1e9, 1e6, 1e12)),
     "V": ("voltages are in V", (1e-3, 1e3)),
     "B": ("memory is in bytes", (1e9, 1e6)),
+    "s": ("times are in s", (1e-3, 1e-6)),
+    "Hz": ("frequencies are in Hz", (1e3, 1e-3)),
+    "m/s": ("speeds are in m/s", (1e-3,)),
 }
 OUT_OF_RANGE = "out_of_range"  # kinds of the errors that a range raises
 NO_QUANTITY = "no_quantity"

@@ -22,6 +22,9 @@ QUANTITIES = {
     "Pa/m": "pressure per length",
     "V": "voltage",
     "B": "memory",
+    "s": "time",
+    "Hz": "frequency",
+    "m/s": "speed",
 }
 """What each unit of a parameter measures."""
 

@@ -282,9 +282,8 @@ def _unready(scene: Scene) -> str:
     try:
         horny = scene.materials.stratum_corneum
         ridge = Cylinder(tip_radius(scene.geometry), 2 * horny.shear_modulus / (1 - horny.poisson), scene.h_0, closure)
-        ridge.under_load(
-            max(load.f_ext or 1.0 for load in scene.loads()) / 9, max(l.voltage or 0 for l in scene.loads())
-        )
+        voltages = (load.wave.peak if load.wave else load.level or 0.0 for load in scene.loads())
+        ridge.under_load(max(load.f_ext or 1.0 for load in scene.loads()) / 9, max(voltages))
     except (NoEquilibriumError, SceneError) as error:
         return "" if len(str(error)) < LONGEST else str(error)
     return ""

@@ -37,7 +37,7 @@ from tests.test_refusals import SCENES, refusal
         (
             '[[history]]\nname = "a"\nf_ext = 1\n[[history]]\nname = "b"\nuntil_full_slip = true',
             "history[1].name is 'b' and nothing else is given; it must come with at least one of "
-            "history[1].f_ext, history[1].bone_height, history[1].voltage and history[1].bone_x",
+            "history[1].f_ext, history[1].bone_height, history[1].voltage, history[1].bone_x and history[1].bone_x_by",
         ),
         (
             '[[history]]\nname = "a"\nf_ext = 1\n[[history]]\nname = "b"\nvoltage = 80\nbone_x = 1e-3\n'

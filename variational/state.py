@@ -131,6 +131,8 @@ class ContactState:
     record: StepRecord | None = None
     mesh_contact: float = math.nan
     """Size of the facets that can touch (m)."""
+    time: float = math.nan
+    """Time since the start of the run's first load over time (s); NaN where no load of the run is one."""
     ridges: RidgeStates | None = None
     skin: Skin | None = None
     error: Errors = Errors()
@@ -170,8 +172,8 @@ class ContactState:
             found = {field.name: _read(row[field.name], field.type) for field in _FIELDS if field.name in row}
             kept = [field.name in row for field in fields(StepRecord)]
             record = {f.name: _read(row[f.name], f.type) for f in fields(StepRecord)} if all(kept) else None
-            size = float(row.get("mesh_contact", math.nan))
-            return cls(**found, mesh_contact=size, record=None if record is None else StepRecord(**record))
+            size, time = (float(row.get(name, math.nan)) for name in ("mesh_contact", "time"))
+            return cls(**found, mesh_contact=size, time=time, record=None if record is None else StepRecord(**record))
         except TypeError as error:
             raise ValueError(f"a row of steps has too few columns: {error}") from None
 
@@ -183,6 +185,8 @@ class ContactState:
         if not math.isnan(self.mesh_contact):
             seconds = {"processor_seconds": row.pop("processor_seconds")} if self.record is not None else {}
             row |= {"mesh_contact": self.mesh_contact} | seconds
+        if not math.isnan(self.time):
+            row["time"] = self.time
         return row
 
 

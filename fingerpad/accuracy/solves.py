@@ -126,7 +126,8 @@ def loads_to_normal_contact(loads: tuple[Load, ...]) -> tuple[Load, ...]:
     """Return the loads before the bone first moves sideways with the finger pressed."""
     pressed, place = False, 0.0
     for k, load in enumerate(loads):
-        x = place if load.bone_x is None else load.bone_x
+        to = load.place(place)
+        x = place if to is None else to
         pressed |= (load.f_ext or 0.0) > 0 or (load.bone_height or 0.0) < 0
         if pressed and x != place:
             return loads[:k]

@@ -57,9 +57,14 @@ def _aims(load: Load) -> Iterator[str]:
     if load.bone_height is not None:
         yield f"bone's height to {load.bone_height * 1e3:+g} mm of the unloaded one"
     if load.voltage is not None:
-        yield f"voltage to {load.voltage:g} V"
+        yield f"voltage: {load.wave}" if load.level is None else f"voltage to {load.level:g} V"
+    until = ", or until full slip" if load.until_full_slip else ""
     if load.bone_x is not None:
-        yield f"bone sideways to {load.bone_x * 1e3:g} mm{', or until full slip' if load.until_full_slip else ''}"
+        yield f"bone sideways to {load.bone_x * 1e3:g} mm{until}"
+    if load.bone_x_by is not None:
+        yield f"bone sideways by {load.bone_x_by * 1e3:+g} mm{until}"
+    if load.pace:
+        yield load.pace
 
 
 def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:

@@ -21,8 +21,8 @@ _EXAMPLES = """
 _PAGE = """# Scene reference
 
 A scene has {keys} keys in {tables} tables. An empty file is the default scene: 75 N/m, 200 V, friction 0.25,
-slid to full slip. Most scenes change only `f_ext`, `voltage`, `friction` and one or two tables. Only two keys have no
-default: the name of a load and the file of a height map, both in optional tables.
+slid to full slip. Most scenes change only `f_ext`, `voltage`, `friction` and one or two tables. Only three keys have no
+default: the name of a load, the shape of a waveform and the file of a height map, all in optional tables.
 
 - In a file, a key stands in its table: `[mesh]`, then `contact = 10e-6`.
 - In Python: `fp.Scene(mesh={{"contact": 10e-6}})`. On the command line: `--set mesh.contact=10e-6`.
@@ -77,7 +77,7 @@ def toml(found: Sequence[Key]) -> str:
     for key in found:
         where, _, name = key.name.rpartition(".")
         if where != table:
-            table, many = where, "[]" in where
+            table, many = where, where.endswith("[]")
             plain = where.replace("[]", "")
             lines += ["", f"# [[{plain}]]" if many else f"[{plain}]" if _has_values(found, where) else f"# [{plain}]"]
         lines += textwrap.wrap(key.meaning, _WIDTH, initial_indent="# ", subsequent_indent="# ")
@@ -94,7 +94,8 @@ def page(found: Sequence[Key]) -> str:
         by_table.setdefault(key.name.rpartition(".")[0], []).append(key)
     lines = [_PAGE.format(keys=len(found), tables=len([name for name in by_table if name]))]
     for name, keys in by_table.items():
-        heading = f"`[[{name.removesuffix('[]')}]]`" if name.endswith("[]") else f"`[{name}]`" if name else "Top level"
+        plain = name.replace("[]", "")
+        heading = f"`[[{plain}]]`" if name.endswith("[]") else f"`[{plain}]`" if name else "Top level"
         lines += ["", f"## {heading}", "", "| key | unit | default | allowed | meaning |", "|---|---|---|---|---|"]
         for key in keys:
             cells = (f"`{key.name.rpartition('.')[2]}`", key.unit, _short(key), key.allowed, key.meaning)

@@ -43,6 +43,7 @@ STEPS = {
     "jump": Column("1", "whether skin or an air gap moved without the loads"),
     "mesh_contact": Column("m", "contact size of the mesh"),
     "processor_seconds": Column("s", "processor time of all ranks since the start of the run"),
+    "time": Column("s", "time since the start of the first load over time"),
 }
 RIDGES = {
     "contact_length": Column("m", "length of the ridge in contact"),
@@ -64,6 +65,10 @@ SKIN = {
     "p_n": Column("Pa", "contact pressure per current area"),
     "t_t": Column("Pa", "shear traction on the skin per current area, positive towards x > 0"),
     "p_el": Column("Pa", "electrostatic pressure per current area"),
+}
+SPECTRUM = {
+    "frequency": Column("Hz", "frequency of the amplitude of friction"),
+    "f_t_amplitude": Column("N/m", "amplitude of the friction force at the frequency per metre of finger"),
 }
 STATES = {name: STEPS[name] for name in ("step", "f_ext", "voltage", "bone_x", "bone_height", "f_t", "mu_app")} | {
     name: STEPS[name] for name in ("f_contact", "f_electrostatic", "ridges_in_contact", "contact_length")

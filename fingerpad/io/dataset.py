@@ -25,10 +25,11 @@ if TYPE_CHECKING:
     import xarray
 
     from fingerpad.io.result import Result
+    from fingerpad.io.states import LoadResult
     from fingerpad.slices.finger import WholeFinger
 
 FILE = "result.nc"
-COORDINATES = ("step", "load", "state", "ridge", "side", "iteration")
+COORDINATES = ("step", "load", "state", "ridge", "side", "iteration", "harmonic")
 Row = Mapping[str, Any]
 Variables = dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]
 _MISSING = -1  # of whole numbers of a state that is not there
@@ -150,6 +151,34 @@ def _loads(result: "Result") -> Variables:
             column = columns.STEPS[quantity]
             about = _about(Column(column.unit, f"{words} value in the load: {column.meaning}"))
             found[f"load_{quantity}_{end}"] = ("load",), _array(values), about
+    return found | _over_time(loads)
+
+
+def _over_time(loads: "Sequence[LoadResult]") -> Variables:
+    """Return lengths, means and spectra of loads over time; NaN for the other loads, nothing where there are none."""
+    passed = [load.over_time for load in loads]
+    known = [each for each in passed if each is not None]
+    if not known:
+        return {}
+    found: Variables = {}
+    for name, words in (("start", "time at which the load begins"), ("seconds", "length of the load")):
+        values = [math.nan if each is None else getattr(each, name) for each in passed]
+        found[f"load_{name}"] = ("load",), _array(values), _about(Column("s", words))
+    for quantity in known[0].mean:
+        column = columns.STEPS[quantity]
+        values = [math.nan if each is None else each.mean[quantity] for each in passed]
+        about = _about(Column(column.unit, f"mean over time in the load: {column.meaning}"))
+        found[f"load_{quantity}_mean"] = ("load",), _array(values), about
+    harmonics = max(len(each.frequency) for each in known)
+    if harmonics:
+        number = Column("1", "multiple of the frequency of the waveform")
+        found["harmonic"] = ("harmonic",), np.arange(1, harmonics + 1, dtype=np.int32), _about(number)
+        for name, column in columns.SPECTRUM.items():
+            table = np.full((len(loads), harmonics), np.nan)
+            for k, each in enumerate(passed):
+                if each is not None and each.frequency:
+                    table[k] = getattr(each, name)
+            found[f"load_{name}"] = ("load", "harmonic"), table, _about(column)
     return found
 
 

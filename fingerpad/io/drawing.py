@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fingerpad.io import finger_picture, history_picture, skin_picture, titles
+from fingerpad.io import finger_picture, history_picture, skin_picture, time_picture, titles
 from fingerpad.io.skin_picture import SurfaceProfile
 from fingerpad.io.states import PREFIXES, WORDS, before_sliding, named, partial_slip
 from fingerpad.io.views import Profile, View
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _PATH, _FINAL = "path on the starting mesh", "final mesh"
 _TITLES = {name: words.capitalize() for name, words in WORDS.items()}
-KINDS = ("surface", "finger", "history")
+KINDS = ("surface", "finger", "history", "time")
 
 
 class End(NamedTuple):
@@ -50,9 +50,14 @@ class Drawing:
     named: Mapping[str, ContactState]
     """Named states with their estimated errors, by their names in :mod:`fingerpad.io.states`."""
 
-    def write(self, folder: Path) -> None:
-        """Write every picture and its arrays into a folder."""
-        for load, end in self.ends.items():
+    def write(self, folder: Path, each_load: bool = True) -> None:
+        """Write every picture and its arrays into a folder.
+
+        Args:
+            folder: where to.
+            each_load: also those of the end of each load.
+        """
+        for load, end in self.ends.items() if each_load else ():
             words = load.replace(" ", "_")
             _keep(folder / f"finger_{words}.npz", end.snapshot, end.sites)
             self._end(folder / f"finger_{words}.png", load)
@@ -68,13 +73,15 @@ class Drawing:
             self._surface(folder / "surface", self._named_skin(), [state for _, state, _ in shown.values()])
         if self._slides():
             self.figure("history", folder / "history.png")
+        if self._timed():
+            self.figure("time", folder / "time.png")
 
     def figure(self, kind: str, path: Path | None = None) -> Figure:
         """Draw a picture, and write it where a path is given.
 
         Args:
             kind: one of :data:`KINDS`: the skin in normal contact, partial and full slip, the deformed finger at full
-                slip or else at the end, friction and contact length over sliding.
+                slip or else at the end, friction and contact length over sliding, and with the voltage over time.
             path: of the PNG file.
 
         Raises:
@@ -87,6 +94,8 @@ class Drawing:
             if not profiles:
                 raise ValueError("the run has no state with skin on the screen to draw")
             return self._skin(path, profiles, [state for _, state, _ in self._shown().values()])
+        if kind == "time":
+            return self._over_time(path)
         if kind != "history":
             raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(KINDS)}")
         if not self._slides():
@@ -114,6 +123,18 @@ class Drawing:
 
     def _slides(self) -> bool:
         return len(before_sliding(self.states)) not in (0, len(self.states))
+
+    def _timed(self) -> list[ContactState]:
+        """Return the states from the last one at time 0 on; none where no load takes time."""
+        first = sum(state.time == 0 for state in self.states)
+        return list(self.states[max(first - 1, 0) :]) if self.states and self.states[-1].time > 0 else []
+
+    def _over_time(self, path: Path | None) -> Figure:
+        states = self._timed()
+        if not states:
+            raise ValueError("the run has no load over time; give one a speed, a duration or a waveform")
+        conditions = titles.conditions_of([state.row() for state in states], self.mu_0)
+        return time_picture.over_time(path, states, _joined(conditions, self._path_note()))
 
     def _path_note(self) -> str:
         return "" if self.starting_size is None else _note(_PATH, self.starting_size)

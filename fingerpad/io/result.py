@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from fingerpad.io import terminal
 from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
-from fingerpad.io.states import PREFIXES, STATES, WORDS, LoadResult, by_load, load_result
+from fingerpad.io.states import PREFIXES, STATES, WORDS, LoadResult, load_results
 from fingerpad.scene import Scene, SceneError, from_data
 from fingerpad.scene.laws import coefficient
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
@@ -90,8 +90,10 @@ class Result:
     def plot(self, kind: str = "surface", path: str | Path | None = None) -> "Figure | None":
         """Draw the skin, the deformed finger, the history of sliding, or the footprint of the whole finger.
 
+        Loads over time have a fourth picture: ``"time"``.
+
         Args:
-            kind: ``"surface"``, ``"finger"``, ``"history"`` or ``"footprint"``.
+            kind: ``"surface"``, ``"finger"``, ``"history"``, ``"footprint"`` or ``"time"``.
             path: PNG file to write; None for the figure alone.
 
         Returns:
@@ -208,7 +210,7 @@ class Result:
                 steps = tuple(ContactState.from_row(row) for row in csv.DictReader(file))
             mu_0 = None if "laws" in found.record.get("parameters", {}) else coefficient(found.scene)
             drawing = Drawing(mu_0, steps, {}, {}, {}, None, found.named)
-            return replace(found, steps=steps, loads=tuple(_loads(steps, summary)), drawing=drawing)
+            return replace(found, steps=steps, loads=tuple(_loads(steps, found.scene, summary)), drawing=drawing)
         except (OSError, ValueError, KeyError) as error:
             if isinstance(error, SceneError):
                 raise
@@ -248,7 +250,7 @@ class Result:
     def _remarks(self) -> list[str]:
         """Return the lines after the table: failure, missing full slip, meaning of ± and N/m, effect of the penalty."""
         found = [f"Not finished: {self.failure}"] if self.failure else []
-        asked = any(load.until_full_slip or load.bone_x for load in self.scene.loads())
+        asked = any(load.until_full_slip or load.moves for load in self.scene.loads())
         if asked and self.full_slip is None and not self.failure:
             found.append("No full slip was held over a further 0.2 mm.")
         if any(state.error.known() for state in self.named.values()):
@@ -261,11 +263,10 @@ class Result:
         return [*found, *([PER_LENGTH] if self.named else []), *self.notes]
 
 
-def _loads(steps: Sequence[ContactState], summary: Mapping[str, Any]) -> Iterator[LoadResult]:
-    """Yield the result of each load of a run; the stability of its end comes from the summary."""
+def _loads(steps: Sequence[ContactState], scene: Scene, summary: Mapping[str, Any]) -> Iterator[LoadResult]:
+    """Return the result of each load of a run; the stability of its end comes from the summary."""
     stable = [load.get("stable") for load in summary.get("loads", ())]
-    for k, (name, mine) in enumerate(by_load(steps)):
-        yield load_result(name, mine, stable[k] if k < len(stable) else None)
+    return load_results(steps, scene.loads(), lambda k, end: stable[k] if k < len(stable) else None)
 
 
 def _plain(value: Any) -> Any:

@@ -9,12 +9,16 @@
   0.2 mm. A full slip begins at its first state. Of several full slips the last one that was held counts.
 """
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import groupby
 from operator import attrgetter
 from typing import Any
 
+from fingerpad.io.over_time import QUANTITIES, OverTime, over_time
+from fingerpad.scene import Load
+from fingerpad.scene.waveform import Waveform
 from variational.state import CONDITIONS, RESULTS, ContactState
 
 STILL = 1e-12  # m, largest sideways displacement of a bone at rest
@@ -23,7 +27,6 @@ STATES = ("uncharged", "charged", "full_slip")
 WORDS = {"uncharged": "uncharged normal contact", "charged": "charged normal contact", "full_slip": "full slip"}
 PREFIXES = {"uncharged": "uncharged", "charged": "normal", "full_slip": "slip"}
 """Prefixes of the quantities of a state in flat tables and in ``summary.json``: ``normal_contact_length``."""
-_EXTREMES = ("mu_app", "f_t", "contact_length", "f_electrostatic")
 _ROUNDOFF = 1e-9  # relative, of a displacement or a voltage
 
 
@@ -55,8 +58,8 @@ def full_slip(rows: Sequence[ContactState], row: ContactState, steady: float, le
 
 
 def unchanged(first: ContactState, row: ContactState, steady: float, least: float) -> bool:
-    """Return whether two states have the same voltage and forces; arguments as for :func:`full_slip`."""
-    same = abs(row.voltage - first.voltage) <= _ROUNDOFF * abs(first.voltage)
+    """Return whether two states have the same amount of voltage and forces; arguments as for :func:`full_slip`."""
+    same = abs(abs(row.voltage) - abs(first.voltage)) <= _ROUNDOFF * abs(first.voltage)
     pairs = ((first.f_t, row.f_t), (first.f_ext, row.f_ext))
     return bool(same and all(abs(b - a) <= steady * abs(a) + least for a, b in pairs))
 
@@ -64,7 +67,7 @@ def unchanged(first: ContactState, row: ContactState, steady: float, least: floa
 def named(rows: Sequence[ContactState]) -> dict[str, ContactState]:
     """Return the states of :data:`STATES` in a history so far, by name."""
     still = [row for row in before_sliding(rows) if row.ridges_in_contact > 0]
-    uncharged = still[: next((k for k, row in enumerate(still) if row.voltage > 0), len(still))]
+    uncharged = still[: next((k for k, row in enumerate(still) if row.voltage != 0), len(still))]
     held = next((row.slip_began for row in reversed(rows) if row.slip_held), None)
     found = {"uncharged": uncharged[-1:], "charged": still[-1:], "full_slip": [r for r in rows if r.step == held][:1]}
     return {name: part[0] for name, part in found.items() if len(part)}
@@ -92,12 +95,21 @@ def by_load(rows: Sequence[ContactState]) -> Iterator[tuple[str, list[ContactSta
 
 @dataclass(frozen=True)
 class Extreme:
-    """Least and largest value of a quantity over the states of a load, and their steps."""
+    """Least and largest value of a quantity over the states of a load, their steps, and in a run over time their times.
+
+    A time is in s, NaN where no load of the run is over time.
+    """
 
     min: float
     min_step: int
     max: float
     max_step: int
+    min_time: float = math.nan
+    max_time: float = math.nan
+
+    def to_dict(self) -> dict[str, float]:
+        """Return it ready for JSON, without times that there are not."""
+        return {name: value for name, value in asdict(self).items() if not math.isnan(value)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,27 +124,58 @@ class LoadResult:
     full_slip_held: bool
     stable: bool | None
     """Whether the state at the end is stable; None where this was not examined."""
+    over_time: OverTime | None = None
+    """Means over time and spectrum of friction; None where the load takes no time."""
 
     def to_dict(self) -> dict[str, Any]:
         """Return the load's result, ready for JSON."""
         end = {key: getattr(self.end, key) for key in (*CONDITIONS, *RESULTS) if key != "load"}
-        extremes = {quantity: asdict(extreme) for quantity, extreme in self.extremes.items()}
+        extremes = {quantity: extreme.to_dict() for quantity, extreme in self.extremes.items()}
         more = {name: getattr(self, name) for name in ("full_slip_reached", "full_slip_held", "stable")}
+        more |= {} if self.over_time is None else {"over_time": self.over_time.to_dict()}
         return {"name": self.name, "end": end, "extremes": extremes, **more}
 
 
-def load_result(name: str, mine: Sequence[ContactState], stable: bool | None) -> LoadResult:
+def load_results(
+    rows: Sequence[ContactState], loads: Sequence[Load], stable: Callable[[int, ContactState], bool | None]
+) -> Iterator[LoadResult]:
+    """Yield the result of each load.
+
+    Args:
+        rows: states of the history.
+        loads: its loads.
+        stable: whether the state at the end of a load is stable, by the load's place among those with a state; None
+            where this was not examined.
+    """
+    before: list[ContactState] = []
+    for k, (name, mine) in enumerate(by_load(rows)):
+        load = next(iter(loads[mine[-1].load_number - 1 :]), None)
+        yield load_result(name, mine, stable(k, mine[-1]), before, None if load is None else load.wave)
+        before = mine[-1:]
+
+
+def load_result(
+    name: str,
+    mine: Sequence[ContactState],
+    stable: bool | None,
+    before: Sequence[ContactState] = (),
+    wave: Waveform | None = None,
+) -> LoadResult:
     """Return the result of a load.
 
     Args:
         name: name of the load.
         mine: states of the load.
         stable: whether the state at its end is stable, None where this was not examined.
+        before: the state at its begin, if there is one.
+        wave: its voltage over time; None where it is constant.
     """
     extremes = {}
-    for quantity in _EXTREMES:
+    for quantity in QUANTITIES:
         of = attrgetter(quantity)
         least, most = min(mine, key=of), max(mine, key=of)
-        extremes[quantity] = Extreme(of(least), least.step, of(most), most.step)
+        extremes[quantity] = Extreme(of(least), least.step, of(most), most.step, least.time, most.time)
     slips = any(state.slip_began for state in mine), any(state.slip_held for state in mine)
-    return LoadResult(name, mine[-1], extremes, *slips, stable)
+    # A waveform has a state of its own at its begin, after a jump from the voltage before.
+    passed = over_time(mine if wave is not None else [*before, *mine], wave)
+    return LoadResult(name, mine[-1], extremes, *slips, stable, passed)

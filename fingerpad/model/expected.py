@@ -17,9 +17,11 @@ from dataclasses import dataclass
 from fingerpad.model.memory import estimate
 from fingerpad.model.options import ModelOptions
 from fingerpad.scene import Load, Scene
+from fingerpad.scene.contradictions import ways
 
 RUNS, FORCE, VOLTAGE = 113.5, 0.33, 0.74
 SHARES = {"force": 0.26, "voltage": 0.10, "slide": 0.64}
+SAMPLE = 0.04  # of a waveform: as of a charge, which has 2 to 3 steps
 FORMULATIONS = {"penalty": 1.0, "nitsche": 1.85, "augmented": 7.15}
 SECONDS = 2.66e-6  # of the processor, for a factorisation and an unknown
 ERRORS, BESIDE = 0.308, 0.136  # of the path's time: the error estimate; start, set-up and output
@@ -61,11 +63,15 @@ def by_load(scene: Scene, needed: ModelOptions) -> list[float]:
 def factorisations(scene: Scene) -> list[float]:
     """Return the number of factorisations of each load."""
     f_ext, voltage, found = 0.0, 0.0, []
-    for load in scene.loads():
+    for _, load, way in ways(scene.loads()):
         f_ext = load.f_ext if load.f_ext is not None else f_ext
-        voltage = load.voltage if load.voltage is not None else voltage
+        wave, share = load.wave, _share(load)
+        if wave is not None:
+            # The steps of a waveform are as many as its samples; the factor below counts smaller steps again.
+            share = SAMPLE * wave.count(load.seconds(way or 0.0), 1.0)
+        voltage = wave.peak if wave is not None else voltage if load.level is None else load.level
         force = max(f_ext, 1.0) / 75.0
-        found.append(_share(load) * RUNS * force**FORCE * math.exp(VOLTAGE * (voltage / 200.0) ** 2))
+        found.append(share * RUNS * force**FORCE * math.exp(VOLTAGE * (voltage / 200.0) ** 2))
     factor = FORMULATIONS[scene.contact.formulation] / scene.numerics.step_scale
     return [number * factor for number in found]
 

@@ -78,7 +78,7 @@ def plan(scene: Scene) -> ModelOptions:
     if not errors:
         omitted.append(Omission("discretisation errors", "output.errors is false"))
     symmetric = all(solid.keeps_symmetry() for solid in scene.laws.materials.values())
-    both_halves = any(load.bone_x for load in scene.loads()) or not symmetric
+    both_halves = any(load.moves for load in scene.loads()) or not symmetric
     if scene.laws.mesh is not None:  # the whole of it, and no other mesh of the same finger
         if receptors:
             omitted.append(Omission("receptor sites", _FILE))

@@ -1,6 +1,6 @@
 """The accepted states of a path, with the skin and the finger that pictures need."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -11,6 +11,7 @@ from fingerpad.io import states
 from fingerpad.io.drawing import Drawing, End
 from fingerpad.io.views import Profile, View
 from fingerpad.model.stability import Checked
+from fingerpad.scene import Load
 from variational.state import ContactState
 
 
@@ -59,13 +60,14 @@ class PathRecord:
         same = [other.step for other in self.states if other.slip_began == state.slip_began > 0]
         return next((self._checks[k] for k in (state.step, *same) if k in self._checks), None)
 
-    def loads(self) -> list[states.LoadResult]:
-        """Return the result of each load."""
-        found = []
-        for name, mine in states.by_load(self.states):
-            check = self._check(mine[-1])
-            found.append(states.load_result(name, mine, None if check is None else check.stable))
-        return found
+    def loads(self, loads: Sequence[Load]) -> list[states.LoadResult]:
+        """Return the result of each load of a history."""
+
+        def stable(k: int, end: ContactState) -> bool | None:
+            check = self._check(end)
+            return None if check is None else check.stable
+
+        return list(states.load_results(self.states, loads, stable))
 
     def drawing(
         self, mu_0: float | None, final: Mapping[str, View], size: float | None, named: Mapping[str, ContactState]

@@ -8,6 +8,7 @@ from mpi4py import MPI
 
 from fingerpad.io.states import SLIDE_ON
 from fingerpad.model.contact_zone import ContactZone, FingerExceeded
+from fingerpad.model.course import Course
 from fingerpad.model.finger import Finger, Step
 from fingerpad.model.full_slip import FullSlip
 from fingerpad.model.half import HalfFinger
@@ -68,6 +69,7 @@ class Simulation:
             journal.follow(finger.continuation)
         self._load, self._loads_done = "", 0
         self._slip = FullSlip(finger)
+        self._course = Course(model.loads, model.numerics.step_scale)
         count, file = model.geometry.ridge_count, model.mesh_file
         self._zone = ContactZone(finger.mesh, finger.observer, finger.ridges, count, file)
         self._restart: RestartRequired | None = None
@@ -84,7 +86,7 @@ class Simulation:
             StepFailed: a load that could not be reached; everything accepted before was reported.
         """
         loads = self._model.loads
-        moves = next((k for k, load in enumerate(loads) if load.bone_x), len(loads))
+        moves = next((k for k, load in enumerate(loads) if load.moves), len(loads))
         half = None
         if moves > 0 and self._model.options.symmetric_start:
             self._half = half = HalfFinger(self._model, self.finger, self._comm, self._accepted)
@@ -108,23 +110,26 @@ class Simulation:
     def _follow(self, load: Load) -> None:
         """Reach a load, and slide on where it ends at full slip."""
         path = self.finger.continuation
-        self._reach(load)
-        while load.until_full_slip and path.slip[1] and self._restart is None:
-            ahead = self._ahead(load)
+        *before, target = self._course.targets(load, float(self.finger.solver.control.x))
+        for piece in before:
+            if self._restart is None:
+                (self._half or path).run(piece)
+        self._reach(target)
+        while target.until_full_slip and path.slip[1] and self._restart is None:
+            ahead = self._ahead(target)
             steady = self._slip.slides_on(load.name, np.sign(ahead) or 1.0)
-            if steady or ahead * self._ahead(load) <= 0:  # or at the end of the slide
+            if steady or ahead * self._ahead(target) <= 0:  # or at the end of the slide
                 break
-            self._reach(load)
+            self._reach(target)
 
-    def _reach(self, load: Load) -> None:
-        target = Target(load.name, load.f_ext, load.bone_height, load.voltage, load.bone_x, load.until_full_slip)
+    def _reach(self, target: Target) -> None:
         if self._restart is None:
             (self._half or self.finger.continuation).run(target)
         if self._restart is None:
             self._restart = self._symmetry_lost()
 
-    def _ahead(self, load: Load) -> float:
-        return (load.bone_x or 0.0) - float(self.finger.solver.control.x)
+    def _ahead(self, target: Target) -> float:
+        return (target.bone_x or 0.0) - float(self.finger.solver.control.x)
 
     def re_equilibrate(self, snapshot: StateSnapshot, name: str, direction: int = 0) -> None:
         """Solve again for a state that was reached on another mesh of the same finger; collective.
@@ -190,12 +195,14 @@ class Simulation:
             if self._restart is not None:
                 return True
         step = self.present(loads, attempt, touches)
-        state = self._slip.placed(self.states, step.state, probe=part >= 1 and not target.until_full_slip)
+        probe = part >= 1 and not target.until_full_slip and not self._course.over_time
+        state = self._slip.placed(self.states, step.state, probe)
         energy = self.energy.step(*finger.surface_and_bone())
         record = step_record(finger.continuation, energy, imbalance, attempt)
-        state = replace(state, record=record)
+        state = replace(state, record=record, time=self._course.time(target, part, state.bone_x))
         self.states.append(state)
-        done = min((self._loads_done + (0.0 if touches else part)) / len(self._model.loads), 1.0)
+        part = 0.0 if touches else self._course.done(target, part)
+        done = min((self._loads_done + part) / len(self._model.loads), 1.0)
         self.on_step(replace(step, state=state), done)
         try:
             self._restart = self._zone_exceeded(loads)

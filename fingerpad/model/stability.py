@@ -55,7 +55,7 @@ class StabilityChecks(dict[int, Checked]):
         if step not in self:
             gain = finger.coupling.gain[finger.observer.ridge_loads(finger.continuation.surface_state).length > 0]
             known = gain[np.isfinite(gain)]
-            largest = float(known.max()) if len(known) and finger.voltage > 0 else 0.0
+            largest = float(known.max()) if len(known) and finger.voltage != 0 else 0.0
             try:
                 self[step] = Checked(self._examine(self._check), largest)
             except NotConverged as failure:

@@ -8,19 +8,20 @@ from typing import Any
 from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS, before_sliding
+from fingerpad.report import over_time, parameters, trust
 from fingerpad.report import page as html
-from fingerpad.report import parameters, trust
 from fingerpad.report.frames import frames
 
 _MM = 1e3
 _MARKS = {trust.GOOD: "✓ holds", trust.CARE: "! care", trust.BAD: "✗ fails"}
 _LINKS = {
     "asked": "Asked", "numbers": "Numbers", "newtons": "Newtons", "trust": "Trust", "finger": "Finger",
-    "sliding": "Sliding", "pictures": "Pictures", "model": "Model", "solver": "Solver", "parameters": "Parameters",
-    "reproduce": "Reproduce",
+    "sliding": "Sliding", "time": "Time", "pictures": "Pictures", "model": "Model", "solver": "Solver",
+    "parameters": "Parameters", "reproduce": "Reproduce",
 }  # fmt: skip
 _SAID = {
     "footprint.png": "Gross and ridge contact of the whole finger, slice by slice, and the pressure along it",
+    "time.png": "Voltage, friction force and contact length over time",
     "history.png": "Friction force, contact length and ridges in contact over sliding",
     "surface.png": "Pressure, shear traction, attraction and gap along the skin in the named states",
 }
@@ -37,6 +38,7 @@ def page(result: Result) -> str:
         _trust(result),
         _finger(shown),
         _sliding(result),
+        over_time.section(result),
         _pictures(result.folder),
         _model(result),
         _solver(result),
@@ -91,12 +93,15 @@ def _asked(result: Result) -> str:
         given = {
             "external force": (load.f_ext, 1.0, "N/m"),
             "bone height": (load.bone_height, _MM, "mm"),
-            "voltage": (load.voltage, 1.0, "V"),
+            "voltage": (load.level, 1.0, "V"),
             "bone sideways": (load.bone_x, _MM, "mm"),
         }
         words = [
             f"{name} to {value * scale:.4g} {unit}" for name, (value, scale, unit) in given.items() if value is not None
         ]
+        words += [f"voltage: {load.wave}"] if load.wave is not None else []
+        words += [f"bone sideways by {_MM * load.bone_x_by:+.4g} mm"] if load.bone_x_by is not None else []
+        words += [load.pace] if load.pace else []
         words += ["ends at full slip"] if load.until_full_slip else []
         reached = [end for end in result.loads if end.name == load.name]
         rows.append((load.name, ", ".join(words), _cell(reached)))

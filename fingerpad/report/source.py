@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.io.result import Result
-from fingerpad.io.states import by_load, load_result, named
+from fingerpad.io.states import load_results, named
 from fingerpad.scene import SceneError, from_data
 from fingerpad.scene.messages import clip
 from variational.state import ContactState
@@ -88,7 +88,7 @@ def _unfinished(folder: Path) -> Result:
         found.get("charged"),
         found.get("full_slip"),
         steps=steps,
-        loads=tuple(load_result(name, mine, None) for name, mine in by_load(steps)),
+        loads=tuple(load_results(steps, scene.loads(), lambda k, end: None)),
         failure=f"the run has not ended, or was killed, after step {steps[-1].step}: these are its steps so far",
         folder=folder,
     )

@@ -54,7 +54,7 @@ def _full_slip(result: Result) -> Iterator[Finding]:
     if result.full_slip is not None and result.model == "full":
         words = "Every point in contact slips one way, and the forces stayed the same over a further 0.2 mm."
         yield Finding("full slip", GOOD, words)
-    elif result.full_slip is None and any(load.until_full_slip or load.bone_x for load in result.scene.loads()):
+    elif result.full_slip is None and any(load.until_full_slip or load.moves for load in result.scene.loads()):
         words = "No full slip was held over a further 0.2 mm, so there is no µ_app of full slip."
         yield Finding("full slip was not reached", BAD if result.failure else CARE, words)
 

@@ -9,6 +9,7 @@ from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.io import petsc_options
 from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt, Interrupted
+from fingerpad.io.over_time import NOTE
 from fingerpad.io.provenance import provenance
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
@@ -131,6 +132,7 @@ class Attempt:
         final = {} if refinement is None else refinement.base.views
         named = record.named(final)
         unknowns, notes, more = finger.unknowns, [*restarts.notes], dict[str, Any]()
+        notes += [NOTE] if any(load.takes_time for load in scene.loads()) else []
         if refinement is not None:
             named = with_errors(refinement, named)
             unknowns, more["accuracy"] = refinement.base.unknowns, refinement.summary()
@@ -143,7 +145,7 @@ class Attempt:
             size = self._model.mesh.contact if self._model.asked else None
             drawing = record.drawing(mu_0, final, size, named)
             if drawing is not None and self._writer.folder is not None:
-                drawing.write(self._writer.folder)
+                drawing.write(self._writer.folder, scene.output.each_load)
         totals = record.totals()
         left = max(self._model.numerics.tolerance, totals["floor"])
         error = force_error(unknowns, left, finger.solver.force_scale)
@@ -156,7 +158,7 @@ class Attempt:
             named.get("charged"),
             named.get("full_slip"),
             steps=tuple(record.states),
-            loads=tuple(record.loads()),
+            loads=tuple(record.loads(scene.loads())),
             cost=self._clock.cost(finger.solver.counts, unknowns),
             failure=failure or broken(named.get("full_slip"), error, mu_0),
             interrupted=self._ended.get("interrupted", ""),

@@ -1,12 +1,13 @@
 """Keys of a scene that contradict each other although each is within its own bounds."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from fingerpad.scene.load_names import first_clash
 from fingerpad.scene.materials import Roughness
 from fingerpad.scene.messages import show
 from fingerpad.scene.parameters import Accuracy, Load, Output
+from fingerpad.scene.waveform import MOST, Waveform
 
 DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 """Keys of the default loads, which a history replaces."""
@@ -20,6 +21,7 @@ def refuse_contradictions(
     h_0: float,
     history: Sequence[Load] | None,
     given: Mapping[str, Any],
+    step_scale: float,
 ) -> None:
     """Refuse the first contradiction between keys.
 
@@ -30,6 +32,7 @@ def refuse_contradictions(
         h_0: effective insulator thickness (m).
         history: see there.
         given: the values of :data:`DEFAULT_HISTORY` that are given.
+        step_scale: key of the numerics.
 
     Raises:
         ValueError: the keys, their values and the remedy.
@@ -38,6 +41,7 @@ def refuse_contradictions(
     _refuse_endless_gap(roughness, h_0)
     if history is not None:
         _refuse_history(history, given)
+        _refuse_times(history, step_scale)
         _refuse_floating(history)
 
 
@@ -83,13 +87,66 @@ def _refuse_history(history: Sequence[Load], given: Mapping[str, Any]) -> None:
 
 def _refuse_floating(history: Sequence[Load]) -> None:
     """Refuse loads that leave the bone neither held nor pressed nor attracted."""
-    f_ext, voltage = None, 0.0
-    for k, load in enumerate(history):
+    f_ext: float | None = None
+    voltage = 0.0
+    for key, load, way in ways(history):
         if load.f_ext is not None or load.bone_height is not None:
             f_ext = load.f_ext
-        voltage = voltage if load.voltage is None else load.voltage
+        voltage = voltage if load.level is None else load.level
+        if load.wave is not None:
+            along = [value for _, value in load.wave.samples(load.seconds(way or 0.0), 1.0)]
+            if f_ext == 0 and 0 in along:
+                raise ValueError(
+                    f"{key}.voltage goes through 0 while f_ext is 0, where nothing holds the skin on the screen; "
+                    "it must have an offset above its amplitude, or an f_ext or bone_height be given before it"
+                )
+            voltage = along[-1]
         if f_ext == 0 and voltage == 0:
             raise ValueError(
-                f"history[{k}].name is {show(load.name)}, which ends at f_ext 0 and voltage 0, where nothing holds "
+                f"{key}.name is {show(load.name)}, which ends at f_ext 0 and voltage 0, where nothing holds "
                 "the skin on the screen; one of the two must be greater than 0, or a bone_height be given"
             )
+
+
+def ways(history: Sequence[Load]) -> Iterator[tuple[str, Load, float | None]]:
+    """Yield the key of each load, the load, and how far the bone goes (m); None where the run decides that."""
+    place: float | None = 0.0  # of the bone; None where a load before may have stopped early
+    for k, load in enumerate(history):
+        aim = place if place is None and load.bone_x is None else load.place(place or 0.0)
+        still = load.bone_x is None and load.bone_x_by is None
+        way = 0.0 if still else load.bone_x_by if load.bone_x_by is not None else None
+        if way is None and aim is not None and place is not None:
+            way = aim - place
+        yield f"history[{k}]", load, way
+        if not still:
+            place = None if load.until_full_slip else aim
+
+
+def _refuse_times(history: Sequence[Load], step_scale: float) -> None:
+    """Refuse waveforms whose length is not known before the run, or whose samples are too many or end too early."""
+    for key, load, way in ways(history):
+        if load.wave is None:
+            continue
+        if load.speed is not None and way is None:
+            raise ValueError(
+                f"{key}.bone_x is {show(load.bone_x)} after a load that may stop at full slip, so that the time of "
+                "the waveform is not known; give bone_x_by, or a duration in place of speed"
+            )
+        if load.speed is not None and way == 0:
+            raise ValueError(f"{key}.speed is {show(load.speed)} and the bone is there already; give a duration")
+        _refuse_samples(key, load.wave, load.seconds(way or 0.0), step_scale)
+
+
+def _refuse_samples(key: str, wave: Waveform, seconds: float, step_scale: float) -> None:
+    """Refuse a waveform with too many samples, or a table that ends before its load."""
+    if seconds > wave.end * (1 + 1e-9):
+        raise ValueError(
+            f"{key}.voltage has values up to {wave.end:g} s and the load takes {seconds:g} s; its times must go on to "
+            "the end of the load"
+        )
+    samples = wave.count(seconds, step_scale)
+    if samples > MOST:
+        raise ValueError(
+            f"{key}.voltage has {seconds / wave.period:.4g} periods in {seconds:g} s, some {samples:.4g} steps; there "
+            f"must be at most {MOST} of them: take a lower frequency, a shorter load or a larger numerics.step_scale"
+        )

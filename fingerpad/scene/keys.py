@@ -59,7 +59,8 @@ def _of(model: type[BaseModel], table: str, instance: BaseModel | None) -> Itera
         value = getattr(instance, name) if instance is not None else field.get_default(call_default_factory=True)
         if inside:
             inner.append((inside[0], f"{table}{name}{many}.", value if isinstance(value, inside[0]) else None))
-            continue
+            if not any(isinstance(part, WrapValidator) for part in parts):  # else it may be a number too
+                continue
         unit, allowed = _allowed(parts)
         required = instance is None and field.is_required()
         yield Key(table + name, unit, None if required else value, allowed, docstrings(model).get(name, ""), required)

@@ -38,6 +38,10 @@ _BOUNDS = {
 }
 
 
+NUMBER, WAVE = "a number", "a waveform"
+"""What a voltage can be: parts of the place of an error that are no keys."""
+
+
 class SceneError(ValueError):
     """A scene that cannot be run; the message names the key, its value and what is allowed."""
 
@@ -77,7 +81,8 @@ def key_of(parts: Iterable[int | str]) -> str:
 def first_error(error: ValidationError, root: type[BaseModel]) -> str:
     """Return the first error of a validation of ``root`` as a message."""
     first = error.errors(include_url=False)[0]
-    kind, context, given, loc = first["type"], first.get("ctx", {}), show(first["input"]), first["loc"]
+    kind, context, given = first["type"], first.get("ctx", {}), show(first["input"])
+    loc = tuple(part for part in first["loc"] if part not in (NUMBER, WAVE))
     key = key_of(loc)
     if kind == OUT_OF_RANGE:
         return f"{key} {first['msg']}"

@@ -4,13 +4,23 @@
 ``docs/scene.md``.
 """
 
+import math
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import (
+    AfterValidator,
+    Discriminator,
+    Field,
+    SerializerFunctionWrapHandler,
+    Tag,
+    model_serializer,
+    model_validator,
+)
 
 from fingerpad.scene.load_names import load_name
-from fingerpad.scene.messages import show
+from fingerpad.scene.messages import NUMBER, WAVE, show
 from fingerpad.scene.table import Finite, Part, Switch
+from fingerpad.scene.waveform import Volts, Waveform
 from geometry.bounds import within
 
 if TYPE_CHECKING:
@@ -18,8 +28,15 @@ if TYPE_CHECKING:
 
 Rest = Annotated[Finite, within(1e-12, 1e-3)]
 Asked = Annotated[Finite, within(1e-6, 0.5)]
-Voltage = Annotated[Finite, within(1e-3, 5e3, "V", zero=True)]
 Way = Annotated[Finite, within(1e-9, 0.1, "m", zero=True, sides=2)]
+_OVER_TIME = ("bone_x_by", "speed", "duration")  # keys that runs made before they were there do not have
+
+
+def _kind(voltage: Any) -> str:
+    return WAVE if isinstance(voltage, dict | Waveform) else NUMBER
+
+
+Voltage = Annotated[Annotated[Volts, Tag(NUMBER)] | Annotated[Waveform, Tag(WAVE)], Discriminator(_kind)]
 
 
 class Load(Part):
@@ -33,11 +50,18 @@ class Load(Part):
     bone_height: Way | None = None
     """Change of the bone's height from the unloaded position (m), negative when pressed."""
     voltage: Voltage | None = None
-    """Instantaneous voltage U (V)."""
+    """Instantaneous voltage U (V), or a waveform. The attraction goes with its square: the sign changes no force."""
     bone_x: Way | None = None
     """Horizontal position of the bone (m), zero when unloaded."""
+    bone_x_by: Way | None = None
+    """The same as a move (m) from where the bone is when the load begins."""
+    speed: Annotated[Finite, within(1e-6, 100.0, "m/s")] | None = None
+    """Speed (m/s) of the bone on its way, which makes it a load over time. The model is quasi-static: the speed only
+    sets how long the way takes."""
+    duration: Annotated[Finite, within(1e-6, 1e5, "s")] | None = None
+    """Time (s) that the load takes, in place of a speed."""
     until_full_slip: Switch = False
-    """Whether the load stops as soon as every point in contact slips one way; only with bone_x."""
+    """Whether the load stops as soon as every point in contact slips one way; only with bone_x or bone_x_by."""
 
     @model_validator(mode="after")
     def _consistent(self) -> "Load":
@@ -46,23 +70,94 @@ class Load(Part):
                 f"f_ext is {show(self.f_ext)} and bone_height is {show(self.bone_height)}; "
                 "at most one of the two can be prescribed"
             )
-        if {self.f_ext, self.bone_height, self.voltage, self.bone_x} == {None}:
+        if not any(v is not None for v in (self.f_ext, self.bone_height, self.voltage, self.bone_x, self.bone_x_by)):
             raise ValueError(
                 f"name is {show(self.name)} and nothing else is given; "
-                "it must come with at least one of f_ext, bone_height, voltage and bone_x"
+                "it must come with at least one of f_ext, bone_height, voltage, bone_x and bone_x_by"
             )
         if self.until_full_slip:
             self._refuse_unfinished()
+        self._refuse_time()
         return self
 
     def _refuse_unfinished(self) -> None:
         """Refuse what a load that stops at full slip may not have reached."""
         for name in ("f_ext", "bone_height", "voltage"):
             if getattr(self, name) is not None:
+                given = "a waveform" if self.wave is not None and name == "voltage" else show(getattr(self, name))
                 raise ValueError(
-                    f"{name} is {show(getattr(self, name))} and until_full_slip is true, which may stop before that is "
+                    f"{name} is {given} and until_full_slip is true, which may stop before that is "
                     f"reached; {name} must come in a load of its own"
                 )
+
+    def _refuse_time(self) -> None:
+        """Refuse a way that is given twice, and times that are missing or contradict each other."""
+        if self.bone_x is not None and self.bone_x_by is not None:
+            raise ValueError(
+                f"bone_x is {show(self.bone_x)} and bone_x_by is {show(self.bone_x_by)}; give the place or the move"
+            )
+        if self.speed is not None and self.bone_x is None and self.bone_x_by is None:
+            raise ValueError(f"speed is {show(self.speed)} and the bone does not move; give bone_x or bone_x_by too")
+        if self.speed is not None and self.duration is not None:
+            raise ValueError(
+                f"speed is {show(self.speed)} and duration is {show(self.duration)}; one follows from the other, so "
+                "give one"
+            )
+        if self.wave is None:
+            return
+        for name in ("f_ext", "bone_height"):
+            if getattr(self, name) is not None:
+                raise ValueError(
+                    f"{name} is {show(getattr(self, name))} and voltage is a waveform; {name} must come in a load of "
+                    "its own, before it"
+                )
+        if self.speed is None and self.duration is None and self.wave.end == math.inf:
+            raise ValueError(f"voltage is a {self.wave.waveform} and the load takes no time; give a speed or duration")
+
+    @property
+    def wave(self) -> Waveform | None:
+        """The voltage over time; None where it is a number or stays."""
+        return self.voltage if isinstance(self.voltage, Waveform) else None
+
+    @property
+    def level(self) -> float | None:
+        """The voltage (V) to go to; None where it is over time or stays."""
+        return None if isinstance(self.voltage, Waveform) else self.voltage
+
+    @property
+    def moves(self) -> bool:
+        """Whether the load may take the bone away from where it was unloaded."""
+        return bool(self.bone_x or self.bone_x_by)
+
+    @property
+    def pace(self) -> str:
+        """Speed or duration in words; empty without."""
+        if self.speed is not None:
+            return f"at {1e3 * self.speed:g} mm/s"
+        return "" if self.duration is None else f"in {self.duration:g} s"
+
+    @property
+    def takes_time(self) -> bool:
+        """Whether it is a load over time."""
+        return self.speed is not None or self.duration is not None or self.wave is not None
+
+    def place(self, x: float) -> float | None:
+        """Return where the load takes the bone (m) from a place x (m); None where it stays."""
+        return self.bone_x if self.bone_x_by is None else x + self.bone_x_by
+
+    def seconds(self, way: float) -> float:
+        """Return how long the load takes (s) for a way of the bone (m); 0 where it is none over time."""
+        if self.speed is not None:
+            return abs(way) / self.speed
+        if self.duration is None:
+            return 0.0 if self.wave is None else self.wave.end
+        return self.duration
+
+    @model_serializer(mode="wrap")
+    def _without_time(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out what is not given of the keys of loads over time: runs made before they were there are found."""
+        found: dict[str, Any] = write(self)
+        return {name: value for name, value in found.items() if name not in _OVER_TIME or value is not None}
 
 
 class Accuracy(Part):
@@ -175,6 +270,8 @@ class Output(Part):
     errors: Switch = True
     """Whether discretisation errors are estimated; see :mod:`fingerpad.accuracy.refinement`. With an accuracy they
     always are."""
+    each_load: Switch = True
+    """Whether the finger and its skin are drawn at the end of each load. A load over time has one end."""
 
 
 class Numerics(Part):

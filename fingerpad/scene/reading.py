@@ -30,7 +30,7 @@ def read(path: Path) -> dict[str, Any]:
     """
     name = f"scene file {clip(str(path), _PATH)}"
     try:
-        raw = _bytes(path)
+        raw = read_bytes(path)
     except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
         raise SceneError(f"{name} cannot be read: {getattr(error, 'strerror', None) or error}") from None
     if len(raw) > _MOST_BYTES:
@@ -44,7 +44,7 @@ def read(path: Path) -> dict[str, Any]:
 
 
 def read_scene(path: Path) -> dict[str, Any]:
-    """Return the data of a scene file; the file of a height map is looked for beside the scene file.
+    """Return the data of a scene file; files of a height map and of voltages are looked for beside it.
 
     Raises:
         SceneError: the file cannot be read, or holds a study.
@@ -54,12 +54,16 @@ def read_scene(path: Path) -> dict[str, Any]:
     topography = roughness.get("topography") if isinstance(roughness, dict) else None
     if isinstance(topography, dict) and isinstance(topography.get("file"), str):
         topography["file"] = str(path.parent / topography["file"])
+    for load in data["history"] if isinstance(data.get("history"), list) else ():
+        voltage = load.get("voltage") if isinstance(load, dict) else None
+        if isinstance(voltage, dict) and isinstance(voltage.get("file"), str):
+            voltage["file"] = str(path.parent / voltage["file"])
     if "sweep" in data:
         raise SceneError(f"{path} has a table sweep, which makes it a study; run it by fingerpad sweep, or without it")
     return data
 
 
-def _bytes(path: Path) -> bytes:
+def read_bytes(path: Path) -> bytes:
     """Return the first bytes of an ordinary file, one more than are allowed."""
     descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)  # a pipe must not make the program wait
     with os.fdopen(descriptor, "rb") as file:

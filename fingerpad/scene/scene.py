@@ -17,10 +17,11 @@ from fingerpad.scene.contradictions import DEFAULT_HISTORY, refuse_contradiction
 from fingerpad.scene.laws import LAYERS, Laws, refuse_thickness, refuse_unread
 from fingerpad.scene.materials import Electric, Materials, Roughness
 from fingerpad.scene.messages import SceneError, first_error, show
-from fingerpad.scene.parameters import Accuracy, Contact, Load, Numerics, Output, Voltage
+from fingerpad.scene.parameters import Accuracy, Contact, Load, Numerics, Output
 from fingerpad.scene.reading import plain, put, read_scene
 from fingerpad.scene.slices import Slices
 from fingerpad.scene.table import Finite, Part
+from fingerpad.scene.waveform import Volts
 from geometry.bounds import within
 from geometry.parameters import Fingertip, MeshSize
 from variational.contact.friction import Friction, law_of
@@ -43,9 +44,10 @@ class Scene(Part):
 
     f_ext: Annotated[Finite, within(1e-3, 5e3, "N/m")] = 75.0
     """External normal force on the bone (N/m). Range: the weight of a grain of sand to more than 100 N on a finger."""
-    voltage: Voltage = 200.0
+    voltage: Volts = 200.0
     """Instantaneous voltage U (V). *Assumption*: U is that of Eq. 3, not the peak-to-peak value of Table 3. Range:
-    from 1 mV, which attracts with less than 1 µPa, to ten times the voltage of displays; 0 is no voltage."""
+    from 1 mV, which attracts with less than 1 µPa, to ten times the voltage of displays; 0 is no voltage. The sign
+    changes no force."""
     slide_length: Annotated[Finite, within(1e-9, 0.1, "m")] = 5e-3
     """Largest displacement of the bone (m) on the way to full slip (*assumption*). The slide stops earlier, at full
     slip."""
@@ -84,7 +86,8 @@ class Scene(Part):
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
         given = {name: getattr(self, name) for name in DEFAULT_HISTORY if name in self.model_fields_set}
-        refuse_contradictions(self.accuracy, self.output, self.roughness, self.h_0, self.history, given)
+        scale = self.numerics.step_scale
+        refuse_contradictions(self.accuracy, self.output, self.roughness, self.h_0, self.history, given, scale)
         return self
 
     def replace(self, **changes: Any) -> "Scene":
@@ -198,6 +201,8 @@ class Scene(Part):
         unused |= {"accuracy": True} if self.accuracy is None else {}
         if self.output == Output():  # not a word of it, so that runs made before it was a key are found
             unused["output"] = True
+        elif self.output.each_load:
+            unused["output"] = {"each_load"}
         if self.slices == Slices():  # likewise
             unused["slices"] = True
         default = Numerics()  # likewise

@@ -39,6 +39,9 @@ class Target:
     bone_x: float | None = None
     until_full_slip: bool = False
     """Stop as soon as every point in contact slips one way."""
+    continues: bool = False
+    """A short piece of a longer way: the bone moves on as before, and the voltage changes as little as the piece is
+    short. It is reached in one step where that is possible."""
 
 
 # How far one step may go: parts of sqrt(f_ext) and of U^2, and metres of the bone.
@@ -102,8 +105,9 @@ class _Way:
             # equal steps of the root: nearly equal steps of the indentation
             f0 = max(a.control.force, 0.0)
             c.y, c.force = None, (np.sqrt(f0) + part * (np.sqrt(target.f_ext) - np.sqrt(f0))) ** 2
-        # equal steps of U^2, which the attraction follows
-        return c, float(np.sqrt(a.voltage**2 + part * (u1**2 - a.voltage**2)))
+        # equal steps of U^2, which the attraction follows; a sign that changes does so at once, which changes no force
+        amount = np.sqrt(a.voltage**2 + part * (u1**2 - a.voltage**2))
+        return c, float(np.copysign(amount, u1 or a.voltage)) + 0.0
 
     def largest_step(self, scale: float) -> float:
         """Return the largest part of the target that one step may cover; ``scale`` multiplies the usual one."""
@@ -112,7 +116,7 @@ class _Way:
         if target.f_ext is not None:
             roots = np.sqrt(target.f_ext), np.sqrt(max(a.control.force, 0.0))
             steps.append((_FORCE * max(roots), abs(roots[0] - roots[1])))
-        if target.voltage is not None:
+        if target.voltage is not None and not target.continues:
             squares = target.voltage**2, a.voltage**2
             steps.append((_VOLTAGE * max(squares), abs(squares[0] - squares[1])))
         if target.bone_height is not None:
@@ -202,7 +206,7 @@ class Continuation:
         way = _Way(self._now, target)
         largest = way.largest_step(self.step_scale)
         # A slide begins with a shorter step: under a light load it may be over within one.
-        slides = target.bone_x not in (None, self._now.control.x)
+        slides = target.bone_x not in (None, self._now.control.x) and not target.continues
         part, step, uncut, cut, jumps = 0.0, largest / 2 if slides else largest, 0, 0, False
         first, most = self.steps, _FEW_STEPS + int(np.ceil(_MANY_STEPS / largest))
         while part < 1:

@@ -1,0 +1,126 @@
+r"""Means over time and the spectrum of friction of a load over time, from its accepted states.
+
+Between two states a quantity follows the monotone cubic curve of Fritsch and Carlson (SciPy's ``PchipInterpolator``),
+which never leaves the range of the two. The curve is cut where the voltage jumps or has a corner. Mean and amplitudes
+are integrals of this curve, by five Gauss points between two states:
+
+.. math:: a_k = \frac{2}{n T} \left| \int_{nT} f_T(t) \, e^{-2 \pi i k t / T} dt \right|
+
+over the last n whole periods T of the waveform, so that a_k is the amplitude at the frequency k / T. With the 12
+samples of a period that friction has under a sine, the amplitudes of a smooth curve are within 0.4 % of the largest
+(``tests/test_over_time.py``). Friction does not depend on the sign of the voltage. Under a sine without offset friction
+therefore has even k alone: twice the frequency of the voltage, and its multiples.
+
+Fritsch, Carlson, SIAM J. Numer. Anal. 17 (1980), doi 10.1137/0717021.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fingerpad.scene.waveform import Waveform
+from variational.state import ContactState
+
+NOTE = (
+    "Loads over time are quasi-static: no inertia, no viscous skin, no leakage of charge. A frequency only sets how "
+    "far the finger slides in a period."
+)
+"""What a result with a load over time says of it."""
+HARMONICS = 6
+"""Number of amplitudes of the spectrum; the last has 4 samples in each of its periods."""
+QUANTITIES = ("mu_app", "f_t", "contact_length", "f_electrostatic")
+"""Quantities of which extremes and means are kept."""
+Array = NDArray[np.float64]
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
+_NEAR = 1e-9  # of a period: two times that are one
+
+
+@dataclass(frozen=True)
+class OverTime:
+    """A load over time."""
+
+    start: float
+    """Time at which the load begins (s)."""
+    seconds: float
+    """Length of the load (s)."""
+    mean: dict[str, float]
+    """Mean over time by quantity, in its unit."""
+    periods: int = 0
+    """Whole periods of the waveform that the spectrum is of, the last of the load; 0 without a spectrum."""
+    frequency: tuple[float, ...] = ()
+    """Frequencies of the spectrum (Hz): multiples of the waveform's; for a file multiples of one over its length."""
+    f_t_amplitude: tuple[float, ...] = ()
+    """Amplitudes of the friction force at these frequencies (N/m)."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it ready for JSON."""
+        found: dict[str, Any] = {"start": self.start, "seconds": self.seconds, "mean": self.mean}
+        if self.periods:
+            found["periods"] = self.periods
+            found |= {"frequency": list(self.frequency), "f_t_amplitude": list(self.f_t_amplitude)}
+        return found
+
+
+def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime | None:
+    """Return means and spectrum of a load; None where it takes no time.
+
+    Args:
+        states: at the begin of the load and of the load, in order, with their times.
+        wave: its voltage over time; None where it is constant.
+    """
+    times = np.array([state.time for state in states])
+    start, seconds = float(times[0]), float(times[-1] - times[0])
+    if not seconds > 0:  # also where no load is over time
+        return None
+    time = times - start
+    corners = [] if wave is None else wave.corners(seconds)
+    values = {name: np.array([getattr(state, name) for state in states]) for name in QUANTITIES}
+    mean = {name: _integral(time, value, corners).real / seconds for name, value in values.items()}
+    if wave is None or (periods := int(seconds / wave.period + _NEAR)) < 1:
+        return OverTime(start, seconds, mean)
+    found = spectrum(time, values["f_t"], wave.period, periods, corners)
+    frequency = tuple(k / wave.period for k in range(1, HARMONICS + 1))
+    return OverTime(start, seconds, mean, periods, frequency, tuple(map(float, found)))
+
+
+def spectrum(time: Array, value: Array, period: float, periods: int, corners: Sequence[float] = ()) -> Array:
+    """Return the amplitudes at the first multiples of a frequency over the last whole periods.
+
+    Args:
+        time: of the samples (s), shape (samples,), not decreasing; two of one time are a jump.
+        value: samples, likewise.
+        period: of the first frequency (s).
+        periods: how many, back from the last time.
+        corners: times (s) at which the curve has a corner.
+
+    Returns:
+        Amplitudes in the unit of the samples, shape (:data:`HARMONICS`,).
+    """
+    first, whole = time[-1] - periods * period, periods * period
+    turns = [2 * np.pi * k / period for k in range(1, HARMONICS + 1)]
+    return np.array([2 / whole * abs(_integral(time, value, corners, turn, first)) for turn in turns])
+
+
+def _integral(time: Array, value: Array, corners: Sequence[float], turn: float = 0.0, first: float = 0.0) -> complex:
+    """Return the integral of a curve times exp(-i turn t) from a first time on."""
+    from scipy.interpolate import PchipInterpolator  # not for those who only read scenes
+
+    near, found = _NEAR * (time[-1] - time[0]), 0j
+    jumps = np.flatnonzero(np.diff(time) <= near) + 1
+    bends = [k for k, at in enumerate(time) if any(abs(at - corner) <= near for corner in corners)]
+    # A segment begins with the state after a jump; a state in a corner belongs to both.
+    starts = sorted({0, *bends, *map(int, jumps)})
+    for a, b in zip(starts, [*starts[1:], len(time) - 1], strict=True):
+        last = b - 1 if b in jumps else b
+        if last <= a:
+            continue
+        t, f = time[a : last + 1], value[a : last + 1]
+        curve = PchipInterpolator(t, f)
+        edges = np.concatenate([[max(first, t[0])], t[t > max(first, t[0]) + near]])
+        half = np.diff(edges)[:, None] / 2
+        at = edges[:-1, None] + half * (1 + _POINTS)
+        found += complex(np.sum(half * _WEIGHTS * curve(at) * np.exp(-1j * turn * at)))
+    return found

@@ -1,0 +1,276 @@
+r"""A voltage over time: sine, square, triangle or a table of a file, with the samples at which it is solved for.
+
+.. math:: U(t) = U_0 + \hat U \, w(f t), \quad w = \sin 2 \pi f t \text{ or the square or triangle of its phase}
+
+Time starts with the load. The model is quasi-static: the frequency only sets how far the finger slides in a period.
+
+Between two samples the square of the voltage, which the attraction goes with, follows a straight line. Turning points,
+jumps and zeros are always among the samples. A period has 24 of them: friction has twice the frequency of the voltage,
+so that 12 are in each of its periods and 6 in each of its second harmonic's. The square of a sine is off its straight
+lines by 1.7 % of the peak at most, and not at all at the samples; a table's pieces are cut as short. Fewer or more of
+them follow from ``numerics.step_scale``, as for all steps.
+"""
+
+import csv
+import math
+from collections.abc import Iterator
+from itertools import count
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from fingerpad.scene.messages import clip, show
+from fingerpad.scene.reading import read_bytes
+from fingerpad.scene.table import Finite, Part
+from geometry.bounds import Range, within
+
+SAMPLES = 24
+"""Samples of a period at ``numerics.step_scale`` 1."""
+MOST = 10_000
+"""Most samples of a load."""
+_POINTS = 2000  # most points of a file
+_HIGHEST = 5e3  # V
+_NEAR = 1e-9  # of a period: two times that are one
+_NOTHING = 1e-12  # of the peak: a voltage that is roundoff of zero
+_TIME, _VOLTAGE = "time (s)", "voltage (V)"
+Sample = tuple[float, float]
+"""Time (s) since the start of the load, and voltage (V)."""
+Volts = Annotated[Finite, within(1e-3, _HIGHEST, "V", zero=True, sides=2)]
+Seconds = Annotated[Finite, within(1e-9, 1e5, "s", zero=True)]
+# Behind a validator that reads a file, strict rules no longer take a list for a tuple.
+_LISTED = BeforeValidator(lambda value: tuple(value) if isinstance(value, list) else value)
+_WAVES = ("amplitude", "frequency")
+
+
+class Waveform(Part):
+    """A voltage over time, in place of a number; see :mod:`fingerpad.scene.waveform`."""
+
+    waveform: Literal["sine", "square", "triangle", "file"]
+    """Shape. Sine and triangle start at the offset and rise, a square starts at its upper value; a file has any."""
+    amplitude: Annotated[Finite, within(1e-3, _HIGHEST, "V")] | None = None
+    """Amplitude (V): half of the peak-to-peak value. Required but for a file."""
+    frequency: Annotated[Finite, within(1e-3, 1e6, "Hz")] | None = None
+    """Frequency (Hz). Required but for a file. Range: a period of a quarter of an hour to a radio wave."""
+    offset: Volts = 0.0
+    """Direct voltage (V) to which the wave is added, of either sign."""
+    file: Annotated[str | None, Field(exclude=True)] = None
+    """CSV file with the header ``time (s),voltage (V)``, straight between its points; a relative path starts at the
+    scene file. The times start at 0 and increase. The file is read at once: a scene stores only its points."""
+    times: Annotated[tuple[Seconds, ...], _LISTED] | None = None
+    """Times (s) of a file's points, or in place of a file."""
+    voltages: Annotated[tuple[Volts, ...], _LISTED] | None = None
+    """Voltages (V) at these times."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _read(cls, data: Any) -> Any:
+        if not isinstance(data, dict) or not isinstance(data.get("file"), str) or data.get("waveform") != "file":
+            return data
+        for name in ("times", "voltages"):
+            if data.get(name) is not None:
+                raise ValueError(f"{name} and file are both given; give the file alone, which has them")
+        return {key: value for key, value in data.items() if key != "file"} | _table(data["file"])
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Waveform":
+        if self.waveform == "file":
+            self._refuse_table()
+            return self
+        for name in ("file", "times", "voltages"):
+            if getattr(self, name) is not None:
+                raise ValueError(f"{name} is given and waveform is {show(self.waveform)}; it must be 'file'")
+        for name in _WAVES:
+            if getattr(self, name) is None:
+                raise ValueError(f"{name} is missing; waveform is {show(self.waveform)} and needs it")
+        if self.peak > _HIGHEST:
+            raise ValueError(
+                f"offset is {show(self.offset)} and amplitude is {show(self.amplitude)}, together {self.peak:g} V; "
+                f"they must reach at most {_HIGHEST:g} V"
+            )
+        return self
+
+    def _refuse_table(self) -> None:
+        for name in (*_WAVES, "offset"):
+            if name in self.model_fields_set and getattr(self, name) not in (None, 0.0):
+                raise ValueError(f"{name} is {show(getattr(self, name))} and waveform is 'file', which has none")
+        if self.times is None or self.voltages is None:
+            raise ValueError("file is missing; waveform is 'file' and needs it")
+        if len(self.times) != len(self.voltages):
+            raise ValueError(f"times are {len(self.times)} and voltages are {len(self.voltages)}; give as many of each")
+        if not 2 <= len(self.times) <= _POINTS:
+            raise ValueError(f"times are {len(self.times)}; there must be from 2 to {_POINTS} of them")
+        if self.times[0] != 0:
+            raise ValueError(f"times start at {show(self.times[0])} s; the first must be 0, where the load starts")
+        late = next((k for k in range(1, len(self.times)) if self.times[k] <= self.times[k - 1]), None)
+        if late is not None:
+            raise ValueError(
+                f"times are {show(self.times[late - 1])} and then {show(self.times[late])} s; each must be later than "
+                "the one before, so give a jump a short time"
+            )
+
+    # -- what it is --------------------------------------------------------------------------------------
+    @property
+    def period(self) -> float:
+        """Period (s); of a file its last time."""
+        return self.times[-1] if self.times is not None else 1 / (self.frequency or math.nan)
+
+    @property
+    def end(self) -> float:
+        """Time (s) at which it ends: a file's last, else infinite."""
+        return math.inf if self.times is None else self.times[-1]
+
+    @property
+    def peak(self) -> float:
+        """Largest amount of the voltage (V)."""
+        return max(map(abs, self.voltages)) if self.voltages else abs(self.offset) + (self.amplitude or 0.0)
+
+    def __str__(self) -> str:
+        """Return the wave in words."""
+        if self.times is not None:
+            return f"by a table of {len(self.times)} points over {self.times[-1]:g} s, up to {self.peak:g} V"
+        offset = f" about {self.offset:g} V" if self.offset else ""
+        return f"{self.waveform} of {self.amplitude:g} V{offset} at {self.frequency:g} Hz"
+
+    # -- samples -----------------------------------------------------------------------------------------
+    def count(self, seconds: float, step_scale: float) -> float:
+        """Return how many samples a load of some seconds has, about; zeros of the voltage come on top."""
+        if self.times is not None:
+            return len(self.times) * (1 + SAMPLES / step_scale)
+        return seconds / self.period * _per_period(step_scale)
+
+    def samples(self, seconds: float, step_scale: float) -> list[Sample]:
+        """Return times and voltages to go to one after the other, the first at time 0.
+
+        Two samples of one time are a jump. The voltage does not change its sign between two others.
+
+        Args:
+            seconds: length of the load (s).
+            step_scale: see ``numerics.step_scale``.
+        """
+        near, before, found = _NEAR * self.period, (0.0, 0.0), list[Sample]()
+        for time, *values in self._points(_per_period(step_scale)):
+            if time <= near:
+                found.append((0.0, values[-1]))
+            elif time < seconds - near:
+                found += [(time, value) for value in dict.fromkeys(values)]
+            else:
+                (t0, u0), u1 = before, values[0]
+                part = min((seconds - t0) / (time - t0), 1.0) if time - seconds > near else 1.0
+                inside = u0 + part * (u1 - u0) if self.waveform != "sine" or part == 1.0 else self._sine(seconds)
+                found.append((seconds, inside))
+                break
+            before = time, values[-1]
+        return found
+
+    def corners(self, seconds: float) -> list[float]:
+        """Return the times (s) at which the voltage bends sharply, up to some seconds; jumps are not among them."""
+        if self.times is not None:
+            return [time for time in self.times if time <= seconds]
+        if self.waveform != "triangle":
+            return []
+        return [(k + 0.5) / 2 * self.period for k in range(math.ceil(2 * seconds / self.period))]
+
+    def _sine(self, time: float) -> float:
+        return self._value(math.sin(2 * math.pi * math.fmod(time * (self.frequency or 0.0), 1.0)))
+
+    def _value(self, shape: float) -> float:
+        value = self.offset + (self.amplitude or 0.0) * shape
+        return 0.0 if abs(value) < _NOTHING * self.peak else value
+
+    def _points(self, n: int) -> Iterator[tuple[float, ...]]:
+        """Yield a time and the voltage there, before and after a jump, without end but for a file."""
+        if self.times is not None and self.voltages is not None:
+            yield from _refined(self.times, self.voltages, 2 * math.pi / n * self.peak)
+            return
+        one = self._one_period(n)
+        for period in count():
+            for phase, *values in one:
+                yield (period + phase) / (self.frequency or math.nan), *values
+
+    def _one_period(self, n: int) -> list[tuple[float, ...]]:
+        """Return phases from 0 to below 1 and the voltages there."""
+        low, high = self._value(-1.0), self._value(1.0)
+        if self.waveform == "square":
+            values = {0: (low, high), n // 2: (high, low)}
+            return [(k / n, *values.get(k, (high if k < n // 2 else low,))) for k in range(n)]
+        sine = self.waveform == "sine"
+        found = [(k / n, self._value(_quarters(k, n) if sine else _triangle(4 * k / n))) for k in range(n)]
+        ratio = -self.offset / (self.amplitude or math.nan)
+        if abs(ratio) < 1:
+            first = math.asin(ratio) / (2 * math.pi) if sine else ratio / 4
+            for zero in (first % 1.0, 0.5 - first):
+                if all(min(d := abs(zero - phase), 1 - d) > _NEAR for phase, _ in found):
+                    found.append((zero, 0.0))
+        return sorted(found)
+
+
+def _per_period(step_scale: float) -> int:
+    """Return the samples of a period: a multiple of 4, so that the turning points are among them."""
+    return 4 * math.ceil(SAMPLES / 4 / step_scale)
+
+
+def _quarters(k: int, n: int) -> float:
+    """Return the sine of k of n parts of a turn, to the last bit the same in each quarter."""
+    quarter = n // 4
+    turn, k = divmod(k, quarter)
+    value = math.sin(math.pi / 2 * (k if turn % 2 == 0 else quarter - k) / quarter)
+    return value if turn < 2 else -value
+
+
+def _triangle(quarters: float) -> float:
+    return quarters if quarters < 1 else 2 - quarters if quarters < 3 else quarters - 4
+
+
+def _refined(times: tuple[float, ...], voltages: tuple[float, ...], most: float) -> Iterator[Sample]:
+    """Yield the points of a table, the zeros between them, and more where the voltage changes by more than ``most``."""
+    yield times[0], voltages[0]
+    for k in range(1, len(times)):
+        (t0, t1), (u0, u1) = times[k - 1 : k + 1], voltages[k - 1 : k + 1]
+        crosses = u0 * u1 < 0
+        ends = [(t0, u0), *([(t0 + (t1 - t0) * u0 / (u0 - u1), 0.0)] if crosses else []), (t1, u1)]
+        for (a, ua), (b, ub) in zip(ends, ends[1:], strict=False):
+            pieces = max(math.ceil(abs(ub - ua) / most - _NEAR), 1) if most > 0 else 1
+            for j in range(1, pieces):
+                yield a + (b - a) * j / pieces, ua + (ub - ua) * j / pieces
+            yield b, ub
+
+
+# -- files ---------------------------------------------------------------------------------------------
+def _table(file: str) -> dict[str, Any]:
+    """Return times and voltages of a CSV file.
+
+    Raises:
+        ValueError: it cannot be read, has another header, or a row without two numbers in range.
+    """
+    name = f"file is {show(file)}"
+    try:
+        lines = list(csv.reader(read_bytes(Path(file)).decode("utf-8-sig").splitlines(), strict=True))
+    except OSError as error:
+        raise ValueError(f"{name}, which cannot be read: {error.strerror or error}") from None
+    except (ValueError, csv.Error) as error:
+        raise ValueError(f"{name}, which is no table in CSV: {clip(str(error), 100)}") from None
+    rows = [(k, [cell.strip() for cell in row]) for k, row in enumerate(lines, start=1) if any(map(str.strip, row))]
+    header = rows[0][1] if rows else []
+    if header != [_TIME, _VOLTAGE]:
+        raise ValueError(f"{name} with the header {show(','.join(header))}; it must be '{_TIME},{_VOLTAGE}'")
+    times, voltages = list[float](), list[float]()
+    for line, row in rows[1 : _POINTS + 2]:
+        if len(row) != 2:
+            raise ValueError(f"{name}, whose line {line} has {len(row)} cells; it must have 2, a time and a voltage")
+        for text, found, allowed in ((row[0], times, _range(Seconds)), (row[1], voltages, _range(Volts))):
+            try:
+                value = float(text)
+            except ValueError:
+                value = math.nan
+            if not math.isfinite(value):
+                raise ValueError(f"{name}, whose line {line} has {show(text)}; it must be a finite number")
+            if value not in allowed:
+                raise ValueError(f"{name}, whose line {line} has a number that {allowed.words(value)}")
+            found.append(value)
+    return {"times": times, "voltages": voltages}
+
+
+def _range(annotation: Any) -> Range:
+    """Return the range of a key's annotation."""
+    return next(part.func for part in annotation.__metadata__ if isinstance(getattr(part, "func", None), Range))

@@ -1,0 +1,214 @@
+"""Voltages over time in scenes: their samples, files, units and refusals."""
+
+import math
+
+import pytest
+
+from fingerpad.scene import SceneError, from_data, load, override
+from fingerpad.scene.waveform import MOST, SAMPLES, Waveform
+
+SINE = {"waveform": "sine", "amplitude": 200.0, "frequency": 60.0}
+PRESS = {"name": "press", "f_ext": 1.0}
+TABLE = "time (s),voltage (V)\n"
+
+
+def wave(duration: float = 1.0, **keys) -> Waveform:
+    """Return the waveform of a scene with it."""
+    return from_data({"history": [PRESS, {"name": "wave", "duration": duration, "voltage": keys}]}).history[1].wave
+
+
+def shape(keys: dict, time: float) -> float:
+    """Return a voltage of a sine, square or triangle by another formula than the program's."""
+    phase = 2 * math.pi * keys["frequency"] * time
+    by = {
+        "sine": math.sin(phase),
+        "square": math.copysign(1.0, math.sin(phase)),
+        "triangle": 2 / math.pi * math.asin(math.sin(phase)),
+    }
+    return keys.get("offset", 0.0) + keys["amplitude"] * by[keys["waveform"]]
+
+
+# -- samples -------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("offset", [0.0, 50.0, -120.0, 250.0])
+@pytest.mark.parametrize("kind", ["sine", "triangle"])
+def test_samples_are_of_the_wave(kind, offset):
+    """Their times increase, from 0 to the end, with every turning point, and with a zero between two signs."""
+    keys = SINE | {"waveform": kind, "offset": offset}
+    seconds = 2.3 / 60
+    samples = wave(**keys).samples(seconds, 1.0)
+    times, values = zip(*samples, strict=True)
+    assert times[0] == 0 and times[-1] == seconds and all(b > a for a, b in zip(times, times[1:], strict=False))
+    assert values == pytest.approx([shape(keys, time) for time in times], abs=1e-9)
+    assert all(a * b >= 0 for a, b in zip(values, values[1:], strict=False))
+    assert values.count(max(values)) == 3 and max(values) == offset + 200 and min(values) == offset - 200
+    assert len(samples) >= 2.3 * SAMPLES
+
+
+def test_square_jumps_both_ways():
+    """Two samples of one time are a jump, and the voltage is constant between jumps."""
+    samples = wave(**SINE | {"waveform": "square", "offset": 50.0}).samples(2 / 60, 1.0)
+    jumps = [(a, b) for a, b in zip(samples, samples[1:], strict=False) if a[0] == b[0]]
+    assert [(a[1], b[1]) for a, b in jumps] == [(250, -150), (-150, 250), (250, -150)]
+    assert [a[0] * 60 for a, _ in jumps] == pytest.approx([0.5, 1.0, 1.5])
+    assert samples[0] == (0.0, 250.0) and samples[-1] == (2 / 60, -150.0)
+    assert all(a[1] == b[1] for a, b in zip(samples, samples[1:], strict=False) if a[0] < b[0])
+
+
+@pytest.mark.parametrize("kind", ["sine", "triangle"])
+@pytest.mark.parametrize("scale", [1.0, 0.5])
+def test_square_of_the_voltage_is_nearly_straight(kind, scale):
+    """Between two samples it is off its straight line by 1.7 % of the peak at most, with half the steps by 0.4 %."""
+    keys = SINE | {"waveform": kind}
+    samples = wave(**keys).samples(1 / 60, scale)
+    off = [
+        abs(shape(keys, (a + b) / 2) ** 2 - (u**2 + v**2) / 2) / 200**2
+        for (a, u), (b, v) in zip(samples, samples[1:], strict=False)
+    ]
+    assert max(off) <= (math.pi / SAMPLES * scale) ** 2 * 1.001
+
+
+def test_file_is_straight_between_its_points(write, tmp_path):
+    """With its zeros and more samples where the voltage changes much; the scene keeps the points and not the file."""
+    (tmp_path / "mine.csv").write_text(TABLE + "0,0\n0.01,100\n\n0.02,-100\n0.04,-100\n", encoding="utf-8")
+    path = write(
+        '[[history]]\nname = "press"\nf_ext = 1\n[[history]]\nname = "wave"\n'
+        'voltage = { waveform = "file", file = "mine.csv" }\n'
+    )
+    scene = load(path)
+    found = scene.history[1].wave
+    assert (found.times, found.voltages) == ((0, 0.01, 0.02, 0.04), (0, 100, -100, -100))
+    assert from_data(scene.parameters()) == scene and "mine" not in str(scene.parameters())
+    samples = found.samples(0.04, 1.0)
+    assert {(0.0, 0.0), (0.01, 100.0), (0.015, 0.0), (0.02, -100.0), (0.04, -100.0)} <= set(samples)
+    assert max(abs(b[1] - a[1]) for a, b in zip(samples, samples[1:], strict=False)) <= 2 * math.pi / SAMPLES * 100
+    assert found.samples(0.005, 1.0)[-1] == pytest.approx((0.005, 50.0))
+
+
+# -- keys ----------------------------------------------------------------------------------------------
+def test_units_and_changes(write):
+    """Units work within a load and a waveform, and so do changes of the command line."""
+    path = write(
+        '[[history]]\nname = "press"\nf_ext = 1\n[[history]]\nname = "wave"\nbone_x_by = "1 mm"\nspeed = "20 mm/s"\n'
+        'voltage = { waveform = "sine", amplitude = "0.2 kV", frequency = "0.06 kHz", offset = "-50 V" }\n'
+    )
+    key, value = override("history[1].voltage.frequency=50 Hz")
+    scene = load(path, {key: value})
+    assert str(scene.history[1].wave) == "sine of 200 V about -50 V at 50 Hz"
+    assert (scene.history[1].bone_x_by, scene.history[1].speed) == (1e-3, 0.02)
+    assert load(path, {"history[1].voltage": "-80 V"}).history[1].level == -80.0
+
+
+def test_scene_without_time_keeps_its_parameters():
+    """So that runs made before there were loads over time are found again."""
+    scene = from_data({"history": [PRESS], "output": {"errors": False}})
+    assert scene.parameters()["history"] == [
+        {"name": "press", "f_ext": 1.0, "bone_height": None, "voltage": None, "bone_x": None, "until_full_slip": False}
+    ]
+    assert scene.parameters()["output"] == {"receptors": True, "errors": False}
+
+
+# -- refusals ------------------------------------------------------------------------------------------
+def refusal(*loads: dict) -> str:
+    with pytest.raises(SceneError) as error:
+        from_data({"history": [PRESS, *loads]})
+    return str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("load_", "message"),
+    [
+        ({"voltage": SINE}, "history[1].voltage is a sine and the load takes no time"),
+        ({"voltage": SINE, "speed": 0.1}, "history[1].speed is 0.1 and the bone does not move"),
+        ({"voltage": SINE, "bone_x": 0.0, "speed": 0.1}, "history[1].speed is 0.1 and the bone is there already"),
+        ({"bone_x": 1e-3, "bone_x_by": 1e-3}, "history[1].bone_x is 0.001 and history[1].bone_x_by is 0.001"),
+        ({"bone_x": 1e-3, "speed": 0.1, "duration": 1.0}, "history[1].speed is 0.1 and history[1].duration is 1"),
+        ({"voltage": SINE, "duration": 1.0, "f_ext": 2.0}, "history[1].f_ext is 2 and history[1].voltage is a wave"),
+        ({"voltage": SINE, "duration": 1.0, "bone_height": 0.0}, "history[1].bone_height is 0 and"),
+        (
+            {"voltage": SINE, "bone_x_by": 1e-3, "speed": 0.1, "until_full_slip": True},
+            "history[1].voltage is a waveform and history[1].until_full_slip is true",
+        ),
+        (
+            {"voltage": SINE, "duration": 100.0},
+            f"history[1].voltage has 6000 periods in 100 s, some 1.44e+05 steps; there must be at most {MOST} of them",
+        ),
+        (
+            {"voltage": {"waveform": "sine", "amplitude": 3.0}, "duration": 1.0},
+            "history[1].voltage.frequency is missing; history[1].voltage.waveform is 'sine' and needs it",
+        ),
+        ({"voltage": {"waveform": "file"}}, "history[1].voltage.file is missing"),
+        ({"voltage": SINE | {"times": [0, 1]}, "duration": 1.0}, "history[1].voltage.times is given"),
+        ({"voltage": SINE | {"amplitude": 4e3, "offset": -2e3}, "duration": 1.0}, "history[1].voltage.offset is -2000"),
+        ({"voltage": SINE | {"phase": 1}, "duration": 1.0}, "history[1].voltage.phase is not a key"),
+        ({"voltage": SINE | {"waveform": "saw"}, "duration": 1.0}, "history[1].voltage.waveform is 'saw'; it must be"),
+        ({"voltage": SINE | {"amplitude": -3}, "duration": 1.0}, "history[1].voltage.amplitude is -3 V; it must be"),
+        (
+            {"voltage": {"waveform": "file", "times": [0, 1], "voltages": [0, 9]}, "duration": 2.0},
+            "history[1].voltage has values up to 1 s and the load takes 2 s",
+        ),
+    ],
+    ids=lambda value: "" if isinstance(value, dict) else value[:40],
+)
+def test_contradictions_are_refused(load_, message):
+    """In one sentence that begins with the key."""
+    found = refusal({"name": "wave"} | load_)
+    assert found.startswith(message) and len(found) <= 280 and ". " not in found
+
+
+def test_time_that_is_not_known_is_refused():
+    """A place after a load that may stop early; the same move relative to it is known."""
+    slide = {"name": "slide", "bone_x": 1e-3, "until_full_slip": True}
+    after = {"name": "wave", "speed": 0.1, "voltage": SINE}
+    assert refusal(slide, after | {"bone_x": 2e-3}).startswith("history[2].bone_x is 0.002 after a load that may stop")
+    assert from_data({"history": [PRESS, slide, after | {"bone_x_by": 2e-3}]})
+
+
+@pytest.mark.parametrize(("offset", "allowed"), [(0.0, False), (200.0, False), (201.0, True), (-201.0, True)])
+def test_nothing_but_the_voltage_holds_the_skin(offset, allowed):
+    """At f_ext 0 a voltage over time must not reach 0."""
+    loads = [
+        {"name": "charge", "voltage": 100.0},
+        {"name": "unload", "f_ext": 0.0},
+        {"name": "wave", "duration": 1.0, "voltage": SINE | {"offset": offset}},
+    ]
+    if allowed:
+        assert from_data({"history": [PRESS, *loads]})
+    else:
+        assert refusal(*loads).startswith("history[3].voltage goes through 0 while f_ext is 0")
+    assert refusal({"name": "wave", "duration": 1.0, "voltage": SINE}, {"name": "unload", "f_ext": 0.0}).startswith(
+        "history[2].name is 'unload', which ends at f_ext 0 and voltage 0"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (None, "which cannot be read: No such file"),
+        ("", "with the header ''; it must be 'time (s),voltage (V)'"),
+        ("time (ms),voltage (V)\n0,1\n", "with the header 'time (ms),voltage (V)'"),
+        (TABLE + "0,1\n", "times are 1; there must be from 2"),
+        (TABLE + "0,1\n1,2,3\n", "whose line 3 has 3 cells"),
+        (TABLE + "0,1\n1,x\n", "whose line 3 has 'x'; it must be a finite number"),
+        (TABLE + "0,1\n1,inf\n", "whose line 3 has 'inf'; it must be a finite number"),
+        (TABLE + "0,1\n1,6000\n", "whose line 3 has a number that is 6000 V; it must be 0 or from 0.001 to 5000 V"),
+        (TABLE + "1,1\n2,2\n", "times start at 1 s; the first must be 0"),
+        (TABLE + "0,1\n2,2\n2,3\n", "times are 2 and then 2 s; each must be later"),
+        (TABLE + "".join(f"{k},1\n" for k in range(2500)), "there must be from 2 to 2000 of them"),
+        (TABLE + "\0,1\n", "whose line 2 has '\\x00'; it must be a finite number"),
+    ],
+    ids=lambda value: str(value)[:40],
+)
+def test_files_are_refused(tmp_path, text, message):
+    """In one sentence that names the file or its line, and what must be there."""
+    file = tmp_path / "mine.csv"
+    if text is not None:
+        file.write_text(text, encoding="utf-8")
+    found = refusal({"name": "wave", "voltage": {"waveform": "file", "file": str(file)}})
+    assert message in found.replace("history[1].voltage.", "") and found.startswith("history[1].voltage")
+
+
+def test_folder_and_bytes_are_refused(tmp_path):
+    for file, words in ((tmp_path, "Is a directory"), (tmp_path / "x", "which is no table in CSV")):
+        if not file.exists():
+            file.write_bytes(b"\xff\xfe\x00")
+        assert words in refusal({"name": "wave", "voltage": {"waveform": "file", "file": str(file)}})
