@@ -42,7 +42,9 @@ def by_quadrature(values: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("periods", [1.0, 2.6])
 def test_square_of_a_sine(periods):
     """sin^2 is half of 1 - cos: its mean, its one amplitude at twice the frequency, over the last whole periods."""
-    found = over_time(states(wave("sine").samples(periods * PERIOD, 1.0), lambda u: 3 + 2 * (u / 100) ** 2), wave("sine"))
+    found = over_time(
+        states(wave("sine").samples(periods * PERIOD, 1.0), lambda u: 3 + 2 * (u / 100) ** 2), wave("sine")
+    )
     assert (found.start, found.periods) == (7.0, int(periods)) and found.seconds == pytest.approx(periods * PERIOD)
     assert found.frequency == pytest.approx([FREQUENCY * k for k in range(1, HARMONICS + 1)])
     whole = math.floor(periods)
