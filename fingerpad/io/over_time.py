@@ -2,7 +2,7 @@ r"""Means over time and the spectrum of friction of a load over time, from its a
 
 Between two states a quantity follows the monotone cubic curve of Fritsch and Carlson (SciPy's ``PchipInterpolator``),
 which never leaves the range of the two. The curve is cut where the voltage jumps or has a corner. Mean and amplitudes
-are integrals of this curve, by five Gauss points between two states:
+are integrals of this curve, by 20 Gauss points between two states:
 
 .. math:: a_k = \frac{2}{n T} \left| \int_{nT} f_T(t) \, e^{-2 \pi i k t / T} dt \right|
 
@@ -34,7 +34,7 @@ HARMONICS = 6
 QUANTITIES = ("mu_app", "f_t", "contact_length", "f_electrostatic")
 """Quantities of which extremes and means are kept."""
 Array = NDArray[np.float64]
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _NEAR = 1e-9  # of a period: two times that are one
 
 

@@ -1,0 +1,203 @@
+"""A small finger under voltages over time: as by loads by hand, and what is the same whatever the sign or the place."""
+
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from fingerpad.io.over_time import NOTE
+from fingerpad.io.result import Result
+from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.simulation import Simulation
+from fingerpad.model.touching import by_rule
+from fingerpad.report.run_page import page
+from fingerpad.runs import full
+from fingerpad.scene import Load, Scene, from_data
+from fingerpad.scene.waveform import SAMPLES
+from variational.state import ContactState
+
+SMALL = tomllib.loads((Path(__file__).parents[1] / "demos/scenes/small_finger.toml").read_text(encoding="utf-8"))
+FINGER = {
+    "geometry": SMALL["geometry"],
+    "mesh": SMALL["mesh"] | {"contact": 40e-6},
+    "output": {"receptors": False, "errors": False},
+}
+MU_0 = 0.25
+PRESS = {"name": "press", "f_ext": 1.0}
+SLIDE = {"name": "slide", "bone_x": 256e-6}
+WAVE = {"waveform": "sine", "amplitude": 80.0, "frequency": 60.0, "offset": 20.0}
+BY = {"name": "wave", "bone_x_by": 128e-6, "duration": 1 / 60}
+
+
+def scene(*loads: dict, **more) -> Scene:
+    return from_data(FINGER | {"history": list(loads)} | more)
+
+
+_GONE: dict[str, list[ContactState]] = {}
+
+
+def follow(*loads: dict, **more) -> list[ContactState]:
+    """Return the states of a small finger's path; a path is gone once."""
+    key = str((loads, more))
+    if key not in _GONE:
+        asked = by_rule(scene(*loads, **more))
+        path = Simulation(FingerModel(asked, plan(asked)), MPI.COMM_WORLD)
+        assert path.run() is None
+        _GONE[key] = path.states
+    return _GONE[key]
+
+
+def same(a: list[ContactState], b: list[ContactState], but: tuple[str, ...] = ()) -> bool:
+    """Return whether two paths are the same bit for bit, but for some of their columns; on one rank.
+
+    On several the order of sums is left to the messages, also of one path gone twice.
+    """
+    left_out = {"load", "load_number", *but}
+    rows = [[{k: v for k, v in state.row().items() if k not in left_out} for state in path] for path in (a, b)]
+    return str(rows[0]) == str(rows[1])
+
+
+# -- what it is ----------------------------------------------------------------------------------------
+@pytest.mark.mpi
+def test_waveform_is_the_loads_by_hand():
+    """One load at each sample, as the paper's Fig. 9B was done before: full slip does not depend on the steps."""
+    found = follow(PRESS, SLIDE, BY | {"voltage": WAVE})
+    wave = [state for state in found if state.load == "wave"]
+    samples = Load(**BY, voltage=WAVE).wave.samples(1 / 60, 1.0)
+    assert len(wave) == pytest.approx(len(samples), abs=2)  # the first is a jump of 20 V
+    hand = [
+        {"name": f"sample {k}", "voltage": abs(round(u, 9)), "bone_x": 256e-6 + 128e-6 * t * 60}
+        for k, (t, u) in enumerate(samples)
+    ]
+    ends = {state.load: state for state in follow(PRESS, SLIDE, *hand)}
+    for k, (time, voltage) in enumerate(samples):
+        mine = next(state for state in reversed(wave) if state.time == pytest.approx(time, abs=1e-12))
+        assert mine.voltage == pytest.approx(voltage, abs=1e-9)
+        assert mine.bone_x == pytest.approx(256e-6 + 128e-6 * time * 60, rel=1e-12)
+        assert mine.f_t == pytest.approx(ends[f"sample {k}"].f_t, rel=1e-6)
+        if k > 0:  # the bone stands during the jump
+            assert mine.all_slip and mine.f_t == pytest.approx(MU_0 * (1.0 + mine.f_electrostatic), rel=1e-6)
+        assert mine.contact_length == pytest.approx(ends[f"sample {k}"].contact_length, rel=1e-5)
+
+
+def test_sign_of_the_voltage_changes_nothing():
+    """Bit for bit: of a constant voltage and of a table, and where a sign changes between two loads."""
+    for up, down in (
+        ([{"name": "charge", "voltage": 90.0}], [{"name": "charge", "voltage": -90.0}]),
+        (
+            [{"name": "a", "voltage": 50.0}, {"name": "b", "voltage": 90.0}],
+            [{"name": "a", "voltage": 50.0}, {"name": "b", "voltage": -90.0}],
+        ),
+        (
+            [{"name": "table", "voltage": {"waveform": "file", "times": [0, 1, 2], "voltages": [0, 90, 30]}}],
+            [{"name": "table", "voltage": {"waveform": "file", "times": [0, 1, 2], "voltages": [0, -90, -30]}}],
+        ),
+    ):
+        plus, minus = follow(PRESS, *up, SLIDE), follow(PRESS, *down, SLIDE)
+        assert same(plus, minus, but=("voltage",))
+        assert [abs(state.voltage) for state in minus] == [state.voltage for state in plus]
+        assert minus[-1].voltage < 0
+
+
+def test_relative_moves_are_moves():
+    """There and back and there again: bit for bit the path of absolute places."""
+    places, moves = (2**-13, -(2**-14), 0.0), (2**-13, -3 * 2**-14, 2**-14)  # m, sums without rounding
+    absolute = [{"name": f"{k}", "bone_x": x} for k, x in enumerate(places)]
+    relative = [{"name": f"{k}", "bone_x_by": x} for k, x in enumerate(moves)]
+    assert same(follow(PRESS, *absolute), follow(PRESS, *relative))
+
+
+@pytest.mark.mpi
+def test_move_after_full_slip_and_its_time():
+    """It starts where the slide stopped; time passes with the way of the bone, at its speed."""
+    slide = {"name": "slide", "bone_x": 2e-3, "until_full_slip": True, "speed": 0.02}
+    states = follow(PRESS, slide, {"name": "on", "bone_x_by": -100e-6, "speed": 0.01})
+    stop = [state for state in states if state.load == "slide"][-1]
+    assert stop.slip_held and stop.bone_x < 1e-3
+    assert states[-1].bone_x == pytest.approx(stop.bone_x - 100e-6, rel=1e-12)
+    assert {state.time for state in states if state.load in ("touch", "press")} == {0.0}
+    for state in (state for state in states if state.load == "slide"):
+        assert state.time == pytest.approx(state.bone_x / 0.02, rel=1e-12)
+    assert states[-1].time == pytest.approx(stop.time + 0.01, rel=1e-12)
+
+
+@pytest.mark.mpi
+def test_square_jumps_at_one_place():
+    """The bone stands while the voltage jumps, up and down; the forces on either side are those of the plateaus."""
+    states = follow(PRESS, SLIDE, BY | {"voltage": WAVE | {"waveform": "square"}, "duration": 1.6 / 60})
+    wave = [state for state in states if state.load == "wave"]
+    assert {round(state.voltage) for state in wave} >= {100, -60}
+    for jump in (0.5, 1.0, 1.5):
+        here = [state for state in wave if state.time == pytest.approx(jump / 60, abs=1e-12)]
+        assert len(here) >= 2 and len({state.bone_x for state in here}) == 1
+        assert {abs(here[0].voltage), abs(here[-1].voltage)} == {100.0, 60.0}
+    for voltage in (100.0, -60.0):
+        # The slip that a jump takes is over within the first samples of a plateau.
+        plateau = [state.f_t for state in wave if state.voltage == voltage][-3:]
+        assert plateau == pytest.approx([plateau[-1]] * 3, rel=1e-5)
+
+
+@pytest.mark.mpi
+def test_bone_at_a_height():
+    """Under a voltage over time it stays there; what it presses with falls where the attraction rises."""
+    lower = {"name": "lower", "bone_height": -30e-6}
+    wave = {"name": "wave", "duration": 1 / 60, "voltage": WAVE | {"waveform": "triangle", "offset": 0.0}}
+    states = [state for state in follow(lower, wave) if state.load == "wave"]
+    assert all(state.bone_height == pytest.approx(-30e-6, rel=1e-12) and state.bone_x == 0 for state in states)
+    assert len(states) == pytest.approx(SAMPLES + 1, abs=1)
+    forces = {round(abs(state.voltage), 6): state.f_ext for state in states}
+    assert [forces[u] for u in sorted(forces)] == sorted(forces.values(), reverse=True)
+    assert forces[80.0] < 0.99 * forces[0.0]
+
+
+@pytest.mark.mpi
+def test_twice_the_samples():
+    """They change mean and spectrum by less than 1 % of the largest amplitude."""
+    once, twice = (
+        next(iter(result(PRESS, SLIDE, BY | {"voltage": WAVE}, numerics={"step_scale": scale}).loads[2:])).over_time
+        for scale in (1.0, 0.5)
+    )
+    largest = max(twice.f_t_amplitude)
+    assert np.abs(np.subtract(once.f_t_amplitude, twice.f_t_amplitude)).max() < 1e-2 * largest
+    assert once.mean["f_t"] == pytest.approx(twice.mean["f_t"], abs=1e-2 * largest)
+
+
+# -- results -------------------------------------------------------------------------------------------
+def result(*loads: dict, out: Path | None = None, **more) -> Result:
+    return full.run(scene(*loads, **more), out, MPI.COMM_WORLD, lines=False, bar=False)
+
+
+def test_results_of_a_run(tmp_path):
+    """Time, means, extremes and spectrum in every file; one picture a load at most, none by choice; a report."""
+    quiet = FINGER["output"] | {"each_load": False}
+    found = result(PRESS, SLIDE, BY | {"voltage": WAVE}, out=tmp_path, output=quiet)
+    wave = found.loads[-1]
+    assert not found.failure and NOTE in found.notes
+    assert [load.over_time is None for load in found.loads] == [True, True, False]
+    assert wave.over_time.periods == 1 and wave.over_time.frequency[0] == pytest.approx(60.0)
+    most = wave.extremes["f_t"]
+    peak = next(state for state in found.steps if state.step == most.max_step)
+    assert (peak.voltage, most.max_time) == (100.0, pytest.approx(0.25 / 60))
+    assert not list(tmp_path.glob("finger_*")) and not list(tmp_path.glob("surface_*"))
+    assert (tmp_path / "time.png").is_file() and (tmp_path / "surface.png").is_file()
+    again = Result.load(tmp_path)
+    assert again.loads[-1].to_dict() == wave.to_dict()
+    assert [state.time for state in again.steps] == [state.time for state in found.steps]
+    data = found.to_xarray()
+    assert data.load_f_t_amplitude.sel(load="wave").values == pytest.approx(wave.over_time.f_t_amplitude)
+    assert np.isnan(data.load_f_t_mean.sel(load="slide")) and data.time.attrs["units"] == "s"
+    assert data.harmonic.size == 6 and data.load_frequency.attrs["units"] == "Hz"
+    shown = page(found)
+    assert "Loads over time" in shown and "sine of 80 V about 20 V at 60 Hz" in shown and NOTE in shown
+
+
+def test_run_without_time_has_none(tmp_path):
+    """No column, no picture, no key: the files of such a run stay as they were."""
+    found = result(PRESS, SLIDE, out=tmp_path)
+    assert "time" not in (tmp_path / "steps.csv").read_text().splitlines()[0]
+    assert not (tmp_path / "time.png").exists() and NOTE not in found.notes
+    assert "over_time" not in str(found.to_dict()) and "time" not in str(found.loads[0].to_dict()["extremes"])
+    with pytest.raises(ValueError, match="no load over time"):
+        found.plot("time")

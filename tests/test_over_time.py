@@ -1,0 +1,110 @@
+"""Means and spectra of curves over time, against closed forms."""
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+from fingerpad.io.over_time import HARMONICS, over_time, spectrum
+from fingerpad.reduced.cylinders import tip_radius
+from fingerpad.scene import Scene, from_data
+from fingerpad.scene.waveform import Waveform
+from variational.attraction.cylinder import Cylinder
+from variational.state import ContactState
+
+FREQUENCY = 60.0
+PERIOD = 1 / FREQUENCY
+
+
+def wave(kind: str, offset: float = 0.0) -> Waveform:
+    keys = {"waveform": kind, "amplitude": 100.0, "frequency": FREQUENCY, "offset": offset}
+    loads = [{"name": "press", "f_ext": 1.0}, {"name": "wave", "duration": 1.0, "voltage": keys}]
+    return from_data({"history": loads}).history[1].wave
+
+
+def states(samples, friction) -> list[ContactState]:
+    """Return states of a friction force (N/m) that is a function of the voltage alone."""
+    return [
+        ContactState(
+            f_ext=1.0, voltage=u, f_t=friction(u), mu_app=0.5, f_contact=2.0, f_electrostatic=1.0, ridges_in_contact=1,
+            contact_length=1e-3, step=k, time=7.0 + t,
+        )
+        for k, (t, u) in enumerate(samples)
+    ]  # fmt: skip
+
+
+def by_quadrature(values: np.ndarray) -> np.ndarray:
+    """Return the amplitudes of a smooth periodic curve from many samples of one period, the last left out."""
+    return 2 * np.abs(np.fft.rfft(values))[1 : HARMONICS + 1] / len(values)
+
+
+@pytest.mark.parametrize("periods", [1.0, 2.6])
+def test_square_of_a_sine(periods):
+    """sin^2 is half of 1 - cos: its mean, its one amplitude at twice the frequency, over the last whole periods."""
+    found = over_time(
+        states(wave("sine").samples(periods * PERIOD, 1.0), lambda u: 3 + 2 * (u / 100) ** 2), wave("sine")
+    )
+    assert (found.start, found.periods) == (7.0, int(periods)) and found.seconds == pytest.approx(periods * PERIOD)
+    assert found.frequency == pytest.approx([FREQUENCY * k for k in range(1, HARMONICS + 1)])
+    whole = math.floor(periods)
+    left = 2 * math.pi * (periods - whole)
+    mean = 3 + (periods - (math.sin(2 * left) / (4 * math.pi))) / periods
+    assert found.mean["f_t"] == pytest.approx(mean, rel=4e-3)
+    assert found.mean["contact_length"] == pytest.approx(1e-3, rel=1e-12)
+    assert np.abs(np.array(found.f_t_amplitude) - [0, 1, 0, 0, 0, 0]).max() < 4e-3
+
+
+def test_square_wave_and_triangle():
+    """To roundoff: the curve is constant between jumps, and straight between corners."""
+    k = np.arange(1, HARMONICS + 1)
+    square = over_time(states(wave("square", 50.0).samples(2 * PERIOD, 1.0), lambda u: u), wave("square", 50.0))
+    assert square.f_t_amplitude == pytest.approx(100 * 4 / np.pi / k * (k % 2), abs=1e-9)
+    assert square.mean["f_t"] == pytest.approx(50.0, rel=1e-12)
+    triangle = over_time(states(wave("triangle").samples(2 * PERIOD, 1.0), lambda u: u), wave("triangle"))
+    assert triangle.f_t_amplitude == pytest.approx(100 * 8 / (np.pi * k) ** 2 * (k % 2), abs=1e-5)
+
+
+@pytest.mark.parametrize("offset", [0.0, 60.0])
+def test_friction_of_a_charged_cylinder(offset):
+    """Mu_0 times the contact force of one ridge, by its closed form, from 24 samples and from 96.
+
+    Without offset there is next to nothing at the frequency of the voltage: friction has twice that frequency. What is
+    left comes from the ends of the curve, where its slope is that of one side.
+    """
+    scene = Scene()
+    horny = scene.materials.stratum_corneum
+    modulus = 2 * horny.shear_modulus / (1 - horny.poisson)
+    ridge = Cylinder(tip_radius(scene.geometry), modulus, scene.h_0, scene.closure())
+    fine = 100 * np.sin(2 * np.pi * np.arange(96) / 96) + offset
+
+    @cache
+    def of(amount: float) -> float:
+        return 0.25 * ridge.under_load(4.0, amount).f_contact
+
+    def friction(voltage: float) -> float:
+        return of(round(abs(voltage), 9))
+
+    exact = by_quadrature(np.array([friction(u) for u in fine]))
+    for scale, bound in ((1.0, 4e-3), (0.5, 6e-4)):
+        samples = wave("sine", offset).samples(PERIOD, scale)
+        found = over_time(states(samples, friction), wave("sine", offset)).f_t_amplitude
+        assert np.abs(found - exact).max() < bound * exact.max()
+        if offset == 0:
+            assert max(found[0::2]) < 4e-4 * max(found)
+
+
+def test_spectrum_of_jumps_and_corners_at_odd_times():
+    """Samples need not be evenly spaced, and a jump needs no more than its two samples."""
+    rng = np.random.default_rng(1)
+    inner = np.sort(rng.uniform(0.01, 0.49, 5))
+    time = np.concatenate([[0, *inner, 0.5], [0.5, *(0.5 + inner), 1]])
+    found = spectrum(time, np.where(np.arange(len(time)) < 7, 1.0, 0.0), 1.0, 1)
+    assert found == pytest.approx([2 / np.pi, 0, 2 / 3 / np.pi, 0, 2 / 5 / np.pi, 0], abs=1e-9)
+
+
+def test_load_without_time_has_nothing_over_time():
+    load = states([(0.0, 1.0), (0.0, 2.0)], lambda u: u)
+    assert over_time(load, None) is None
+    held = over_time(states([(0.0, 1.0), (2.0, 3.0)], lambda u: u), None)
+    assert (held.periods, held.frequency) == (0, ()) and held.mean["f_t"] == pytest.approx(2.0)
