@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from fingerpad.io.footprint_picture import footprint
 from fingerpad.scene import Scene, SceneError, override
 from fingerpad.scene.slices import Slices
 from fingerpad.slices.finger import MODEL_ERROR, WholeFinger, errors
@@ -176,6 +177,15 @@ def test_text_has_both_errors():
     text = str(whole())
     assert "±: estimated discretisation error" in text and MODEL_ERROR in text
     assert "0.300 ± 0.010" in text or "0.301 ± 0.010" in text
+
+
+def test_footprint_has_a_panel_for_each_state(tmp_path):
+    """And one along the finger; its areas are those of the sums."""
+    finger = whole()
+    drawn = footprint(finger, tmp_path / "footprint.png")
+    area = 1e6 * finger.states["full_slip"].totals["gross_area"]
+    assert len(drawn.axes) == 2 and f"full slip\n{area:.1f} mm² gross" in drawn.axes[0].get_title()
+    assert (tmp_path / "footprint.png").stat().st_size > 1000
 
 
 # -- refusals ------------------------------------------------------------------------------------------
