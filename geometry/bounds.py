@@ -19,6 +19,7 @@ from geometry.units import to_si
 _SLIPS = {
     "m": ("lengths are in m", (1e-3, 1e-6, 1e-9, 1e-2)),
     "Pa": ("pressures and moduli are in Pa", (1e3, 1e6, 1e9)),
+    "N": ("forces are in N", (1e-3, 1e3)),
     "N/m": ("forces per length are in N/m", (1e-3, 1e3)),
     "Pa/m": ("stiffnesses are in Pa/m", (1e9, 1e6, 1e12)),
     "V": ("voltages are in V", (1e-3, 1e3)),

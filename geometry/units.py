@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 QUANTITIES = {
     "m": "length",
     "Pa": "pressure",
+    "N": "force",
     "N/m": "force per length",
     "Pa/m": "pressure per length",
     "V": "voltage",

@@ -10,6 +10,7 @@ from fingerpad.scene.messages import SceneError
 
 _EXAMPLES = """
     fingerpad run --set f_ext="50 N/m" --set voltage=150 --out results/mine
+    fingerpad run --force "0.5 N" --model smooth --out results/newtons
     mpirun -n 2 fingerpad run scene.toml --out results/scene -fingerpad_snes_monitor
 """
 
@@ -29,6 +30,11 @@ def main(argv: Sequence[str]) -> int:
         default="full",
         help="every ridge (full), a smooth finger with the law of one ridge, or a closed form (default: full)",
     )
+    parser.add_argument(
+        "--force",
+        metavar="FORCE",
+        help="force on the whole finger, as '0.5 N', in place of f_ext: sums slices over traces of the model",
+    )
     parser.add_argument("--quiet", action="store_true", help="print the result alone: no steps, no progress bar")
     args, petsc = parser.read_with_petsc(argv)
     scene = scene_of(args, meshed=args.model != "cylinders")
@@ -36,7 +42,7 @@ def main(argv: Sequence[str]) -> int:
     if args.model == "cylinders":
         if petsc:
             raise SceneError(f"{petsc[0]} is given and --model is cylinders, which solves nothing by PETSc")
-        echo(str(solved(scene, args.model, args.out if terminal.rank() == 0 else None)))
+        echo(str(solved(scene, args.model, args.out if terminal.rank() == 0 else None, force=args.force)))
         return 0
     from fingerpad.startup import start
 
@@ -44,7 +50,9 @@ def main(argv: Sequence[str]) -> int:
     # PETSc has its options from here on.
     from fingerpad.runs.full import exit_code
 
-    result = solved(scene, args.model, args.out, lines=not args.quiet, bar=not args.quiet)
+    result = solved(scene, args.model, args.out, lines=not args.quiet, bar=not args.quiet, force=args.force)
     if args.quiet or args.model != "full":
         echo(str(result))
+    elif args.force is not None:
+        echo(f"\n{result.finger}")
     return exit_code(result)

@@ -68,6 +68,27 @@ SKIN = {
 STATES = {name: STEPS[name] for name in ("step", "f_ext", "voltage", "bone_x", "bone_height", "f_t", "mu_app")} | {
     name: STEPS[name] for name in ("f_contact", "f_electrostatic", "ridges_in_contact", "contact_length")
 }
+FINGER = {
+    "f_ext": Column("N", "external normal force on the whole finger"),
+    "f_t": Column("N", "friction force on the whole finger"),
+    "mu_app": Column("1", "apparent friction coefficient of the whole finger"),
+    "f_electrostatic": Column("N", "electrostatic attraction of the whole finger"),
+    "gross_area": Column("m^2", "area between the outermost touching ridges of the slices"),
+    "contact_area": Column("m^2", "area in contact, of the ridges"),
+    "indentation": Column("m", "lowering of the bone at z = 0"),
+    "effective_width": Column("m", "external force of the finger over that of the slice that bears most"),
+}
+SLICES = {
+    "z": Column("m", "place of the slice along the finger"),
+    "thickness": Column("m", "thickness of the slice, its weight in the sum"),
+    "indentation": Column("m", "indentation of the slice"),
+    "f_ext": Column("N/m", "external normal force of the slice per metre of finger"),
+    "f_t": Column("N/m", "friction force of the slice per metre of finger"),
+    "f_electrostatic": Column("N/m", "electrostatic attraction of the slice per metre of finger"),
+    "contact_length": Column("m", "length of the slice in contact, of the ridges"),
+    "gross_width": Column("m", "width between the outermost touching ridges of the slice"),
+    "pressure": Column("Pa", "mean contact pressure of the slice over its length in contact"),
+}
 STABILITY = {
     "stable": Column("1", "whether the state is stable: 1 yes, 0 no, -1 not examined"),
     "lambda_min": Column("Pa/m", "least eigenvalue of the tangent at frozen air gaps"),

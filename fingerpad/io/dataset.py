@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     import xarray
 
     from fingerpad.io.result import Result
+    from fingerpad.slices.finger import WholeFinger
 
 FILE = "result.nc"
 COORDINATES = ("step", "load", "state", "ridge", "side", "iteration")
@@ -60,7 +61,7 @@ def dataset(result: "Result") -> "xarray.Dataset":
             found |= _by_ridge(tables[f"ridges{end}"], (dim, key, labels), numbers, f"ridge{end}_", columns.RIDGES)
             found |= _sites(tables[f"receptors{end}"], (dim, key, labels), numbers, end.removeprefix("_"))
         found |= _coupling(tables["coupling"], steps)
-    found |= _skin(result.named)
+    found |= _skin(result.named) | _finger(result.finger)
     coords = {name: value for name, value in found.items() if name in COORDINATES}
     data = {name: value for name, value in found.items() if name not in COORDINATES}
     return xarray.Dataset(data, coords, attributes(result))
@@ -221,6 +222,26 @@ def _skin(named: Mapping[str, ContactState]) -> Variables:
     for key, skin in skins.items():
         ridge[STATES.index(key), : len(skin.ridge)] = skin.ridge
     found["skin_ridge"] = ("state", "facet"), ridge, _about(Column("1", "number of the ridge of the facet"))
+    return found
+
+
+def _finger(finger: "WholeFinger | None") -> Variables:
+    """Return the whole finger along ``state``, and its slices along ``state`` and ``slice``; NaN if missing."""
+    if finger is None:
+        return {}
+    count = max(len(total.z) for total in finger.states.values())
+    sums = {name: np.full(len(STATES), np.nan) for name in columns.FINGER}
+    slices = {name: np.full((len(STATES), count), np.nan) for name in columns.SLICES}
+    for state, total in finger.states.items():
+        for name, value in finger.values(state).items():
+            sums[name][STATES.index(state)] = value
+        for name, along in total.slices().items():
+            slices[name][STATES.index(state), : len(along)] = along
+    found: Variables = {}
+    for name, column in columns.FINGER.items():
+        found[f"finger_{name}"] = ("state",), sums[name], _about(column)
+    for name, column in columns.SLICES.items():
+        found[f"slice_{name}"] = ("state", "slice"), slices[name], _about(column)
     return found
 
 

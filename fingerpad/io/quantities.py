@@ -30,7 +30,7 @@ QUANTITIES = {
     "bone_height": Quantity("height of the bone", "mm", 1e3, 4),
 }
 PER_LENGTH = (
-    "N/m: force per metre of finger out of the plane of the cross-section; 75 N/m are 1.5 N on 20 mm of finger."
+    "N/m: force per metre of finger out of the plane of the cross-section; 75 N/m at the centre are about 0.5 N in all."
 )
 
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from fingerpad.io.drawing import Drawing
+    from fingerpad.slices.finger import WholeFinger
 
 _STABILITY = ("stable", "lambda_min", "gain")
 _CHANGES = ("error", "penalty")
@@ -73,6 +74,8 @@ class Result:
     """Folder of tables, plots and fields; None where nothing was written."""
     drawing: "Drawing | None" = None
     """Data of the pictures; None for a model without them."""
+    finger: "WholeFinger | None" = None
+    """The whole finger in N and mm²; None where a history or a model does not give it."""
 
     @property
     def named(self) -> dict[str, ContactState]:
@@ -85,10 +88,10 @@ class Result:
         return self.steps[-1] if self.steps else (self.full_slip or self.charged or self.uncharged)
 
     def plot(self, kind: str = "surface", path: str | Path | None = None) -> "Figure | None":
-        """Draw the skin (``"surface"``), the deformed finger (``"finger"``) or the history of sliding (``"history"``).
+        """Draw the skin, the deformed finger, the history of sliding, or the footprint of the whole finger.
 
         Args:
-            kind: ``"surface"``, ``"finger"`` or ``"history"``.
+            kind: ``"surface"``, ``"finger"``, ``"history"`` or ``"footprint"``.
             path: PNG file to write; None for the figure alone.
 
         Returns:
@@ -97,6 +100,10 @@ class Result:
         Raises:
             ValueError: another kind, or a kind without data in this result.
         """
+        if kind == "footprint" and self.finger is not None:
+            from fingerpad.io.footprint_picture import footprint  # Matplotlib
+
+            return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None
         if self.drawing is not None:
             return self.drawing.figure(kind, None if path is None else Path(path))
         if self.model != "full":
@@ -145,7 +152,7 @@ class Result:
         for name in ("failure", "interrupted"):
             found |= {name: getattr(self, name)} if getattr(self, name) else {}
         found |= {"notes": list(self.notes)} if self.notes else {}
-        return found
+        return found | ({"finger": self.finger.to_dict()} if self.finger is not None else {})
 
     @classmethod
     def from_dict(cls, summary: Mapping[str, Any], folder: Path | None = None) -> "Result":
@@ -158,13 +165,15 @@ class Result:
         scene = from_data({key: value for key, value in parameters.items() if key not in ("laws", "model")})
         cost = Cost(**{f.name: summary.get(f.name, f.default) for f in fields(Cost)})
         used = {f.name for f in fields(Cost)} | {"parameters", "states", "loads", "failure", "interrupted", "notes"}
-        used |= {"model", "f_ext", "voltage", "full_slip"}
+        used |= {"model", "f_ext", "voltage", "full_slip", "finger"}
         names = (*CONDITIONS, *RESULTS, *_STABILITY, *(f"{f.name}_{kind}" for f in fields(Errors) for kind in _CHANGES))
         used |= {f"{prefix}_{name}" for prefix in PREFIXES.values() for name in names}
         record = {key: value for key, value in summary.items() if key not in used}
         if "laws" in parameters:  # objects of Python, of which only the names are kept
             record["parameters"] = parameters
         uncharged, charged, full_slip = (_state(summary, PREFIXES[name]) for name in STATES)
+        from fingerpad.slices.finger import WholeFinger  # it takes names of this module's wing
+
         return cls(
             scene,
             summary.get("model", "full"),
@@ -177,6 +186,7 @@ class Result:
             notes=tuple(summary.get("notes", ())),
             record=record,
             folder=folder,
+            finger=WholeFinger.from_dict(summary["finger"]) if "finger" in summary else None,
         )
 
     @classmethod
@@ -224,7 +234,7 @@ class Result:
                 cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
                 lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
         lines += [f"  {note}" for note in self._remarks()]
-        return "\n".join(lines)
+        return "\n".join([*lines, *([f"{self.finger}"] if self.finger is not None else [])])
 
     def _line(self, key: str) -> list[str]:
         """Return a quantity of the named states as a row of text; empty where it is missing in every state."""

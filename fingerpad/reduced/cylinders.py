@@ -34,14 +34,18 @@ from geometry.profiles import Profiles
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState, hertz_modulus
 from variational.state import ContactState
 
-# The default finger's full runs without voltage, contact size 10 um: f_ext (N/m), then contact length (m) and ridges in
-# contact in each state. benchmarks/models.py keeps the same numbers in docs/models.json.
+# The default finger's full runs without voltage, contact size 10 um: f_ext (N/m), then contact length (m), ridges in
+# contact and indentation in each state. benchmarks/models.py keeps the same numbers in docs/models.json.
 FORCES = (5.0, 10.0, 25.0, 50.0, 75.0, 100.0, 120.0, 150.0)
 LENGTHS = {
     "charged": (0.2314e-3, 0.3575e-3, 0.6513e-3, 1.0123e-3, 1.3027e-3, 1.4999e-3, 1.7015e-3, 1.8908e-3),
     "full_slip": (0.2374e-3, 0.3497e-3, 0.6539e-3, 0.9847e-3, 1.2376e-3, 1.4616e-3, 1.6059e-3, 1.7898e-3),
 }
 RIDGES = {"charged": (7, 9, 11, 15, 17, 17, 19, 19), "full_slip": (7, 9, 12, 14, 16, 17, 18, 18)}
+INDENTATIONS = {  # m, how far the bone is lowered
+    "charged": (0.1457e-3, 0.2244e-3, 0.3895e-3, 0.5848e-3, 0.7383e-3, 0.8670e-3, 0.9568e-3, 1.0751e-3),
+    "full_slip": (0.1452e-3, 0.2239e-3, 0.3893e-3, 0.5842e-3, 0.7345e-3, 0.8569e-3, 0.9417e-3, 1.0510e-3),
+}
 _SHAPING = ("geometry", "materials", "contact")  # tables of a scene of which these lengths are a matter
 
 
@@ -91,6 +95,16 @@ def _interpolate(f_ext: float, values: tuple[float, ...] | tuple[int, ...]) -> f
     x, y = np.log(FORCES), np.log(values)
     k = int(np.clip(np.searchsorted(x, np.log(f_ext)) - 1, 0, len(x) - 2))
     return float(np.exp(y[k] + (y[k + 1] - y[k]) * (np.log(f_ext) - x[k]) / (x[k + 1] - x[k])))
+
+
+def indentation(f_ext: float, state: str) -> float:
+    """Return how far the default finger's bone is lowered (m), without voltage; the model itself has no bone.
+
+    Args:
+        f_ext: external force (N/m).
+        state: ``charged`` or ``full_slip``. A voltage of 200 V moves the bone at full slip by up to 6 %.
+    """
+    return _interpolate(f_ext, INDENTATIONS[state])
 
 
 def given(length: float, ridges: int) -> Footprint:

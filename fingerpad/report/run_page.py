@@ -15,10 +15,12 @@ from fingerpad.report.frames import frames
 _MM = 1e3
 _MARKS = {trust.GOOD: "✓ holds", trust.CARE: "! care", trust.BAD: "✗ fails"}
 _LINKS = {
-    "asked": "Asked", "numbers": "Numbers", "trust": "Trust", "finger": "Finger", "sliding": "Sliding",
-    "pictures": "Pictures", "model": "Model", "solver": "Solver", "parameters": "Parameters", "reproduce": "Reproduce",
+    "asked": "Asked", "numbers": "Numbers", "newtons": "Newtons", "trust": "Trust", "finger": "Finger",
+    "sliding": "Sliding", "pictures": "Pictures", "model": "Model", "solver": "Solver", "parameters": "Parameters",
+    "reproduce": "Reproduce",
 }  # fmt: skip
 _SAID = {
+    "footprint.png": "Gross and ridge contact of the whole finger, slice by slice, and the pressure along it",
     "history.png": "Friction force, contact length and ridges in contact over sliding",
     "surface.png": "Pressure, shear traction, attraction and gap along the skin in the named states",
 }
@@ -31,6 +33,7 @@ def page(result: Result) -> str:
     sections = [
         _asked(result),
         _numbers(result),
+        _newtons(result),
         _trust(result),
         _finger(shown),
         _sliding(result),
@@ -135,6 +138,13 @@ def _numbers(result: Result) -> str:
         notes.append(f"Contact is a penalty: a rigid screen would change µ_app at full slip by {change}.")
     heads = ("", *(WORDS[name] for name in result.named))
     return html.section("numbers", "Key numbers", html.table(heads, rows, "numbers"), html.items(notes))
+
+
+def _newtons(result: Result) -> str:
+    if result.finger is None:
+        return ""
+    table = html.table(("", *result.finger.heads()), result.finger.rows(), "numbers")
+    return html.section("newtons", "The whole finger, in newtons", table, html.items(result.finger.remarks()))
 
 
 def _trust(result: Result) -> str:

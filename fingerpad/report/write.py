@@ -1,4 +1,4 @@
-"""Write the report of a folder; a report that cannot be made costs a line, not the results."""
+"""Write the report of a folder and its footprint; what cannot be made costs a line, not the results."""
 
 import sys
 from pathlib import Path
@@ -43,3 +43,15 @@ def attempt(folder: Path) -> Path | None:
         again = "fingerpad report makes it again"
         print(f"fingerpad: no report of {clip(str(folder), 80)}: {clip(str(error), 160)}; {again}", file=sys.stderr)
         return None
+
+
+def draw_footprint(result: Result) -> None:
+    """Write ``footprint.png`` at the end of a run with a whole finger; a line on the console where it fails; serial."""
+    if result.finger is None or result.folder is None:
+        return
+    from fingerpad.io.footprint_picture import footprint  # Matplotlib
+
+    try:
+        footprint(result.finger, result.folder / "footprint.png")
+    except OSError as error:
+        print(f"fingerpad: footprint.png was not written: {error.strerror or error}", file=sys.stderr)

@@ -23,6 +23,7 @@ from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene
 from fingerpad.scene.laws import coefficient, used
+from fingerpad.slices.estimate import with_newtons
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
 from variational.solvers.continuation import StepFailed
@@ -158,6 +159,7 @@ class Attempt:
             folder=self._writer.folder,
             drawing=drawing,
         )
+        result = with_newtons(result)
         if result.failure:
             self._writer.log.error(result.failure)
         self._writer.summary(result.to_dict())

@@ -33,6 +33,7 @@ def run(
     *,
     out: str | Path | None = None,
     model: str = "full",
+    force: float | str | None = None,
     closure: "Closure | None" = None,
     materials: "Mapping[str, Material] | None" = None,
     friction: "Friction | float | None" = None,
@@ -46,6 +47,9 @@ def run(
         out: folder for tables, pictures, fields and ``summary.json``; without it nothing is written.
         model: ``"full"``, every ridge along the whole path (minutes); ``"smooth"``, a smooth finger with the law of
             one ridge (seconds, half a minute the first time); ``"cylinders"``, a closed form (at once).
+        force: external force on the whole finger, in N or as a text such as ``"0.5 N"``, in place of the scene's
+            ``f_ext``. The result's ``finger`` is then summed over traces of the model (:mod:`fingerpad.slices.traces`),
+            three runs of the full one. The other states of the result are at the end of the last trace.
         closure: microscale model in place of the bearing area model, see :mod:`variational.roughness.closure`.
         materials: materials by layer (``{"dermis": NeoHooke(2.5e3)}``), see :mod:`variational.materials.material`.
         friction: friction law, see :mod:`variational.contact.friction`.
@@ -65,7 +69,7 @@ def run(
         scene = scene.with_laws(closure=closure, materials=materials, friction=friction, mesh=mesh)
     if not isinstance(scene, Scene):
         raise SceneError(f"scene is {show(scene)}; it must be a Scene, and a file is read by Scene.load(path)")
-    result = solved(scene, model, None if out is None else Path(out), comm)
+    result = solved(scene, model, None if out is None else Path(out), comm, force=force)
     if result.interrupted:
         raise _ended(result)
     if result.failure and terminal.rank() == 0:
@@ -89,6 +93,7 @@ def solved(
     lines: bool = False,
     bar: bool = True,
     report: bool = True,
+    force: float | str | None = None,
 ) -> Result:
     """Return what a model answers to a scene with all its laws; collective; arguments as of :func:`run`.
 
@@ -100,11 +105,16 @@ def solved(
         lines: whether the full model prints its steps.
         bar: whether it shows a progress bar.
         report: whether ``report.html`` is written beside the results.
+        force: on the whole finger, as of :func:`run`.
     """
-    result = _solved(scene, model, out, comm, lines, bar)
+    if force is None:
+        result = _solved(scene, model, out, comm, lines, bar)
+    else:
+        result = _whole(scene, force, model, out, comm, lines, bar)
     if report and out is not None and (terminal.rank() if comm is None else comm.rank) == 0:
-        from fingerpad.report.write import attempt
+        from fingerpad.report.write import attempt, draw_footprint
 
+        draw_footprint(result)
         attempt(out)
     return result
 
@@ -119,6 +129,27 @@ def _solved(scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None",
         return kept(found, out, Serial()) if terminal.rank() == 0 else found
     with needed_by(f"the model {model!r}"):
         return _with_finite_elements(scene, model, out, comm, lines, bar)
+
+
+def _whole(
+    scene: Scene, force: float | str, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool, bar: bool
+) -> Result:
+    """Return the result of a force on the whole finger, its sums written beside the files of the last trace."""
+    from fingerpad.slices import traces
+
+    value, own = traces.newtons(force), out if model == "full" else None
+
+    def solve(each: Scene, name: str) -> Result:
+        return _solved(each, model, traces.folder_of(own, name), comm, lines, bar)
+
+    found = traces.whole(scene, value, model, solve)
+    if out is None or (terminal.rank() if comm is None else comm.rank) != 0:
+        return found
+    if model != "full":
+        return kept(found, out, Serial())
+    replace_json(out / "summary.json", found.to_dict())
+    missing = dataset.save(found)
+    return replace(found, notes=(*found.notes, missing)) if missing else found
 
 
 def _with_finite_elements(

@@ -19,6 +19,7 @@ from fingerpad.scene.materials import Electric, Materials, Roughness
 from fingerpad.scene.messages import SceneError, first_error, show
 from fingerpad.scene.parameters import Accuracy, Contact, Load, Numerics, Output, Voltage
 from fingerpad.scene.reading import plain, put, read_scene
+from fingerpad.scene.slices import Slices
 from fingerpad.scene.table import Finite, Part
 from geometry.bounds import within
 from geometry.parameters import Fingertip, MeshSize
@@ -41,7 +42,7 @@ class Scene(Part):
     """
 
     f_ext: Annotated[Finite, within(1e-3, 5e3, "N/m")] = 75.0
-    """External normal force on the bone (N/m). Range: the weight of a grain of sand to 100 N on 20 mm of finger."""
+    """External normal force on the bone (N/m). Range: the weight of a grain of sand to more than 100 N on a finger."""
     voltage: Voltage = 200.0
     """Instantaneous voltage U (V). *Assumption*: U is that of Eq. 3, not the peak-to-peak value of Table 3. Range:
     from 1 mV, which attracts with less than 1 µPa, to ten times the voltage of displays; 0 is no voltage."""
@@ -78,6 +79,7 @@ class Scene(Part):
             raise SceneError(first_error(error, Scene)) from None
 
     output: Output = Output()
+    slices: Slices = Slices()
 
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
@@ -196,6 +198,8 @@ class Scene(Part):
         unused |= {"accuracy": True} if self.accuracy is None else {}
         if self.output == Output():  # not a word of it, so that runs made before it was a key are found
             unused["output"] = True
+        if self.slices == Slices():  # likewise
+            unused["slices"] = True
         default = Numerics()  # likewise
         unused["numerics"] = {n for n in ("step_scale", "memory") if getattr(self.numerics, n) == getattr(default, n)}
         found = self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})

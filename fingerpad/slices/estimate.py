@@ -1,0 +1,110 @@
+"""Newtons of a run at no cost: one press, one full slip, and charged cylinders in between.
+
+A run of press, charge and slide has the cross-section's whole press without voltage, and one charged state and one full
+slip, at the scene's force. The slices away from the centre bear less. Their attraction and contact length are those
+of the model "cylinders" (:mod:`fingerpad.reduced.cylinders`) over the contact lengths of the run's own press, scaled to
+the run's own state at the centre; their indentation is that of the press, scaled likewise. ``docs/newtons.md`` has the
+error of this estimate beside traces of the full model. ``fp.run(scene, force="0.5 N")`` computes the traces.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fingerpad.io.result import Result
+from fingerpad.reduced import cylinders
+from fingerpad.scene import Scene, SceneError
+from fingerpad.slices.finger import WholeFinger, errors, in_order
+from fingerpad.slices.profile import profile
+from fingerpad.slices.total import at_force, at_indentation, deepest
+from fingerpad.slices.trace import Trace, TraceError, columns, trace
+from variational.state import ContactState
+
+SOURCE = (
+    "the run's own press and its state at the centre; the other slices by charged cylinders, scaled to it; "
+    "a force in newtons as --force gives traces of the model itself"
+)
+_MOST = 12  # points of the trace
+
+
+def with_newtons(result: Result) -> Result:
+    """Return a result with its whole finger, or with a note why there is none.
+
+    Args:
+        result: of a scene without a history of its own.
+    """
+    if result.scene.history is not None or result.scene.laws.mesh is not None or not result.named:
+        return result
+    try:
+        states = [state for state in result.steps if state.load == "press" and state.f_t >= 0]
+        return replace(result, finger=estimate(result.scene, states, result.named))
+    except (SceneError, TraceError) as error:
+        return replace(result, notes=(*result.notes, f"no newtons of the whole finger: {error}"))
+
+
+def estimate(scene: Scene, press: Sequence[ContactState], named: Mapping[str, ContactState]) -> WholeFinger:
+    """Return the finger whose centre bears the scene's force in one of its named states, and less in the others.
+
+    Args:
+        scene: press, charge and slide.
+        press: states of the press without voltage, at growing forces up to the scene's.
+        named: states at the scene's force, by name.
+
+    Raises:
+        SceneError: the profile does not fit, or the cylinders have no equilibrium.
+        TraceError: the press has too few states.
+    """
+    finger, count, wavelength = profile(scene.slices), scene.slices.count, scene.geometry.ridge_wavelength
+    pressed = _thinned(press)
+    traces = {name: _scaled(scene, pressed, name, state, wavelength) for name, state in named.items()}
+    # At one indentation the states bear other forces: the least is one that every trace reaches.
+    force = min(at_indentation(finger, each, deepest(finger, each), count).totals["f_ext"] for each in traces.values())
+    found = {name: at_force(finger, each, force * (1 - 1e-9), count) for name, each in traces.items()}
+    return WholeFinger(in_order(found), SOURCE, {name: errors(found[name], named[name]) for name in found})
+
+
+def _thinned(press: Sequence[ContactState]) -> list[ContactState]:
+    """Return at most :data:`_MOST` states, the last one among them, about evenly in the logarithm of the force."""
+    states = [state for state in press if state.f_ext > 0 and state.contact_length > 0]
+    if len(states) < 2:
+        raise TraceError(f"the press has {len(states)} states with a force; a trace must have two at least")
+    forces = np.log([state.f_ext for state in states])
+    wanted = np.linspace(forces[0], forces[-1], _MOST)
+    return [states[k] for k in sorted({int(np.abs(forces - each).argmin()) for each in wanted})]
+
+
+def _scaled(scene: Scene, press: Sequence[ContactState], name: str, end: ContactState, wavelength: float) -> Trace:
+    """Return the trace of a named state: the press changed as the cylinders are, and scaled to the state itself."""
+    if name == "uncharged":
+        return trace(press, wavelength)
+    states = [_charged(scene, state, name) for state in press]
+    law, now = scene.friction_law(), states[-1]
+    shape = {key: _ratio(getattr(end, key), getattr(now, key)) for key in ("f_electrostatic", "contact_length")}
+    shape["bone_height"] = _ratio(end.bone_height, now.bone_height)
+    found = []
+    for state in states:
+        scaled = replace(state, **{key: factor * getattr(state, key) for key, factor in shape.items()})
+        borne = scaled.f_ext + scaled.f_electrostatic
+        slips = name == "full_slip" and law is not None
+        found.append(replace(scaled, f_t=law.resultant(borne, scaled.contact_length) if slips and law else 0.0))
+    made = trace(found, wavelength)
+    width = _ratio(columns([end], wavelength)["gross_width"][0], made.columns["gross_width"][-1])
+    return Trace(made.depth, made.columns | {"gross_width": width * made.columns["gross_width"]})
+
+
+def _charged(scene: Scene, state: ContactState, name: str) -> ContactState:
+    """Return a state of the press as the cylinders charge it."""
+    if scene.voltage == 0:
+        return state
+    length, ridges = {name: state.contact_length}, {name: state.ridges_in_contact}
+    for other in set(cylinders.STATES) - {name}:
+        length[other], ridges[other] = state.contact_length, state.ridges_in_contact
+    here = scene.model_copy(update={"f_ext": state.f_ext})
+    footprint = cylinders.Footprint(length, ridges, False, "press of a run")
+    found = getattr(cylinders.solve(here, footprint), name)
+    return replace(state, f_electrostatic=found.f_electrostatic, contact_length=found.contact_length)
+
+
+def _ratio(value: float, of: float) -> float:
+    return value / of if of else 1.0

@@ -1,0 +1,146 @@
+"""The whole finger of a result: newtons and square millimetres by named state, their errors, and their source."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from fingerpad.io.states import STATES, WORDS
+from fingerpad.richardson import plus_minus
+from fingerpad.slices import AREA_ERROR_AT_FORCE, FORCE_ERROR
+from fingerpad.slices.total import Total
+from fingerpad.slices.trace import NAMES
+from variational.state import ContactState
+
+_SHOWN = {  # words, unit, factor from SI, digits without an error
+    "f_ext": ("external force F_ext", "N", 1.0, 3),
+    "mu_app": ("apparent friction µ_app", "", 1.0, 4),
+    "f_t": ("friction force F_T", "N", 1.0, 4),
+    "f_electrostatic": ("attraction F_el", "N", 1.0, 3),
+    "gross_area": ("gross area", "mm²", 1e6, 1),
+    "contact_area": ("ridge contact area", "mm²", 1e6, 2),
+    "indentation": ("indentation δ", "mm", 1e3, 3),
+    "effective_width": ("F_ext over f_ext of the centre", "mm", 1e3, 2),
+}
+_FRICTION = "mu_app", "f_t"  # shown at full slip alone
+_OF_SECTION = {  # whose relative error each has; the external force is prescribed
+    "mu_app": "mu_app",
+    "f_t": "f_t",
+    "f_electrostatic": "f_electrostatic",
+    "contact_area": "contact_length",
+    "indentation": "bone_height",
+}
+
+
+def _percent(ends: tuple[float, float]) -> str:
+    low, high = (f"{100 * end:+.0f}".replace("-", "−") for end in ends)
+    return f"{low} to {high} %"
+
+
+MODEL_ERROR = (
+    f"The model of slices itself has an error of {_percent(FORCE_ERROR)} in force at equal indentation, and of "
+    f"{_percent(AREA_ERROR_AT_FORCE)} in gross area at equal force (smooth finger in three dimensions, uncharged)."
+)
+
+
+@dataclass(frozen=True, eq=False)
+class WholeFinger:
+    """A whole finger under one force in its named states; SI units."""
+
+    states: dict[str, Total]
+    """By the names of :data:`fingerpad.io.states.STATES`; those that are known."""
+    source: str
+    """Where the traces of the cross-section come from, for a reader."""
+    error: dict[str, dict[str, float]] = field(default_factory=dict)
+    """Estimated discretisation errors of the cross-section by state and quantity, carried over in proportion."""
+
+    @property
+    def f_ext(self) -> float:
+        """External force (N)."""
+        return next(iter(self.states.values())).totals["f_ext"]
+
+    def values(self, name: str) -> dict[str, float]:
+        """Return the quantities of a state: N, m², m, and the apparent friction coefficient."""
+        total = self.states[name]
+        more = {"mu_app": total.mu_app, "indentation": total.delta, "effective_width": self.f_ext / total.centre}
+        return total.totals | more
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all values, ready for JSON; SI units."""
+        found: dict[str, Any] = {"f_ext": self.f_ext, "source": self.source, "model_error": MODEL_ERROR, "states": {}}
+        for name, total in self.states.items():
+            arrays = {key: values.tolist() for key, values in total.slices().items()}
+            found["states"][name] = self.values(name) | {"error": self.error.get(name, {}), "slices": arrays}
+        return found
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> "WholeFinger":
+        """Return the finger of :meth:`to_dict`."""
+        states = {}
+        for name, state in data["states"].items():
+            arrays = {key: np.array(values) for key, values in state["slices"].items()}
+            columns = {key: arrays[key] for key in NAMES}
+            centre = data["f_ext"] / state["effective_width"]
+            places = arrays["z"], arrays["thickness"], arrays["indentation"]
+            states[name] = Total(state["indentation"], *places, centre, columns)
+        return cls(states, data["source"], {name: state["error"] for name, state in data["states"].items()})
+
+    def rows(self) -> Iterator[list[str]]:
+        """Yield the quantities with unit, and their values in each state with the discretisation error."""
+        for key, (words, unit, scale, digits) in _SHOWN.items():
+            cells = []
+            for name in self.states:
+                value, error = self.values(name)[key] * scale, self.error.get(name, {}).get(key, math.nan) * scale
+                if key in _FRICTION and name != "full_slip":
+                    cells.append("–")
+                else:
+                    large = not math.isnan(error) and error >= 0.5 * 10.0**-digits
+                    cells.append(plus_minus(value, error) if large else f"{value:.{digits}f}")
+            if set(cells) - {"–"}:
+                yield [f"{words} ({unit})" if unit else words, *cells]
+
+    def heads(self) -> list[str]:
+        """Return the words of the states."""
+        return [WORDS[name] for name in self.states]
+
+    def remarks(self) -> list[str]:
+        """Return what a reader of the numbers must be told."""
+        known = ["±: estimated discretisation error of the cross-section."] if any(self.error.values()) else []
+        return [*known, MODEL_ERROR, f"Slices: {self.source}."]
+
+    def __str__(self) -> str:
+        """Return the text *Whole finger* at the end of a run: the states side by side."""
+        heads = [head.split(" normal") for head in self.heads()]
+        rows = [["", *(head[0] for head in heads)], ["", *("normal" + head[1] if head[1:] else "" for head in heads)]]
+        rows += list(self.rows())
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        lines = ["Whole finger, as a sum of slices"]
+        for first, *rest in rows:
+            cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
+            lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
+        return "\n".join([*lines, *(f"  {remark}" for remark in self.remarks())])
+
+
+def errors(total: Total, state: ContactState | None) -> dict[str, float]:
+    """Return the discretisation errors of a sum: the relative ones of the cross-section, times the values.
+
+    Args:
+        total: the sum.
+        state: of the cross-section, with estimated errors; None where there is none.
+    """
+    if state is None:
+        return {}
+    values = total.totals | {"mu_app": total.mu_app, "indentation": total.delta}
+    found = {}
+    for name, of in _OF_SECTION.items():
+        value, error = getattr(state, of), getattr(state.error, of)
+        if value and not math.isnan(error):
+            found[name] = abs(error / value * values[name])
+    return found
+
+
+def in_order(states: Mapping[str, Total]) -> dict[str, Total]:
+    """Return states in the order of :data:`fingerpad.io.states.STATES`."""
+    return {name: states[name] for name in STATES if name in states}

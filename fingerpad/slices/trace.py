@@ -1,0 +1,136 @@
+"""What one slice bears over its indentation, from states of the cross-section at growing forces."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+
+from variational.state import ContactState
+
+Array = NDArray[np.float64]
+NAMES = ("f_ext", "f_t", "f_electrostatic", "contact_length", "gross_width")
+"""Columns: N/m the forces, m the lengths."""
+_NOTHING = 1e-9  # of the external force: below it a friction force or an attraction is roundoff
+
+
+class TraceError(ValueError):
+    """States of which no trace can be made; one sentence."""
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One slice over its indentation: power laws between points, by monotone cubics in logarithms.
+
+    So forces grow with the indentation, and a power law such as Hertz's is interpolated to roundoff. Below the first
+    point the power law of the first two goes on: to no force at no indentation. Friction is interpolated as its ratio
+    to the contact force, which is the friction coefficient under Coulomb's law; then the sum's friction is the
+    coefficient times the sum's contact force to roundoff.
+    """
+
+    depth: Array
+    """Indentations (m), growing, greater than 0; shape (points,)."""
+    columns: dict[str, Array]
+    """By :data:`NAMES`; shape (points,)."""
+
+    def __post_init__(self) -> None:
+        """Refuse what is no trace.
+
+        Raises:
+            TraceError: less than two points, or depths or forces that do not grow.
+        """
+        force = self.columns["f_ext"]
+        grows = len(self.depth) > 1 and bool(np.all(np.diff(self.depth) > 0) and np.all(np.diff(force) > 0))
+        if not (grows and self.depth[0] > 0 and force[0] > 0):
+            raise TraceError(
+                f"a trace has {len(self.depth)} points; it must have two at least, with indentations and forces that "
+                "are greater than 0 and grow"
+            )
+
+    @property
+    def end(self) -> tuple[float, float]:
+        """The last indentation (m) and its external force (N/m)."""
+        return float(self.depth[-1]), float(self.columns["f_ext"][-1])
+
+    def at(self, depth: Array) -> dict[str, Array]:
+        """Return the columns at indentations (m); nothing where a slice does not touch, at 0 and less.
+
+        Raises:
+            TraceError: an indentation beyond the last one.
+        """
+        depth = np.asarray(depth, dtype=float)
+        if np.any(depth > self.depth[-1] * (1 + 1e-12)):
+            raise TraceError(
+                f"an indentation of {depth.max():.4g} m is beyond the trace, which ends at {self.depth[-1]:.4g} m "
+                f"under {self.end[1]:.4g} N/m"
+            )
+        borne = self.columns["f_ext"] + self.columns["f_electrostatic"]
+        found = {name: self._power(self.columns[name], depth) for name in NAMES if name != "f_t"}
+        grip = self._power(self.columns["f_t"] / borne, depth, grows=False)
+        return found | {"f_t": grip * (found["f_ext"] + found["f_electrostatic"])}
+
+    def _power(self, values: Array, depth: Array, grows: bool = True) -> Array:
+        """Return values at indentations.
+
+        Args:
+            values: at the points.
+            depth: where they are wanted (m).
+            grows: whether they go to 0 with the indentation; else the first value holds below the first point.
+        """
+        found, touches = np.zeros_like(depth), depth > 0
+        if np.all(values <= _NOTHING * self.columns["f_ext"].max() * grows + _NOTHING * (not grows)):
+            return found
+        x, y = np.log(self.depth), np.log(np.maximum(values, np.finfo(float).tiny))
+        at = np.minimum(np.log(depth, where=touches, out=np.full_like(depth, x[0])), x[-1])
+        slope = max((y[1] - y[0]) / (x[1] - x[0]), 0.0) if grows else 0.0
+        inside = np.exp(PchipInterpolator(x, y)(np.maximum(at, x[0])))
+        found[touches] = (inside * np.exp(slope * np.minimum(at - x[0], 0.0)))[touches]
+        return found
+
+
+def trace(states: Iterable[ContactState], wavelength: float) -> Trace:
+    """Return the trace of a cross-section.
+
+    Args:
+        states: at growing forces, all of one kind: uncharged, charged, or at full slip. States without contact and
+            those that go back, as behind a jump, are left out.
+        wavelength: of a ridge (m).
+
+    Raises:
+        TraceError: less than two states are left.
+    """
+    kept: list[ContactState] = []
+    for state in sorted(states, key=lambda state: state.f_ext):
+        before = kept[-1] if kept else None
+        deeper = state.bone_height < 0 and (before is None or -state.bone_height > -before.bone_height)
+        more = state.f_ext > (0.0 if before is None else before.f_ext)
+        if state.contact_length > 0 and deeper and more:
+            kept.append(state)
+    return Trace(np.array([-state.bone_height for state in kept]), columns(kept, wavelength))
+
+
+def columns(states: Sequence[ContactState], wavelength: float) -> dict[str, Array]:
+    """Return the columns of states; arguments as of :func:`trace`."""
+    found = {name: [abs(getattr(state, name)) for state in states] for name in NAMES if name != "gross_width"}
+    found["gross_width"] = [gross_width(state, wavelength) for state in states]
+    return {name: np.array(values, dtype=float) for name, values in found.items()}
+
+
+def gross_width(state: ContactState, wavelength: float) -> float:
+    """Return the width (m) between the outer edges of the outermost touching ridges.
+
+    Their middles are a wavelength apart for each ridge, and half a ridge's mean contact length lies beyond on either
+    side.
+
+    Args:
+        state: a state of the cross-section.
+        wavelength: of a ridge (m).
+    """
+    if state.ridges_in_contact == 0:
+        return 0.0
+    apart = state.ridges_in_contact - 1
+    if state.ridges is not None:
+        touching = state.ridges.number[state.ridges.length > 0]
+        apart = int(touching[-1] - touching[0])
+    return apart * wavelength + state.contact_length / state.ridges_in_contact

@@ -1,0 +1,211 @@
+"""Traces of the cross-section for a force in newtons, by any model, as ordinary scenes.
+
+The full model follows three histories. The finger is pressed without voltage. It is pressed lightly, charged and
+pressed on. It is pressed lightly, charged, slid to full slip and pressed on while it slides; every accepted step at
+full slip is then a point of the trace. The models "smooth" and "cylinders" solve one scene for each of :data:`FORCES`
+forces. A trace that ends before the force is reached is made again to a larger one.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fingerpad.io.result import Result
+from fingerpad.reduced import cylinders
+from fingerpad.scene import Scene, SceneError
+from fingerpad.slices.finger import WholeFinger, errors, in_order
+from fingerpad.slices.profile import Profile, profile
+from fingerpad.slices.total import BeyondTrace, at_force
+from fingerpad.slices.trace import Trace, TraceError, trace
+from geometry.bounds import Range
+from geometry.units import to_si
+from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    Solve = Callable[[Scene, str], Result]
+
+NEWTONS = Range(1e-5, 200.0, "N")
+"""Forces on a whole finger: the weight of a milligram to that of 20 kg."""
+FORCES = 8
+"""Points of a trace of the models "smooth" and "cylinders"."""
+LIGHT = 1 / 30
+"""Force under which a finger is charged, and slid to full slip, over the largest of its trace."""
+_LARGEST = 5e3  # N/m, of a scene
+_TRIES = 4  # of a trace, each time to a larger force
+_MORE, _MARGIN = 1.8, 1.1  # factors on the largest force: of the next try, and beyond the expected one
+# A finger of the default's width bears some 0.53 N where its centre bears 75 N/m; forces grow as F^0.77.
+_LINE, _POINT, _POWER, _WIDTH = 75.0, 0.53, 0.77, 20e-3
+_WORDS = {"full": "traces of the full model", "smooth": "traces of the model 'smooth'"}
+
+
+class Traced(NamedTuple):
+    """A trace, and the result that ends at its largest force."""
+
+    trace: Trace
+    result: Result
+
+
+def newtons(force: "float | str") -> float:
+    """Return a force on a whole finger (N), given as a number or as a text with a unit.
+
+    Raises:
+        SceneError: it is neither, or out of range.
+    """
+    try:
+        value = to_si(force, "N") if isinstance(force, str) else float(force)
+    except (TypeError, ValueError) as error:
+        given = repr(force) if isinstance(force, str) else type(force).__name__
+        why = str(error) if isinstance(force, str) else "it must be a number in N or a text such as '0.5 N'"
+        raise SceneError(f"force is {given}; {why}") from None
+    if value not in NEWTONS:
+        raise SceneError(f"force {NEWTONS.words(value, slip=not isinstance(force, str))}")
+    return value
+
+
+def whole(scene: Scene, force: float, model: str, solve: "Solve") -> Result:
+    """Return the result at the end of the last trace, with the whole finger under a force; collective.
+
+    Args:
+        scene: press, charge and slide; ``force`` takes the place of its ``f_ext``.
+        force: on the whole finger (N).
+        model: that solves.
+        solve: solves a scene; takes a name for the folder of its files too, empty for the result's own.
+
+    Raises:
+        SceneError: a scene with a history, a profile that does not fit, or a force that no trace reached.
+    """
+    _refuse(scene)
+    finger = profile(scene.slices)
+    finger.lowest()
+    reach = _Reach(scene, finger, force, model, solve)
+    found = {name: reach.follow(name) for name in _wanted(scene)}
+    totals = {name: at_force(finger, each.trace, force, scene.slices.count) for name, each in found.items()}
+    ends = {name: each.result.named.get("charged" if name == "uncharged" else name) for name, each in found.items()}
+    known = {name: errors(totals[name], ends[name]) for name in totals}
+    source = f"{_WORDS.get(model, 'traces of charged cylinders, indentations without voltage')} to "
+    source += ", ".join(f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
+    last = list(found.values())[-1].result
+    if model != "full":
+        last = solve(scene.model_copy(update={"f_ext": list(totals.values())[-1].centre}), "")
+    return replace(last, finger=WholeFinger(in_order(totals), source, known))
+
+
+def _wanted(scene: Scene) -> Iterator[str]:
+    """Yield the names of the traces, the last one that of the result."""
+    yield "uncharged"
+    if scene.voltage:
+        yield "charged"
+    if scene.friction_law() is not None:
+        yield "full_slip"
+
+
+def _refuse(scene: Scene) -> None:
+    if scene.history is not None:
+        raise SceneError(
+            "history is given; a force in N is that of press, charge and slide alone, so give voltage instead"
+        )
+    if scene.laws.mesh is not None:
+        raise SceneError("mesh is given; a force in N is that of fingers of the scene's own geometry alone")
+
+
+class _Reach:
+    """Follows traces to forces that are large enough."""
+
+    def __init__(self, scene: Scene, finger: Profile, force: float, model: str, solve: "Solve") -> None:
+        self._scene, self._finger, self._force, self._model, self._solve = scene, finger, force, model, solve
+        scale = scene.geometry.width / _WIDTH
+        self._top = _LINE * scale * (force / (_POINT * scale**2)) ** _POWER * _MARGIN
+
+    def follow(self, name: str) -> Traced:
+        """Return the trace of a state, long enough for the force.
+
+        Raises:
+            SceneError: it could not be made so long.
+        """
+        for tries in range(_TRIES):
+            top = min(self._top, _LARGEST)
+            made = self._made(name, top)
+            try:
+                total = at_force(self._finger, made.trace, self._force, self._scene.slices.count)
+            except BeyondTrace as error:
+                if made.result.failure or tries == _TRIES - 1 or top == _LARGEST:
+                    why = f": {made.result.failure}" if made.result.failure else ""
+                    raise SceneError(f"{error}{why}") from None
+                self._top *= _MORE
+                continue
+            self._top = total.centre * _MARGIN  # of the next trace
+            return made
+        raise AssertionError("every try returns or raises")
+
+    def _made(self, name: str, top: float) -> Traced:
+        scene = self._scene
+        if self._model != "full":
+            return self._points(name, top)
+        result = self._solve(history(scene, name, top), name if name != list(_wanted(scene))[-1] else "")
+        if result.interrupted:
+            raise SceneError(f"the trace was interrupted: {result.failure}")
+        try:
+            return Traced(trace(points(result, name), scene.geometry.ridge_wavelength), result)
+        except TraceError as error:
+            why = f": {result.failure}" if result.failure else ""
+            raise SceneError(f"the force on the finger is {self._force:.4g} N; {error}{why}") from None
+
+    def _points(self, name: str, top: float) -> Traced:
+        """Return a trace of a model that solves one scene at a time."""
+        voltage = 0.0 if name == "uncharged" else self._scene.voltage
+        found, states = None, []
+        for f_ext in np.geomspace(top * LIGHT, top, FORCES):
+            scene = self._scene.model_copy(update={"f_ext": float(f_ext), "voltage": voltage})
+            found = self._solve(scene, name)
+            state = found.named.get("charged" if name == "uncharged" else name)
+            if state is None:
+                raise SceneError(f"the model {self._model!r} has no {name.replace('_', ' ')} at {f_ext:.4g} N/m")
+            if np.isnan(state.bone_height):
+                kind = "full_slip" if name == "full_slip" else "charged"
+                state = replace(state, bone_height=-cylinders.indentation(float(f_ext), kind))
+            states.append(state)
+        assert found is not None
+        return Traced(trace(states, self._scene.geometry.ridge_wavelength), found)
+
+
+def history(scene: Scene, name: str, top: float) -> Scene:
+    """Return the scene of a trace of the full model.
+
+    Args:
+        scene: press, charge and slide.
+        name: ``uncharged``, ``charged`` or ``full_slip``.
+        top: largest force (N/m).
+    """
+    light, far = top * LIGHT, scene.slide_length
+    loads: list[dict[str, float | str | bool]] = [{"name": "press", "f_ext": top if name == "uncharged" else light}]
+    if name != "uncharged" and scene.voltage:
+        loads += [{"name": "charge", "voltage": scene.voltage}]
+    if name == "charged":
+        loads += [{"name": "raise", "f_ext": top}]
+    if name == "full_slip":
+        loads += [
+            {"name": "slide", "bone_x": far / 4, "until_full_slip": True},
+            {"name": "raise", "f_ext": top, "bone_x": far},
+            {"name": "hold", "bone_x": 2 * far, "until_full_slip": True},
+        ]
+    return scene.replace(history=loads)
+
+
+def points(result: Result, name: str) -> list[ContactState]:
+    """Return the states of a run of :func:`history` that are points of its trace."""
+    if name == "full_slip":
+        return [state for state in result.steps if state.all_slip and state.f_t > 0]
+    if name == "uncharged":
+        return [state for state in result.steps if state.load == "press"]
+    voltage = result.scene.loads()[1].voltage
+    return [state for state in result.steps if state.load in ("charge", "raise") and state.voltage == voltage]
+
+
+def folder_of(out: Path | None, name: str) -> Path | None:
+    """Return the folder of a trace's files."""
+    return None if out is None else out / name if name else out

@@ -1,0 +1,247 @@
+"""A whole finger as a sum of slices: closed forms, conservation, convergence, tables and what is refused."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from fingerpad.scene import Scene, SceneError, override
+from fingerpad.scene.slices import Slices
+from fingerpad.slices.finger import MODEL_ERROR, WholeFinger, errors
+from fingerpad.slices.profile import cylinder, profile
+from fingerpad.slices.total import BeyondTrace, at_force, at_indentation
+from fingerpad.slices.trace import Trace, TraceError, gross_width, trace
+from fingerpad.slices.traces import newtons
+from variational.state import ContactState, Errors, RidgeStates
+
+R_X, R_Z = 14e-3, 28e-3  # m
+FOUNDATION = 1e9  # Pa/m
+FRICTION = 0.25
+MODELS = Path(__file__).parents[1] / "docs" / "models.json"
+EXACT = 1e-6  # what a closed form must be met by
+
+
+def foundation(points: int = 12, deepest: float = 1.5e-3) -> Trace:
+    """Return the trace of a parabola on an elastic foundation, whose pressure is k times the indentation."""
+    depth = np.geomspace(2e-5, deepest, points)
+    width = 2 * np.sqrt(2 * R_X * depth)
+    force = 2 / 3 * FOUNDATION * width * depth
+    columns = {"f_ext": force, "f_t": FRICTION * force, "f_electrostatic": 0 * force}
+    return Trace(depth, columns | {"contact_length": 0.2 * width, "gross_width": width})
+
+
+def kept(voltage: float, model: str = "full") -> Trace:
+    """Return the default finger's trace at full slip, from kept runs."""
+    scenes, states = json.loads(MODELS.read_text())["numbers"]["scenes"], []
+    for f_ext in (5.0, 10.0, 25.0, 50.0, 75.0, 100.0, 120.0, 150.0):
+        found = scenes[f"{f_ext:g} N/m, {voltage:g} V"][model]["summary"]
+        names = ("f_t", "bone_height", "f_electrostatic", "ridges_in_contact", "contact_length", "f_contact", "mu_app")
+        values = {name: found[f"slip_{name}"] for name in names}
+        states.append(ContactState(f_ext=f_ext, voltage=voltage, **values))
+    return trace(states, Scene().geometry.ridge_wavelength)
+
+
+def test_long_cylinder_is_the_cross_section_times_its_length():
+    length, depth = 20e-3, 0.7e-3
+    total, one = at_indentation(cylinder(length), foundation(), depth, 12), foundation().at(np.array([depth]))
+    assert total.totals["f_ext"] == pytest.approx(length * one["f_ext"][0], rel=EXACT)
+    assert total.totals["gross_area"] == pytest.approx(length * one["gross_width"][0], rel=EXACT)
+    assert total.totals["f_ext"] / total.centre == pytest.approx(length, rel=EXACT)
+
+
+@pytest.mark.parametrize("depth", [1e-5, 1e-4, 0.7e-3])
+def test_paraboloid_on_an_elastic_foundation(depth):
+    """Force π k √(R_x R_z) δ², area 2 π √(R_x R_z) δ; also above the first point of the trace, at 20 µm."""
+    total = at_indentation(profile(Slices(radius=R_Z)), foundation(), depth, 48)
+    root = np.sqrt(R_X * R_Z)
+    assert total.totals["f_ext"] == pytest.approx(np.pi * FOUNDATION * root * depth**2, rel=EXACT)
+    assert total.totals["gross_area"] == pytest.approx(2 * np.pi * root * depth, rel=EXACT)
+    assert at_force(profile(Slices()), foundation(), total.totals["f_ext"], 48).delta == pytest.approx(depth, rel=EXACT)
+
+
+def test_tilt_moves_a_parabola():
+    """s + θ z is the parabola again, its lowest point at −θ R and lower by θ² R / 2."""
+    tilt, force = 0.1, 0.5
+    even = at_force(profile(Slices()), foundation(), force, 48)
+    tilted = at_force(profile(Slices(tilt=tilt)), foundation(), force, 48)
+    assert tilted.totals["gross_area"] == pytest.approx(even.totals["gross_area"], rel=EXACT)
+    assert tilted.delta - even.delta == pytest.approx(-(tilt**2) * R_Z / 2, rel=1e-6)
+    assert_allclose(tilted.z, even.z - tilt * R_Z, atol=1e-9)
+
+
+def test_scale_of_the_slices():
+    """A cylinder of twice the width is the cross-section on twice the scale: f = 2 f(h / 2)."""
+    twice = profile(Slices(z=(0.0, 0.01), height=(0.0, 0.0), width=(2.0, 2.0)))
+    total, one = at_indentation(twice, foundation(), 1e-3, 8), foundation().at(np.array([0.5e-3]))
+    assert total.totals["f_ext"] == pytest.approx(0.01 * 2 * one["f_ext"][0], rel=EXACT)
+    assert total.totals["contact_area"] == pytest.approx(0.01 * 2 * one["contact_length"][0], rel=EXACT)
+
+
+def test_table_of_heights_is_the_parabola():
+    """A table of the parabola, interpolated, gives its force. Tolerance: cubics over 0.5 mm."""
+    z = np.linspace(-14e-3, 14e-3, 57)
+    table = Slices(z=tuple(z), height=tuple(z**2 / (2 * R_Z)))
+    forces = [at_indentation(profile(each), foundation(), 0.7e-3, 48).totals["f_ext"] for each in (table, Slices())]
+    assert forces[0] == pytest.approx(forces[1], rel=1e-3)
+
+
+def test_two_humps_touch_apart():
+    """Two stretches of contact of a table are two sums; each bears the half."""
+    z = (-10e-3, -6e-3, -5e-3, -4e-3, 0.0, 4e-3, 5e-3, 6e-3, 10e-3)
+    humps = profile(Slices(z=z, height=(1e-3, 1e-4, 0.0, 1e-4, 1e-3, 1e-4, 0.0, 1e-4, 1e-3)))
+    total = at_indentation(humps, foundation(), 0.3e-3, 16)
+    left = total.thickness[total.z < 0] @ total.columns["f_ext"][total.z < 0]
+    assert len(humps.contact(0.3e-3)) == 2 and len(total.z) == 32
+    assert left == pytest.approx(total.totals["f_ext"] / 2, rel=1e-9)
+
+
+@pytest.mark.parametrize("voltage", [0.0, 100.0, 200.0])
+def test_friction_of_the_sum_is_the_coefficient_times_its_contact_force(voltage):
+    """Nothing is lost between slices: F_T = µ_0 (F_ext + F_el), and F_ext is the force asked for; roundoff."""
+    total = at_force(profile(Slices()), kept(voltage), 0.5, 48)
+    sums = total.totals
+    assert sums["f_ext"] == pytest.approx(0.5, rel=1e-12)
+    assert sums["f_t"] == pytest.approx(FRICTION * (sums["f_ext"] + sums["f_electrostatic"]), rel=1e-7)
+    assert total.thickness.sum() == pytest.approx(np.ptp(profile(Slices()).contact(total.delta)), rel=1e-12)
+
+
+def test_slices_refined():
+    """The error falls as the number of slices to the power of -2 at least: the trace's cubics have kinks in slope."""
+    sums = [at_indentation(profile(Slices()), kept(200.0), 0.68e-3, n).totals["f_t"] for n in (8, 32, 128, 2048)]
+    errors = np.abs(np.array(sums[:3]) / sums[3] - 1)
+    assert np.all(errors[1:] < errors[:-1] / 16) and errors[1] < 1e-4
+
+
+def test_force_grows_with_the_indentation():
+    of, depths = kept(200.0), np.linspace(1e-6, 0.97e-3, 200)
+    forces = [at_indentation(profile(Slices(length=50e-3)), of, depth, 16).totals["f_ext"] for depth in depths]
+    assert np.all(np.diff(forces) > 0)
+
+
+def test_points_of_a_trace_are_its_states():
+    of = kept(200.0)
+    for name, values in of.at(of.depth).items():
+        assert_allclose(values, of.columns[name], rtol=1e-12)
+
+
+def test_states_that_go_back_are_left_out():
+    """Behind a jump the bone may come up again: the trace stays monotonic."""
+    states = [
+        ContactState(
+            f_ext=force, voltage=0.0, f_t=0.0, mu_app=0.0, f_contact=force, f_electrostatic=0.0, ridges_in_contact=1,
+            contact_length=1e-4, bone_height=-depth,
+        )
+        for force, depth in ((3.0, 3e-4), (1.0, 1e-4), (2.0, 2e-4), (4.0, 2.9e-4), (5.0, 4e-4), (5.0, 5e-4))
+    ]  # fmt: skip
+    assert trace(states, 5e-4).columns["f_ext"].tolist() == [1.0, 2.0, 3.0, 5.0]
+
+
+def test_gross_width_is_between_the_outer_edges():
+    """Of ridges -1 to 2, of which one in the middle does not touch: three wavelengths and a mean contact."""
+    state = kept_state(ridges_in_contact=3, contact_length=3e-4)
+    assert gross_width(state, 5e-4) == pytest.approx(2 * 5e-4 + 1e-4)
+    number, length = np.array([-2, -1, 0, 1, 2]), np.array([0, 1e-4, 0, 1e-4, 1e-4])
+    several = kept_state(ridges_in_contact=3, contact_length=3e-4, ridges=RidgeStates(number, length, *[length] * 5))
+    assert gross_width(several, 5e-4) == pytest.approx(3 * 5e-4 + 1e-4)
+
+
+def kept_state(**values) -> ContactState:
+    given = {"f_ext": 1.0, "voltage": 0.0, "f_t": 0.0, "mu_app": 0.0, "f_contact": 1.0, "f_electrostatic": 0.0}
+    return ContactState(**given | values)
+
+
+# -- results -------------------------------------------------------------------------------------------
+def whole() -> WholeFinger:
+    total = at_force(profile(Slices()), kept(200.0), 0.5, 8)
+    return WholeFinger({"full_slip": total}, "kept runs", {"full_slip": {"f_t": 0.01, "mu_app": 0.02}})
+
+
+def test_errors_are_carried_over_in_proportion():
+    total = whole().states["full_slip"]
+    state = kept_state(f_t=40.0, error=Errors(f_t=0.4), ridges_in_contact=1, contact_length=1e-3)
+    assert errors(total, state) == {"f_t": pytest.approx(0.01 * total.totals["f_t"])}
+    assert errors(total, None) == {}
+
+
+def test_result_from_its_file():
+    """What summary.json holds gives the same finger again."""
+    finger = whole()
+    again = WholeFinger.from_dict(json.loads(json.dumps(finger.to_dict())))
+    assert again.to_dict() == finger.to_dict() and str(again) == str(finger)
+
+
+def test_text_has_both_errors():
+    text = str(whole())
+    assert "±: estimated discretisation error" in text and MODEL_ERROR in text
+    assert "0.300 ± 0.010" in text or "0.301 ± 0.010" in text
+
+
+# -- refusals ------------------------------------------------------------------------------------------
+def test_force_beyond_the_trace():
+    """The message has how far the trace goes, in N/m and in N."""
+    with pytest.raises(BeyondTrace, match=r"the force is 3 N, and .* to 150 N/m goes up to 1\.\d+ N of the whole"):
+        at_force(profile(Slices(length=0.1)), kept(200.0), 3.0, 16)
+    with pytest.raises(BeyondTrace, match="indented by 0.00196 m, and the trace .* ends at 0.000992 m under 150 N/m"):
+        at_indentation(profile(Slices()), kept(200.0), 2e-3, 16)
+    with pytest.raises(TraceError, match="beyond the trace"):
+        kept(200.0).at(np.array([2e-3]))
+
+
+def test_tilt_without_contact():
+    with pytest.raises(SceneError, match="slices.tilt is 0.5 rad, with which the finger is lowest at its end"):
+        at_force(profile(Slices(tilt=0.5, radius=40e-3)), foundation(), 0.1, 8)
+
+
+def test_more_contact_than_the_finger_has():
+    with pytest.raises(SceneError, match=r"the finger ends at z = -0.005 m, and at an indentation .* goes beyond"):
+        at_force(profile(Slices(length=10e-3)), foundation(), 20.0, 8)
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ({"height": [0, 1e-3]}, "slices.height is given without slices.z"),
+        ({"z": [0, 1e-3]}, "slices.z is given without slices.height or slices.width"),
+        ({"z": [0], "height": [0]}, "it must have two places at least"),
+        ({"z": [0, 0], "height": [0, 1e-3]}, "it must grow from each place to the next"),
+        ({"z": [0, 1e-3], "height": [0, 1e-3, 2e-3]}, "slices.height has 3 values and slices.z has 2"),
+        ({"z": [0, 1e-3], "height": [0, 1e-3], "radius": 0.02}, "slices.radius is 0.02 and slices.height is given"),
+        ({"tilt": 1.0}, "slices.tilt is 1; it must be 0 or from 1e-06 to 0.5"),
+        ({"radius": 28.0}, "lengths are in m; did you mean 0.028"),
+        ({"count": 2}, "slices.count is 2; it must be at least 4"),
+    ],
+)
+def test_tables_are_refused(table, words):
+    with pytest.raises(SceneError) as error:
+        Scene(slices=table)
+    assert words in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("force", "words"),
+    [
+        ("half a newton", "force is 'half a newton'; it must be a number in N"),
+        ("0.5", "it has no unit"),
+        ("75 N/m", "its unit is not a unit of force"),
+        (0.0, "force is 0 N; it must be from 1e-05 to 200 N"),
+        (float("nan"), "force is nan N"),
+        (500.0, "did you mean 0.5?"),
+        ([1.0], "force is list"),
+    ],
+)
+def test_forces_are_refused(force, words):
+    with pytest.raises(SceneError) as error:
+        newtons(force)
+    assert words in str(error.value)
+
+
+def test_force_as_text():
+    assert newtons("500 mN") == newtons(0.5) == 0.5
+
+
+def test_default_table_changes_no_parameters():
+    """Runs kept by their parameters are found again; another table is one of them."""
+    assert "slices" not in Scene().parameters()
+    assert Scene(slices=dict([override("radius=0.02")])).parameters()["slices"]["radius"] == 0.02

@@ -1,0 +1,98 @@
+"""Newtons from runs: at the end of a run for nothing, from traces of the full model, and full slip by two paths."""
+
+import numpy as np
+import pytest
+
+import fingerpad as fp
+from fingerpad.report import run_page
+from fingerpad.runs import solve
+from fingerpad.scene import SceneError
+from fingerpad.slices.traces import history, points
+from tests.runs import no_pictures
+from tests.small_finger import small
+
+SMALL = {"output": {"receptors": False, "errors": False}, "slices": {"radius": 6e-3, "length": 8e-3}}
+FORCE = 2e-3  # N
+
+
+@pytest.fixture(scope="module")
+def traced(tmp_path_factory) -> fp.Result:
+    """The small finger under a force in newtons, by traces of the full model, from its files."""
+    folder = tmp_path_factory.mktemp("newtons")
+    with no_pictures():
+        fp.run(small(**SMALL), force=f"{1e3 * FORCE} mN", out=folder)
+    return fp.Result.load(folder)
+
+
+def test_force_is_the_one_asked_for(traced):
+    """In each state, whose friction at full slip is Coulomb's of the sum. Tolerance: Newton's."""
+    sums = {name: total.totals for name, total in traced.finger.states.items()}
+    assert list(sums) == ["uncharged", "charged", "full_slip"]
+    assert all(each["f_ext"] == pytest.approx(FORCE, rel=1e-9) for each in sums.values())
+    slip = sums["full_slip"]
+    assert slip["f_t"] == pytest.approx(0.25 * (slip["f_ext"] + slip["f_electrostatic"]), rel=1e-6)
+
+
+def test_files_have_the_finger(traced):
+    """Sums and slices in result.nc, the footprint and a section of the report."""
+    xarray = pytest.importorskip("xarray")
+    with xarray.open_dataset(traced.folder / "result.nc", engine="scipy") as data:
+        slip = data.sel(state="full_slip")
+        total = float((slip.slice_thickness * slip.slice_f_ext).sum())
+        assert total == pytest.approx(float(slip.finger_f_ext), rel=1e-12)
+        assert data.finger_gross_area.attrs["units"] == "m^2"
+    assert (traced.folder / "footprint.png").exists() and (traced.folder / "charged" / "summary.json").exists()
+    assert "The whole finger, in newtons" in run_page.page(traced)
+
+
+def test_full_slip_by_two_paths(traced):
+    """Pressed on while it slides, or pressed, charged and slid: one state, where no ridge jumps between.
+
+    Tolerance: the small finger's states are 1e-8 apart; the coupling's tolerance of 1e-6 allows some 1e-6.
+    """
+    end = traced.full_slip
+    with no_pictures():
+        direct = fp.run(small(**SMALL).replace(f_ext=end.f_ext, voltage=end.voltage)).full_slip
+    assert direct.ridges_in_contact == end.ridges_in_contact
+    for name in ("f_t", "contact_length", "f_electrostatic", "bone_height"):
+        assert getattr(direct, name) == pytest.approx(getattr(end, name), rel=1e-5)
+
+
+def test_points_of_the_traces_are_of_one_kind():
+    """Each state of a trace is uncharged, charged at rest, or at full slip at the scene's voltage."""
+    scene = small(**SMALL)
+    for name in ("uncharged", "charged"):
+        found = points(solve.solved(history(scene, name, 1.0), "full"), name)
+        assert len(found) > 1 and {state.voltage for state in found} == {0.0 if name == "uncharged" else scene.voltage}
+        assert all(state.bone_x == 0 for state in found)
+
+
+def test_run_has_newtons_for_nothing():
+    """The run's own states at the centre, and less beside it; F_ext over f_ext is no constant of 20 mm."""
+    result = fp.run(small(**SMALL))
+    finger = result.finger
+    assert set(finger.states) == {"uncharged", "charged", "full_slip"}
+    slip = finger.states["full_slip"]
+    assert slip.centre <= result.full_slip.f_ext * (1 + 1e-9)
+    assert slip.mu_app > result.full_slip.mu_app
+    assert "Whole finger" in str(result)
+
+
+def test_newtons_of_the_closed_form():
+    """At once, with indentations of the default finger; within 2 % of µ_app by kept runs (docs/newtons.md)."""
+    finger = fp.run(force="0.5 N", model="cylinders").finger
+    assert finger.states["full_slip"].mu_app == pytest.approx(0.6014, rel=0.02)
+    assert np.ptp([total.totals["f_ext"] for total in finger.states.values()]) < 1e-9
+
+
+def test_scene_with_a_history_has_no_newtons():
+    scene = fp.Scene(history=[{"name": "press", "f_ext": 1.0}])
+    with pytest.raises(SceneError, match="history is given; a force in N is that of press, charge and slide"):
+        fp.run(scene, force=0.5)
+
+
+def test_profile_that_does_not_fit_costs_a_note_alone():
+    """A run whose contact is longer than the finger keeps its results."""
+    scene = small(**SMALL).replace(slices={"radius": 1.0, "length": 1e-3})
+    result = fp.run(scene)
+    assert result.finger is None and "no newtons of the whole finger: the finger ends at z" in result.notes[-1]
