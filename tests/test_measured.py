@@ -38,6 +38,8 @@ def test_fits_of_their_own_curves():
     depth = np.linspace(0.1e-3, 1e-3, 8)
     b, misfit = rows.exponential(depth, 3 * np.expm1(4e3 * depth))
     assert b == pytest.approx(4e3, rel=1e-4) and misfit < 1e-4
+    b, misfit = rows.absolute(depth, 3 * np.expm1(4e3 * depth))
+    assert b == pytest.approx(4e3, rel=1e-4) and misfit < 1e-4
     x = np.linspace(-3e-3, 3e-3, 13)
     assert rows.paraboloid(x, 2e4 * (1 - (x / 4e-3) ** 2)) == pytest.approx((2e4, 4e-3, 1.0), rel=1e-9)
 

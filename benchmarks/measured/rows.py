@@ -21,7 +21,7 @@ from fingerpad.scene import Scene
 Array = NDArray[np.float64]
 Numbers = dict[str, float]
 _FITS = (0.95, 0.8)  # R² that is a hit, and one that is met partly
-_MISFITS = (0.1, 0.2)  # rms of the logarithm of a fitted curve: the same
+_MISFIT = 0.1  # rms of a fitted curve: of its logarithm, and of the largest value
 _MORE, _SAME = 0.25, 0.1  # relative changes that count as strikingly higher, and as similar
 
 
@@ -125,18 +125,33 @@ def exponential(depth: Array, force: Array) -> tuple[float, float]:
     def misfit(b: float) -> float:
         return float(np.std(np.log(force) - np.log(np.expm1(b * depth))))
 
+    return _least(misfit, depth)
+
+
+def absolute(depth: Array, force: Array) -> tuple[float, float]:
+    """Fit the same to the forces themselves; return b (1/m) and the rms misfit over the largest force."""
+
+    def misfit(b: float) -> float:
+        curve = np.expm1(b * depth)
+        rest = force - curve * (curve @ force) / (curve @ curve)
+        return float(np.sqrt(np.mean(rest**2)) / force.max())
+
+    return _least(misfit, depth)
+
+
+def _least(misfit: Callable[[float], float], depth: Array) -> tuple[float, float]:
     found = minimize_scalar(misfit, bounds=(1e-3 / depth.max(), 50 / depth.max()), method="bounded")
     return float(found.x), float(found.fun)
 
 
 def _force_depth(g: Grid) -> tuple[Numbers, str]:
     depth, force = -g.coarse["normal_bone_height"][:, 0], np.array(FORCES)
-    b, misfit = exponential(depth, force)
-    error = abs(exponential(-g.smooth["normal_bone_height"][:, 0], force)[1] - misfit)
+    misfit, error = exponential(depth, force)[1], absolute(depth, force)[1]
+    other = exponential(-g.smooth["normal_bone_height"][:, 0], force)[1]
     line = np.polyfit(np.log(depth), np.log(force), 1)
     power = float(np.std(np.log(force) - np.polyval(line, np.log(depth))))
-    numbers = {"exponential": misfit, "error": error, "power": power, "slope": b / 1e3}
-    return numbers, by_fit(-misfit, *(-each for each in _MISFITS))
+    numbers = {"exponential": misfit, "error": abs(other - misfit), "absolute": error, "power": power}
+    return numbers, by_share(((misfit <= _MISFIT) + (error <= _MISFIT)) / 2)
 
 
 def _ridges(g: Grid) -> tuple[Numbers, str]:
