@@ -34,6 +34,7 @@ PAGES = {
     "hero": "benchmarks.hero",
     "measured": "benchmarks.measured.page",
     "models": "benchmarks.models",
+    "newtons": "benchmarks.newtons",
     "paper": "benchmarks.paper.page",
     "peers": "benchmarks.peers.page",
     "performance": "benchmarks.performance",

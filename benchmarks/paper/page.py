@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks import newtons
 from benchmarks.harness import kept, page, picture, prose, table
 from benchmarks.paper import friction, scenes
 from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
@@ -41,8 +42,21 @@ def _site(name: str, ratio: float) -> tuple[str, float, float] | None:
     return (kind, float(ridge), ratio) if kind in scenes.NAMED else None
 
 
+def in_newtons(docs: Path) -> str:
+    """Return the verdict on the paper's conversion by 20 mm, and Fig. 6 in newtons; empty without docs/newtons.json."""
+    if not (docs / "newtons.json").exists():
+        return ""
+    numbers = kept("newtons", docs).numbers
+    widths, lower = newtons.widths(numbers), newtons.lower(numbers)
+    middle = next(each for each in newtons.at(numbers, newtons.RADII[1], newtons.HIGH) if each["f_ext"] > 0.499)
+    values = {"narrow": 1e3 * widths[0], "wide": 1e3 * widths[1], "low": 100 * lower[0], "high": 100 * lower[1]}
+    values |= {"mu_app": middle["mu_app"], "by_20_mm": middle["by_20_mm"], "factor": newtons.PAPER / widths[1]}
+    values |= {"most": newtons.PAPER / widths[0]}
+    return f"## Fig. 6 in newtons\n\n{prose('paper')['newtons'].format(**values)}\n\n{newtons.picture(numbers, docs)}"
+
+
 def draw(docs: Path) -> Path:
-    """Write docs/paper.md and its picture from docs/paper.json."""
+    """Write docs/paper.md and its picture from docs/paper.json, and Fig. 6 in newtons from docs/newtons.json."""
     found = kept("paper", docs)
     numbers = found.numbers
     statements = [Statement(**s) for s in numbers["statements"]]
@@ -66,7 +80,9 @@ def draw(docs: Path) -> Path:
         f"## Statements\n\n{verdicts(statements)}",
         f"## Sites of Fig. 9B\n\n{text['sites']}\n\n{named}" if (named := sites(statements)) else "",
         picture(path, (10, 4), lambda figure: friction.paint(figure, grid), caption) if grid else "",
+        in_newtons(docs),
         f"## Published measurements\n\n{table(['quantity', 'from', 'to', 'unit (SI)', 'source'], published)}",
         gaps,
     ]
-    return page(docs / "paper.md", "The paper, reproduced", finding, how, body, "make paper", found.made, ["paper"])
+    names = ["paper", *(["newtons"] if body[4] else [])]
+    return page(docs / "paper.md", "The paper, reproduced", finding, how, body, "make paper", found.made, names)

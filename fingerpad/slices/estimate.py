@@ -21,10 +21,7 @@ from fingerpad.slices.total import at_force, at_indentation, deepest
 from fingerpad.slices.trace import Trace, TraceError, columns, trace
 from variational.state import ContactState
 
-SOURCE = (
-    "the run's own press and its state at the centre; the other slices by charged cylinders, scaled to it; "
-    "a force in newtons as --force gives traces of the model itself"
-)
+SOURCE = "estimated from the run's press and its centre by charged cylinders; a force in newtons computes traces"
 _MOST = 12  # points of the trace
 
 

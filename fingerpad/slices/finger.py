@@ -15,10 +15,10 @@ from fingerpad.slices.trace import NAMES
 from variational.state import ContactState
 
 _SHOWN = {  # words, unit, factor from SI, digits without an error
-    "f_ext": ("external force F_ext", "N", 1.0, 3),
+    "f_ext": ("external force F_ext", "N", 1.0, 4),
     "mu_app": ("apparent friction µ_app", "", 1.0, 4),
     "f_t": ("friction force F_T", "N", 1.0, 4),
-    "f_electrostatic": ("attraction F_el", "N", 1.0, 3),
+    "f_electrostatic": ("attraction F_el", "N", 1.0, 4),
     "gross_area": ("gross area", "mm²", 1e6, 1),
     "contact_area": ("ridge contact area", "mm²", 1e6, 2),
     "indentation": ("indentation δ", "mm", 1e3, 3),
@@ -40,8 +40,8 @@ def _percent(ends: tuple[float, float]) -> str:
 
 
 MODEL_ERROR = (
-    f"The model of slices itself has an error of {_percent(FORCE_ERROR)} in force at equal indentation, and of "
-    f"{_percent(AREA_ERROR_AT_FORCE)} in gross area at equal force (smooth finger in three dimensions, uncharged)."
+    f"Slices have an error of their own: {_percent(FORCE_ERROR)} in force at equal indentation, "
+    f"{_percent(AREA_ERROR_AT_FORCE)} in gross area at equal force."
 )
 
 

@@ -1,0 +1,305 @@
+"""Newtons of a whole finger: sums of slices over force, voltage and shape, and what they rest on.
+
+environment/run python3 -m benchmarks.newtons [--draw]     one run of the full model, some minutes, then seconds
+
+The traces are those of docs/models.json: the full, the smooth and the cylinders' finger at eight forces and five
+voltages, with a contact size of 10 um. The run raises the force while the finger slides, for comparison with them.
+Writes docs/newtons.json, docs/newtons.md and its picture; docs/paper.md has the friction from here.
+"""
+
+import argparse
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from benchmarks import harness
+from benchmarks.models import SIZE, name
+from benchmarks.runs import FORCES, VOLTAGES, Run, trace
+from fingerpad.io import style
+from fingerpad.io.states import PREFIXES
+from fingerpad.reduced import cylinders
+from fingerpad.scene import Scene
+from fingerpad.scene.slices import Slices
+from fingerpad.slices import estimate, traces
+from fingerpad.slices.profile import Profile, profile
+from fingerpad.slices.total import Total, at_force, at_indentation
+from fingerpad.slices.trace import Trace
+from fingerpad.slices.trace import trace as trace_of
+from variational.state import RESULTS, ContactState
+
+_LIMIT = 3600.0  # s of processor time of the run
+RADII = (15e-3, 28e-3, 40e-3)  # m, R_z
+NEWTONS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75)  # N
+SUMS = ("f_ext", "f_t", "gross_area", "contact_area")
+COMPARED = 0.5  # N
+PAPER = 20e-3  # m of finger, by which the paper multiplies
+CENTRE = 75.0  # N/m, of the runs whose estimate is judged
+COUNTS, FINE = (6, 12, 24, 48, 96), 1536  # slices
+HIGH = 200.0  # V
+Found = Mapping[str, Any]
+
+
+# -- traces --------------------------------------------------------------------------------------------------
+def states(scenes: Found, model: str, voltage: float, state: str) -> list[ContactState]:
+    """Return the kept states of a model over force, at a voltage (V)."""
+    found = []
+    for f_ext in FORCES:
+        summary, prefix = scenes[name(f_ext, voltage)][model]["summary"], PREFIXES[state]
+        values = {key: summary[f"{prefix}_{key}"] for key in RESULTS if f"{prefix}_{key}" in summary}
+        if model == "cylinders":
+            values["bone_height"] = -cylinders.indentation(f_ext, state)
+        found.append(ContactState(f_ext=f_ext, voltage=voltage, **values))
+    return found
+
+
+def kept(scenes: Found, model: str, voltage: float, state: str = "full_slip") -> Trace:
+    """Return a kept trace; arguments as of :func:`states`."""
+    return trace_of(states(scenes, model, voltage, state), Scene().geometry.ridge_wavelength)
+
+
+def finger(radius: float = RADII[1]) -> Profile:
+    """Return the finger with a radius R_z (m)."""
+    return profile(Slices(radius=radius))
+
+
+# -- numbers -------------------------------------------------------------------------------------------------
+def row(total: Total, voltage: float, radius: float) -> dict[str, float]:
+    """Return the numbers of a sum."""
+    more = {"radius": radius, "voltage": voltage, "mu_app": total.mu_app, "centre": total.centre}
+    return more | total.totals | {"indentation": total.delta}
+
+
+def friction(scenes: Found) -> list[dict[str, float]]:
+    """Return the sums at full slip by radius, voltage and force, with the paper's conversion beside them."""
+    found = []
+    for voltage in VOLTAGES:
+        of = kept(scenes, "full", voltage)
+        for radius in RADII:
+            for force in NEWTONS:
+                total = at_force(finger(radius), of, force, Slices().count)
+                found.append(row(total, voltage, radius) | {"by_20_mm": _by_20_mm(of, force)})
+    return found
+
+
+def _by_20_mm(of: Trace, force: float) -> float:
+    """Return µ_app of the cross-section under a force per 20 mm."""
+    line = force / PAPER
+    depth = np.exp(np.interp(np.log(line), np.log(of.columns["f_ext"]), np.log(of.depth)))
+    if not of.columns["f_ext"][0] <= line <= of.columns["f_ext"][-1]:
+        return float("nan")
+    values = of.at(np.array([depth]))
+    return float(values["f_t"][0] / values["f_ext"][0])
+
+
+def by_model(scenes: Found) -> list[dict[str, Any]]:
+    """Return the sums of each model at :data:`COMPARED`, and the estimate of a run at :data:`CENTRE`."""
+    found = []
+    for voltage in VOLTAGES:
+        for model in ("full", "smooth", "cylinders"):
+            total = at_force(finger(), kept(scenes, model, voltage), COMPARED, Slices().count)
+            found.append({"model": model} | row(total, voltage, RADII[1]))
+    return found
+
+
+def estimates(scenes: Found) -> list[dict[str, float]]:
+    """Return what a run at :data:`CENTRE` estimates, beside the traces of the full model under the same force."""
+    found, k = [], FORCES.index(CENTRE)
+    for voltage in VOLTAGES:
+        scene = Scene(f_ext=CENTRE, voltage=voltage)
+        press = states(scenes, "full", 0.0, "charged")[: k + 1]
+        named = {state: states(scenes, "full", voltage, state)[k] for state in ("charged", "full_slip")}
+        made = estimate.estimate(scene, press, {"uncharged": press[-1]} | named).states["full_slip"]
+        full = at_force(finger(), kept(scenes, "full", voltage), made.totals["f_ext"], Slices().count)
+        both = {"estimate": made.totals, "full": full.totals}
+        found.append(
+            {"voltage": voltage} | {f"{key}_{which}": sums[key] for which, sums in both.items() for key in SUMS}
+        )
+    return found
+
+
+def refined(scenes: Found) -> list[dict[str, float]]:
+    """Return the relative change of sums with fewer slices, at 0.7 mm and :data:`HIGH`."""
+    of = kept(scenes, "full", HIGH)
+    fine = at_indentation(finger(), of, 0.7e-3, FINE).totals
+    sums = {n: at_indentation(finger(), of, 0.7e-3, n).totals for n in COUNTS}
+    return [{"slices": n} | {key: value / fine[key] - 1 for key, value in each.items()} for n, each in sums.items()]
+
+
+def raising() -> Scene:
+    """Return the scene in which the force is raised while the finger slides."""
+    return traces.history(trace(CENTRE, HIGH, SIZE), "full_slip", CENTRE)
+
+
+def paths(scenes: Found, out: Path) -> list[dict[str, float]]:
+    """Return full slip with the force raised in sliding, beside a press to the force before sliding."""
+    steps = Run(raising(), out).steps
+    slips = np.flatnonzero((steps["all_slip"] > 0) & (steps["f_t"] > 0))
+    slips = slips[np.argsort(steps["f_ext"][slips], kind="stable")]
+    found = []
+    for state in states(scenes, "full", HIGH, "full_slip")[: FORCES.index(CENTRE) + 1]:
+        near = slips[np.abs(steps["f_ext"][slips] - state.f_ext).argmin()]
+        raised = {
+            key: float(np.interp(state.f_ext, steps["f_ext"][slips], steps[key][slips]))
+            for key in ("f_t", "contact_length")
+        }
+        counts = {"ridges": state.ridges_in_contact, "ridges_raised": float(steps["ridges_in_contact"][near])}
+        pressed = {"f_t": state.f_t, "contact_length": state.contact_length}
+        found.append({"f_ext": state.f_ext} | pressed | {f"{key}_raised": raised[key] for key in raised} | counts)
+    return found
+
+
+def compute(args: argparse.Namespace) -> None:
+    """Run what is missing and keep the numbers."""
+    made = harness.run({"raised in sliding": raising()}, args, _LIMIT)
+    scenes = harness.kept("models", args.docs).numbers["scenes"]
+    numbers = {
+        "friction": friction(scenes), "models": by_model(scenes), "estimates": estimates(scenes),
+        "refined": refined(scenes), "paths": paths(scenes, args.out),
+    }  # fmt: skip
+    harness.keep("newtons", numbers, harness.made(made.values()), args.docs)
+
+
+# -- page ----------------------------------------------------------------------------------------------------
+def at(numbers: Found, radius: float, voltage: float) -> list[dict[str, float]]:
+    """Return the sums at full slip over force, of a radius (m) and a voltage (V)."""
+    return [each for each in numbers["friction"] if each["radius"] == radius and each["voltage"] == voltage]
+
+
+def lower(numbers: Found) -> tuple[float, float]:
+    """Return the least and largest share by which µ_app is below that of the 20 mm, at 200 V."""
+    rows = [each for each in at(numbers, RADII[1], HIGH) if each["by_20_mm"] is not None]
+    shares = [1 - each["mu_app"] / each["by_20_mm"] for each in rows]
+    return min(shares), max(shares)
+
+
+def widths(numbers: Found) -> tuple[float, float]:
+    """Return the least and largest ratio of the force to that of the centre (m), of all sums."""
+    found = [each["f_ext"] / each["centre"] for each in numbers["friction"]]
+    return min(found), max(found)
+
+
+def paint(figure: Figure, numbers: Found) -> None:
+    """Draw apparent friction over newtons, with the band of the radius and the paper's conversion, and areas."""
+    left, right = figure.subplots(1, 2)
+    for voltage in VOLTAGES:
+        colour = style.voltage(voltage)
+        low, middle, high = (at(numbers, radius, voltage) for radius in RADII)
+        force = [each["f_ext"] for each in middle]
+        for axis, key, scale in ((left, "mu_app", 1.0), (right, "contact_area", 1e6)):
+            ends = ([scale * each[key] for each in rows] for rows in (low, high))
+            axis.fill_between(force, *ends, color=colour, alpha=0.25, lw=0)
+            values = [scale * each[key] for each in middle]
+            axis.plot(force, values, color=colour, marker="o", ms=4, label=f"{voltage:g} V")
+        other = [(each["f_ext"], each["by_20_mm"]) for each in middle if each["by_20_mm"] is not None]
+        left.plot(*zip(*other, strict=True), color=colour, ls="--", lw=1)
+    left.plot([], [], color=style.GREY, ls="--", lw=1, label="centre × 20 mm")
+    left.set(xlabel="external force $F_{ext}$ (N)", ylabel="apparent friction coefficient µ_app (–)", ylim=(0, None))
+    right.set(xlabel="external force $F_{ext}$ (N)", ylabel="ridge contact area (mm²)", ylim=(0, None))
+    left.set_title("A  Friction at full slip")
+    right.set_title("B  Ridges in contact")
+    left.legend()
+
+
+def picture(numbers: Found, docs: Path) -> str:
+    """Draw the picture and return the Markdown that shows it."""
+    caption = " ".join(harness.prose("newtons")["caption"].split())
+    return harness.picture(docs / "newtons.png", (10, 4), lambda figure: paint(figure, numbers), caption)
+
+
+def _table_of_friction(numbers: Found) -> str:
+    rows = []
+    for middle in (each for u in (0.0, HIGH) for each in at(numbers, RADII[1], u)):
+        same = [each for each in numbers["friction"] if each["voltage"] == middle["voltage"]]
+        band = sorted(each["mu_app"] for each in same if abs(each["f_ext"] / middle["f_ext"] - 1) < 1e-6)
+        rows.append(
+            [
+                f"{middle['voltage']:g}", f"{middle['f_ext']:.2f}", f"{middle['centre']:.1f}",
+                f"{1e3 * middle['f_ext'] / middle['centre']:.1f}", f"{middle['mu_app']:.3f}",
+                f"{band[0]:.3f} to {band[-1]:.3f}",
+                "–" if middle["by_20_mm"] is None else f"{middle['by_20_mm']:.3f}",
+                f"{1e6 * middle['gross_area']:.0f}", f"{1e6 * middle['contact_area']:.1f}",
+            ]
+        )  # fmt: skip
+    heads = ("U (V)", "F_ext (N)", "f_ext at the centre (N/m)", "their ratio (mm)", "µ_app", "µ_app, R_z 15 to 40 mm")
+    return harness.table((*heads, "µ_app by 20 mm", "gross area (mm²)", "ridge contact area (mm²)"), rows)
+
+
+def _table_of_models(numbers: Found) -> str:
+    rows = []
+    for voltage in VOLTAGES:
+        mine = {each["model"]: each for each in numbers["models"] if each["voltage"] == voltage}
+        full = mine["full"]
+        cells = [
+            f"{100 * (mine[model][key] / full[key] - 1):+.1f}"
+            for key in ("mu_app", "contact_area", "gross_area")
+            for model in ("smooth", "cylinders")
+        ]
+        rows.append([f"{voltage:g}", f"{full['mu_app']:.4f}", *cells])
+    quantities = ("µ_app", "ridge area", "gross area")
+    kinds = [f"{what}, `{model}` (%)" for what in quantities for model in ("smooth", "cylinders")]
+    return harness.table(("U (V)", "µ_app, `full`", *kinds), rows)
+
+
+def _table_of_estimates(numbers: Found) -> str:
+    keys = ("f_t", "contact_area", "gross_area")
+    rows = [
+        [f"{e['voltage']:g}", f"{e['f_ext_full']:.3f}", f"{e['f_t_full']:.4f}",
+         *(f"{100 * (e[f'{key}_estimate'] / e[f'{key}_full'] - 1):+.1f}" for key in keys)]
+        for e in numbers["estimates"]
+    ]  # fmt: skip
+    errors = ("error of F_T (%)", "of ridge area (%)", "of gross area (%)")
+    return harness.table(("U (V)", "F_ext (N)", "F_T (N)", *errors), rows)
+
+
+def _table_of_paths(numbers: Found) -> str:
+    rows = [
+        [f"{p['f_ext']:g}", f"{p['f_t']:.3f}", f"{p['f_t_raised']:.3f}", f"{p['ridges']:g}", f"{p['ridges_raised']:g}",
+         f"{100 * (p['f_t_raised'] / p['f_t'] - 1):+.2f}",
+         f"{100 * (p['contact_length_raised'] / p['contact_length'] - 1):+.2f}"]
+        for p in numbers["paths"]
+    ]  # fmt: skip
+    heads = ("f_ext (N/m)", "f_T, pressed first (N/m)", "f_T, raised in sliding (N/m)", "ridges", "ridges")
+    return harness.table((*heads, "change of f_T (%)", "of L_R (%)"), rows)
+
+
+def _table_of_slices(numbers: Found) -> str:
+    keys = ("f_ext", "f_t", "contact_area", "gross_area")
+    rows = [[str(each["slices"]), *(f"{each[key]:+.1e}" for key in keys)] for each in numbers["refined"]]
+    return harness.table(("slices", "F_ext", "F_T", "ridge contact area", "gross area"), rows)
+
+
+def draw(docs: Path) -> Path:
+    """Draw the page from the kept numbers."""
+    found, text = harness.kept("newtons", docs), harness.prose("newtons")
+    numbers = found.numbers
+    middle = next(e for e in at(numbers, RADII[1], HIGH) if abs(e["f_ext"] / COMPARED - 1) < 1e-6)
+    worst = max(abs(e["f_t_estimate"] / e["f_t_full"] - 1) for e in numbers["estimates"])
+    lost = [p["f_t_raised"] / p["f_t"] - 1 for p in numbers["paths"]]
+    same = [abs(p["f_t_raised"] / p["f_t"] - 1) for p in numbers["paths"] if p["ridges"] == p["ridges_raised"]]
+    values = {
+        "mu_app": middle["mu_app"], "centre": middle["centre"], "by_20_mm": middle["by_20_mm"],
+        "narrow": 1e3 * widths(numbers)[0], "wide": 1e3 * widths(numbers)[1],
+        "low": 100 * lower(numbers)[0], "high": 100 * lower(numbers)[1],
+        "estimate": 100 * worst, "lost": -100 * min(lost), "same": 100 * max(same),
+    }  # fmt: skip
+    body = [
+        picture(numbers, docs),
+        f"## Full slip over force\n\n{_table_of_friction(numbers)}",
+        f"## Errors\n\n{text['errors']}",
+        f"## Which model feeds the sum\n\n{text['models']}\n\n{_table_of_models(numbers)}",
+        f"## What a run estimates\n\n{text['estimates'].format(**values)}\n\n{_table_of_estimates(numbers)}",
+        f"## Two paths to full slip\n\n{text['paths'].format(**values)}\n\n{_table_of_paths(numbers)}",
+        f"## Number of slices\n\n{text['slices']}\n\n{_table_of_slices(numbers)}",
+    ]
+    finding, command = text["finding"].format(**values), "python3 -m benchmarks.newtons"
+    names = ["newtons", "models"]
+    path = docs / "newtons.md"
+    return harness.page(path, "Newtons and square millimetres", finding, text["how"], body, command, found.made, names)
+
+
+if __name__ == "__main__":
+    sys.exit(harness.main(__doc__, compute, draw))
