@@ -38,8 +38,20 @@ def test_fits_of_their_own_curves():
     depth = np.linspace(0.1e-3, 1e-3, 8)
     b, misfit = rows.exponential(depth, 3 * np.expm1(4e3 * depth))
     assert b == pytest.approx(4e3, rel=1e-4) and misfit < 1e-4
+    b, misfit = rows.absolute(depth, 3 * np.expm1(4e3 * depth))
+    assert b == pytest.approx(4e3, rel=1e-4) and misfit < 1e-4
     x = np.linspace(-3e-3, 3e-3, 13)
     assert rows.paraboloid(x, 2e4 * (1 - (x / 4e-3) ** 2)) == pytest.approx((2e4, 4e-3, 1.0), rel=1e-9)
+
+
+def test_whole_finger_of_a_hertzian_section():
+    """A section with f ∝ d^1.5 and width ∝ d^0.5 under a parabola: F ∝ d^2 and area ∝ d, so area ∝ F^0.5."""
+    depth = 1e-3 * (np.array(FORCES) / FORCES[-1]) ** (2 / 3)
+    ridges = np.ones(len(FORCES))
+    a = {"normal_bone_height": -depth, "normal_ridges_in_contact": ridges, "normal_contact_length": np.sqrt(depth) / 10}
+    found, force, area = rows.whole({name: values[:, None] for name, values in a.items()})
+    for (exponent, misfit), known in ((rows.power(found, force), 2.0), (rows.power(force, area), 0.5)):
+        assert exponent == pytest.approx(known, abs=1e-6) and misfit < 1e-6
 
 
 def test_every_row_has_a_verdict_and_a_source(judged):

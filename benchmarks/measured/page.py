@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from benchmarks.harness import kept, page, picture, prose, table
 from benchmarks.measured import rows, scenes
 from benchmarks.measured.verdict import BUILT, HIT, MISS, PART
-from benchmarks.runs import FORCES, VOLTAGES
+from benchmarks.runs import VOLTAGES
 from fingerpad.io import style
 
 _HERE = Path(__file__).parent
@@ -89,7 +89,7 @@ def draw(docs: Path) -> Path:
 def _paint(figure: Figure, numbers: Mapping[str, Any]) -> None:
     voltage, force, pressure = figure.subplots(1, 3)
     _over_voltage(voltage, numbers["curves"])
-    _over_depth(force, np.array(numbers["curves"]["depth"]))
+    _over_depth(force, *(np.array(numbers["curves"][name]) for name in ("depth", "force")))
     _over_width(pressure, numbers["runs"]["dry 20"])
 
 
@@ -107,8 +107,7 @@ def _over_voltage(ax: Axes, curves: Mapping[str, list[float]]) -> None:
     ax.legend(fontsize=8)
 
 
-def _over_depth(ax: Axes, depth: rows.Array) -> None:
-    force = np.array(FORCES)
+def _over_depth(ax: Axes, depth: rows.Array, force: rows.Array) -> None:
     b, _ = rows.exponential(depth, force)
     power, factor = np.polyfit(np.log(depth), np.log(force), 1)
     fine = np.linspace(depth.min(), depth.max(), 200)
@@ -117,7 +116,7 @@ def _over_depth(ax: Axes, depth: rows.Array) -> None:
     ax.plot(1e3 * fine, a * np.expm1(b * fine), "--", color="black", label="exponential, measured")
     curve = np.exp(factor) * fine**power
     ax.plot(1e3 * fine, curve, ":", color=style.VERMILION, label=f"power law, {power:.2f}")
-    ax.set(xlabel="depth (mm)", ylabel="force per length (N/m)", title="B  pressed")
+    ax.set(xlabel="depth (mm)", ylabel="force of the whole finger (N)", title="B  pressed")
     ax.legend(fontsize=8)
 
 

@@ -17,11 +17,14 @@ from benchmarks.measured import scenes
 from benchmarks.measured.verdict import EXPONENT, MISS, RATIO, by_factor, by_fit, by_share
 from benchmarks.runs import FORCES, VOLTAGES
 from fingerpad.scene import Scene
+from fingerpad.slices.profile import profile
+from fingerpad.slices.total import at_indentation
+from fingerpad.slices.trace import NAMES, Trace
 
 Array = NDArray[np.float64]
 Numbers = dict[str, float]
 _FITS = (0.95, 0.8)  # R² that is a hit, and one that is met partly
-_MISFITS = (0.1, 0.2)  # rms of the logarithm of a fitted curve: the same
+_MISFIT = 0.1  # rms of a fitted curve: of its logarithm, and of the largest value
 _MORE, _SAME = 0.25, 0.1  # relative changes that count as strikingly higher, and as similar
 
 
@@ -125,18 +128,60 @@ def exponential(depth: Array, force: Array) -> tuple[float, float]:
     def misfit(b: float) -> float:
         return float(np.std(np.log(force) - np.log(np.expm1(b * depth))))
 
+    return _least(misfit, depth)
+
+
+def absolute(depth: Array, force: Array) -> tuple[float, float]:
+    """Fit the same to the forces themselves; return b (1/m) and the rms misfit over the largest force."""
+
+    def misfit(b: float) -> float:
+        curve = np.expm1(b * depth)
+        rest = force - curve * (curve @ force) / (curve @ curve)
+        return float(np.sqrt(np.mean(rest**2)) / force.max())
+
+    return _least(misfit, depth)
+
+
+def _least(misfit: Callable[[float], float], depth: Array) -> tuple[float, float]:
     found = minimize_scalar(misfit, bounds=(1e-3 / depth.max(), 50 / depth.max()), method="bounded")
     return float(found.x), float(found.fun)
 
 
+def whole(a: Mapping[str, Array]) -> tuple[Array, Array, Array]:
+    """Return depth (m), force (N) and gross area (m²) of the uncharged finger, as a sum of slices; (forces,) each.
+
+    The finger has the default profile along its axis. Its radius scales force and area alike and leaves their shapes.
+    """
+    length, ridges = a["normal_contact_length"][:, 0], a["normal_ridges_in_contact"][:, 0]
+    width = (ridges - 1) * Scene().geometry.ridge_wavelength + length / ridges
+    columns: dict[str, Array] = {name: np.zeros(len(FORCES)) for name in NAMES}
+    columns |= {"f_ext": np.array(FORCES), "contact_length": length, "gross_width": width}
+    section = Trace(-a["normal_bone_height"][:, 0], columns)
+    along, count = profile(Scene().slices), Scene().slices.count
+    depth = section.depth * (1 - 1e-9)  # the last one is the end of the trace
+    totals = [at_indentation(along, section, float(each), count).totals for each in depth]
+    return depth, np.array([t["f_ext"] for t in totals]), np.array([t["gross_area"] for t in totals])
+
+
+def power(x: Array, y: Array) -> tuple[float, float]:
+    """Return the exponent of a power law fitted by logarithms, and the rms of the logarithm's misfit."""
+    line = np.polyfit(np.log(x), np.log(y), 1)
+    return float(line[0]), float(np.std(np.log(y) - np.polyval(line, np.log(x))))
+
+
 def _force_depth(g: Grid) -> tuple[Numbers, str]:
-    depth, force = -g.coarse["normal_bone_height"][:, 0], np.array(FORCES)
-    b, misfit = exponential(depth, force)
-    error = abs(exponential(-g.smooth["normal_bone_height"][:, 0], force)[1] - misfit)
-    line = np.polyfit(np.log(depth), np.log(force), 1)
-    power = float(np.std(np.log(force) - np.polyval(line, np.log(depth))))
-    numbers = {"exponential": misfit, "error": error, "power": power, "slope": b / 1e3}
-    return numbers, by_fit(-misfit, *(-each for each in _MISFITS))
+    (depth, force, _), (other_depth, other, _) = whole(g.coarse), whole(g.smooth)
+    misfit, error = exponential(depth, force)[1], absolute(depth, force)[1]
+    numbers = {"exponential": misfit, "error": abs(exponential(other_depth, other)[1] - misfit), "absolute": error}
+    numbers |= {"power": power(depth, force)[1], "least": force[0], "most": force[-1]}
+    return numbers, by_share(((misfit <= _MISFIT) + (error <= _MISFIT)) / 2)
+
+
+def _area_power(g: Grid) -> tuple[Numbers, str]:
+    (_, force, area), (_, other, other_area) = whole(g.coarse), whole(g.smooth)
+    exponent, misfit = power(force, area)
+    numbers = {"exponent": exponent, "error": abs(power(other, other_area)[0] - exponent), "misfit": misfit}
+    return numbers | {"least": force[0], "most": force[-1]}, by_share(float(misfit <= _MISFIT))
 
 
 def _ridges(g: Grid) -> tuple[Numbers, str]:
@@ -218,6 +263,7 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, tuple[Numbers, str]]:
         "real_sliding": _trend(g, lambda a: _shear(a) > 0),
         "area_load": _area_load(g),
         "force_depth": _force_depth(g),
+        "area_power": _area_power(g),
         "pressure_shape": _pressure(runs),
         "friction_load": _constant(by_share(1.0)),
         "friction_acrylic": _constant(by_share(0.0)),
@@ -235,7 +281,7 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, tuple[Numbers, str]]:
 
 
 def curves(g: Grid) -> dict[str, list[float]]:
-    """Return what the page draws: values at full slip over the voltages, by name and force; depths over the forces."""
-    depth = (-g.coarse["normal_bone_height"][:, 0]).tolist()
+    """Return what the page draws: values at full slip over the voltages, by name and force; depth (m) and force (N)."""
+    depth, force, _ = whole(g.coarse)
     shown = {f"{name} {f:g}": g.fine[f"slip_{name}"][FORCES.index(f)].tolist() for name in DRAWN for f in DRAWN_FORCES}
-    return shown | {"depth": depth}
+    return shown | {"depth": depth.tolist(), "force": force.tolist()}
