@@ -16,8 +16,9 @@ that w should stay near 1.
 What is summed. A slice touches where h > 0 and follows its trace from there, the branch of a finger that comes down:
 pressed, charged, or at full slip with a force that is raised. A charged slice that is still held below h = 0 after it
 was pressed deeper, its tension and its attraction, are left out; friction and area are low by that much. Full slip does
-not depend on the path of loads, so that each slice may be taken from one trace of sliding
-(``tests/test_slices_runs.py``).
+not depend on the path of loads as long as the same ridges touch (``tests/test_slices_runs.py``), so that each slice is
+taken from one trace of sliding. A ridge that came down in the press may stay down in sliding: then the trace, on which
+it comes in sliding, has less friction (``docs/newtons.md``).
 
 What is left out: shear between slices, the end cap of the finger, and the flow of soft tissue along the axis, which in
 a slice goes sideways alone. Smooth layered fingers in three dimensions (half ellipsoids with semi-axes of 10, 7 and
