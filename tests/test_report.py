@@ -11,7 +11,7 @@ import pytest
 
 from fingerpad.cli import main
 from fingerpad.io.result import Result
-from fingerpad.report import run_page, trust
+from fingerpad.report import parameters, run_page, trust
 from fingerpad.report.write import NAME, write
 from fingerpad.runs.solve import solved
 from fingerpad.runs.sweep import sweep
@@ -19,6 +19,7 @@ from fingerpad.scene import Scene, SceneError
 from tests.browser import asked
 from tests.small_finger import small
 
+FEW = "contacts of few facets"
 SIZES = {"laptop": (1366, 768), "phone": (390, 844)}
 STEPS = """
 const seen = [];
@@ -148,6 +149,7 @@ def test_jumps_are_marked(folder):
         ({"stable": False}, "a state is unstable", trust.BAD),
         ({"f_contact": 2.0}, "forces do not balance", trust.BAD),
         ({"stable": True}, "stability", trust.GOOD),
+        ({"contact_length": 3.9 * 2 * 40e-6, "ridges_in_contact": 2, "mesh_contact": 40e-6}, FEW, trust.CARE),
     ],
 )
 def test_what_is_wrong_is_told(folder, changes, what, kind):
@@ -160,6 +162,15 @@ def test_worst_finding_leads(folder):
     found = trust.findings(replace(Result.load(folder), failure="the load slide was not reached"))
     kind, words = trust.verdict(found)
     assert kind == trust.BAD and "the load slide was not reached" in words
+
+
+def test_contacts_of_enough_facets_and_other_formulations_are_not_told(folder):
+    result = Result.load(folder)
+    state = replace(result.full_slip, contact_length=4.1 * 2 * 40e-6, ridges_in_contact=2, mesh_contact=40e-6)
+    assert FEW not in [each.what for each in trust.findings(replace(result, full_slip=state))]
+    nitsche = result.scene.replace(contact={"formulation": "nitsche"})
+    few = replace(result, scene=nitsche, full_slip=replace(state, contact_length=40e-6))
+    assert FEW not in [each.what for each in trust.findings(few)]
 
 
 # -- a sweep -----------------------------------------------------------------------------------------------
@@ -231,3 +242,19 @@ def test_report_that_fails_does_not_cost_the_run(tmp_path, monkeypatch, capsys):
 def data(page: str) -> dict:
     """Return what the charts of a page are drawn from."""
     return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)[1])
+
+
+def test_files_of_an_earlier_sweep_do_not_stay_beside_a_new_table(tmp_path, monkeypatch, capsys):
+    """Where the new dataset and report are not written; the command names the files that are there."""
+    words = ["sweep", "--model", "cylinders", "--over", "voltage=0,100", "--out", str(tmp_path)]
+    assert main(words) == 0 and "sweep.nc, report.html" in capsys.readouterr().out
+    monkeypatch.setattr("fingerpad.runs.sweep.attempt", lambda folder: None)
+    monkeypatch.setattr("fingerpad.runs.sweep_dataset.save", lambda sweep: "sweep.nc is missing: no room")
+    assert main(words) == 0
+    assert not (tmp_path / "sweep.nc").exists() and not (tmp_path / "report.html").exists()
+    assert capsys.readouterr().out.strip().endswith("table.csv")
+
+
+def test_options_are_quoted_for_a_shell():
+    assert parameters.option_of("friction", 0.3) == "--set friction=0.3"
+    assert parameters.option_of("geometry.ridge_profile", [1.0, -0.1]) == "--set 'geometry.ridge_profile=[1.0, -0.1]'"

@@ -1,6 +1,6 @@
 """``fingerpad sweep``: a scene over values of its keys, each run in a process of its own and kept on disk."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -8,10 +8,10 @@ from fingerpad.cli import ranges
 from fingerpad.cli.arguments import Parser, echo, positive
 from fingerpad.io.folder import check_folder
 from fingerpad.runs.solve import MODELS
-from fingerpad.runs.sweep import sweep
+from fingerpad.runs.sweep import FILES, sweep
 from fingerpad.scene import from_data, override
 from fingerpad.scene.messages import SceneError, clip, show
-from fingerpad.scene.reading import plain, put, read
+from fingerpad.scene.reading import flat, plain, put, read
 
 _EXAMPLES = """
     fingerpad sweep --over voltage=0:200:5 --over f_ext=25,75 --jobs 2 --out results/sweep
@@ -40,8 +40,8 @@ def main(argv: Sequence[str]) -> int:
     scene = from_data(base)
     found = sweep(scene, args.out, jobs=args.jobs, model=args.model, quiet=args.quiet, **axes)
     echo(str(found))
-    files = [args.out / "table.csv", *(["sweep.nc"] if not found.notes else []), "report.html"]
-    echo(f"Written: {', '.join(map(str, files))}")
+    files = [name for name in FILES if (args.out / name).exists()]
+    echo(f"Written: {args.out / files[0]}, {', '.join(files[1:])}" if files[1:] else f"Written: {args.out / files[0]}")
     return 1 if any(result.failure for result in found) else 0
 
 
@@ -61,7 +61,7 @@ def study(file: Path | None, given: Sequence[str], over: Sequence[str]) -> tuple
     table = data.pop("sweep", {})
     if not isinstance(table, dict):
         raise SceneError(f'sweep is {show(table)}; it must be a table such as [sweep] with voltage = "0:200:5"')
-    for key, value in _flat(table):
+    for key, value in flat(table).items():
         axes[key] = ranges.read(f"sweep.{key}", value) if isinstance(value, str) else value
         if not isinstance(axes[key], list) or not axes[key]:
             raise SceneError(f'sweep.{key} is {show(value)}; it must be a list or a range such as "0:200:5"')
@@ -77,11 +77,3 @@ def study(file: Path | None, given: Sequence[str], over: Sequence[str]) -> tuple
             raise SceneError(f"--set {key} is given and {key} is varied; give one of the two")
         put(data, key, value)
     return data, axes
-
-
-def _flat(table: Mapping[str, Any], where: str = "") -> list[tuple[str, Any]]:
-    """Return dotted keys and values: TOML reads ``roughness.h_rms = …`` as a table in a table."""
-    found: list[tuple[str, Any]] = []
-    for key, value in table.items():
-        found += _flat(value, f"{where}{key}.") if isinstance(value, dict) else [(where + key, value)]
-    return found

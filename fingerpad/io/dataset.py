@@ -19,6 +19,7 @@ from fingerpad.io import columns
 from fingerpad.io.columns import Column
 from fingerpad.io.files import replace
 from fingerpad.io.states import STATES
+from fingerpad.scene.reading import flat
 from variational.state import ContactState, Errors
 
 if TYPE_CHECKING:
@@ -103,7 +104,9 @@ def attributes(result: "Result") -> dict[str, Any]:
     found |= {"notes": "\n".join(result.notes)} if result.notes else {}
     versions = result.record.get("provenance", {})
     found |= {"provenance": json.dumps(versions, default=str)} if versions else {}
-    return found | {"parameters": json.dumps(parameters)} | dict(_flat(parameters))
+    given = {key: str(value).lower() if isinstance(value, bool) else value for key, value in flat(parameters).items()}
+    given = {key: value for key, value in given.items() if value is not None}  # which attributes cannot hold
+    return found | {"parameters": json.dumps(parameters)} | given
 
 
 def states(named: Mapping[str, ContactState]) -> Variables:
@@ -304,17 +307,3 @@ def _array(values: Sequence[Any]) -> Any:
 
 def _about(column: Column) -> dict[str, str]:
     return {"units": column.unit, "long_name": column.meaning}
-
-
-def _flat(value: Any, key: str = "") -> Iterable[tuple[str, Any]]:
-    """Yield dotted keys and values of nested tables, as attributes hold them; what is None is left out."""
-    if isinstance(value, Mapping):
-        for name, inner in value.items():
-            yield from _flat(inner, f"{key}.{name}" if key else str(name))
-    elif isinstance(value, list | tuple) and not all(isinstance(each, int | float) for each in value):
-        for k, inner in enumerate(value):
-            yield from _flat(inner, f"{key}[{k}]")
-    elif isinstance(value, bool):
-        yield key, "true" if value else "false"
-    elif value is not None:
-        yield key, value

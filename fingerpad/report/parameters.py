@@ -8,26 +8,12 @@ from typing import Any
 
 from fingerpad.report.page import folded, paragraph, table, text
 from fingerpad.scene import Scene
+from fingerpad.scene.reading import flat
 
 PAPER = (
     "Forsbach, F., Heß, M., Papangelo, A. (2023). A two-scale FEM-BAM approach for fingerpad friction under "
     "electroadhesion. Frontiers in Mechanical Engineering. doi:10.3389/fmech.2022.1074393"
 )
-
-
-def flat(parameters: Mapping[str, Any], where: str = "") -> dict[str, Any]:
-    """Return the parameters of a scene by dotted key; entries of lists of tables as ``history[0].f_ext``."""
-    found: dict[str, Any] = {}
-    for key, value in parameters.items():
-        name = where + key
-        if isinstance(value, Mapping):
-            found |= flat(value, f"{name}.")
-        elif isinstance(value, list | tuple) and value and all(isinstance(each, Mapping) for each in value):
-            for k, each in enumerate(value):
-                found |= flat(each, f"{name}[{k}].")
-        else:
-            found[name] = value
-    return found
 
 
 def changed(parameters: Mapping[str, Any]) -> dict[str, Any]:
@@ -72,7 +58,7 @@ def again(parameters: Mapping[str, Any], model: str, folder: str) -> str:
             f'fp.run(scene, model="{model}", out="results/again")'
         )
         return f"<pre><code>{text(code)}</code></pre>"
-    options = "".join(f" --set {shlex.quote(f'{key}={_toml(value)}')}" for key, value in given.items())
+    options = "".join(f" {option_of(key, value)}" for key, value in given.items())
     return f"<pre><code>{text(f'fingerpad run{options}{option} --out results/again')}</code></pre>"
 
 
@@ -82,6 +68,11 @@ def cite() -> str:
         f"<blockquote>fingerpad: two-scale finite element model of a fingertip under electroadhesion.</blockquote>"
         f"<blockquote>{text(PAPER)}</blockquote>"
     )
+
+
+def option_of(key: str, value: Any) -> str:
+    """Return a key and its value as an option of a command line, quoted for a shell."""
+    return f"--set {shlex.quote(f'{key}={_toml(value)}')}"
 
 
 def _toml(value: Any) -> str:

@@ -108,7 +108,8 @@ def _cite(table: Table) -> str:
         values = dict.fromkeys(row[key] for row in table.rows)
         over.append(f"--over {key}={','.join(_plain(value) for value in values)}")
     given = {} if table.parameters is None else parameters.changed(table.parameters)
-    options = [f"--set {key}={value}" for key, value in given.items() if key not in table.axes and "[" not in key]
+    kept = {key: value for key, value in given.items() if key not in table.axes and "[" not in key}
+    options = [parameters.option_of(key, value) for key, value in kept.items()]
     code = " ".join(["fingerpad sweep", *options, *over, "--out results/again"])
     note = "Loads of its own in a scene file and a cheaper model are not in this line." if table.parameters else ""
     return html.section(

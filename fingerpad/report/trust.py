@@ -12,6 +12,10 @@ GOOD, CARE, BAD = "holds", "care", "fails"
 _SMALL, _LARGE = 0.02, 0.1
 """Relative errors of µ_app below which it is small, and above which the mesh is too coarse for more than a trend."""
 
+_FEW = 4
+"""Facets in contact on a ridge below which the effect of a rigid screen is doubtful: at two or three,
+a few Gauss points bear the contact, and their number changes with the stiffness."""
+
 
 class Finding(NamedTuple):
     """One thing that was looked at."""
@@ -69,6 +73,7 @@ def _mesh(result: Result) -> Iterator[Finding]:
     if math.isnan(error) or not value:
         yield Finding("errors are not estimated", CARE, "This run has no estimate of its discretisation error.")
         return
+    yield from _facets(result, state)
     share = error / abs(value)
     words = f"The estimated discretisation error of {name} is {100 * share:.2g} % of its value."
     if share <= _SMALL:
@@ -76,6 +81,17 @@ def _mesh(result: Result) -> Iterator[Finding]:
     else:
         more = "good for trends" if share <= _LARGE else "too coarse for more than a trend"
         yield Finding("the mesh is coarse", CARE, f"{words} The mesh is {more}; a smaller mesh.contact reduces it.")
+
+
+def _facets(result: Result, state: ContactState) -> Iterator[Finding]:
+    """Find contacts of few facets, on which the effect of the penalty's springs is not resolved."""
+    if result.scene.contact.formulation != "penalty" or not state.ridges_in_contact or not state.mesh_contact:
+        return
+    facets = state.contact_length / state.ridges_in_contact / state.mesh_contact
+    if facets < _FEW:
+        words = f"A ridge touches with {facets:.1f} facets in the mean, fewer than {_FEW}."
+        more = "What a rigid screen would change is not reliable there; a smaller mesh.contact resolves it."
+        yield Finding("contacts of few facets", CARE, f"{words} {more}")
 
 
 def _balance(result: Result) -> Iterator[Finding]:

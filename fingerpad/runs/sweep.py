@@ -29,6 +29,8 @@ from variational.state import CONDITIONS, RESULTS
 if TYPE_CHECKING:
     import xarray
 
+FILES = ("table.csv", sweep_dataset.FILE, "report.html")
+"""What a sweep writes into its folder beside its points."""
 _MOST = 10_000  # points
 _LIMIT = 4 * 3600.0  # s of processor time for one point
 _SHOWN = ("mu_app", "f_t", "contact_length", "f_electrostatic", "ridges_in_contact")
@@ -189,7 +191,9 @@ def sweep(
         points = [dict(zip(values, point, strict=True)) for point in itertools.product(*values.values())]
         found = _in_processes(scenes, points, folder, jobs, model, quiet)
     done = Sweep(values, tuple(found), folder)
-    done.to_csv(folder / "table.csv")
+    for name in FILES[1:]:  # else that of an earlier sweep may stay beside this one's table
+        (folder / name).unlink(missing_ok=True)
+    done.to_csv(folder / FILES[0])
     missing = sweep_dataset.save(done)
     attempt(folder)
     return replace_fields(done, notes=(missing,)) if missing else done

@@ -163,3 +163,21 @@ def put(data: dict[str, Any], key: str, value: Any) -> None:
             here = here[part]
         else:
             here = here.setdefault(part, [] if isinstance(parts[depth + 1], int) else {})
+
+
+def flat(parameters: Mapping[str, Any], where: str = "") -> dict[str, Any]:
+    """Return the values of nested tables by dotted key, as :func:`put` takes them.
+
+    Entries of lists of tables are as ``history[0].f_ext``.
+    """
+    found: dict[str, Any] = {}
+    for key, value in parameters.items():
+        name = where + key
+        if isinstance(value, Mapping):
+            found |= flat(value, f"{name}.")
+        elif isinstance(value, list | tuple) and value and all(isinstance(each, Mapping) for each in value):
+            for k, each in enumerate(value):
+                found |= flat(each, f"{name}[{k}].")
+        else:
+            found[name] = value
+    return found
