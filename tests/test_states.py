@@ -106,6 +106,16 @@ def test_full_slip_counts_once_it_was_held(pressed, end, held):
     assert ("full_slip" in pressed.names()) is held
 
 
+def test_sign_of_the_voltage_is_no_other_state(pressed):
+    """A negative voltage is one, and full slip goes on where the voltage changes its sign alone."""
+    pressed.still("charge", voltage=-80.0)
+    assert pressed.names() == {"uncharged": ("press", 0.0, 0.0), "charged": ("charge", -80.0, 0.0)}
+    pressed.slide("slide", 0.2e-3)
+    pressed.voltage = 80.0
+    pressed.slide("slide on", 0.35e-3)
+    assert pressed.names()["full_slip"] == ("slide", -80.0, 0.1)
+
+
 def test_slide_charge_slide(pressed):
     """The last of two full slips, at its own voltage; normal contact is the uncharged one before both."""
     pressed.slide("slide", 0.4e-3)
