@@ -139,7 +139,7 @@ def test_sweep_prints_and_keeps_a_table(tmp_path, capsys):
         ([], "nothing is varied; give a table [sweep]"),
         (["--over", "voltage"], "--over voltage is no KEY=RANGE"),
         (["--over", "voltage=0:1"], "--over voltage is 0:1; write one value"),
-        (["--over", "voltage=0,-5"], "voltage is -5 V; it must be"),
+        (["--over", "voltage=0,-5500"], "voltage is -5500 V; it must be"),
         (["--over", "volts=0,5"], "volts is not a key of a scene; did you mean voltage?"),
         (["--over", "voltage=0,5", "--set", "voltage=5"], "--set voltage is given and voltage is varied"),
         (["--over", "voltage=0:200:200", "--over", "f_ext=1:200:200"], "the sweep has 40000 points"),

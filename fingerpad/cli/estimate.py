@@ -95,7 +95,8 @@ def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
     (low, high), (none, most) = KNOWN_FORCES, KNOWN_VOLTAGES
     where = f"{low:g} to {high:g} N/m and {none:g} to {most:g} V"
     said = [f"Known error: mu_app within {mu}, contact within {length} of {KNOWN_RUNS} full runs at {where}."]
-    default, outside = Scene(), [r for r in rows if not (low <= r["f_ext"] <= high and none <= r["voltage"] <= most)]
+    default = Scene()
+    outside = [r for r in rows if not (low <= r["f_ext"] <= high and none <= abs(r["voltage"]) <= most)]
     if outside:
         said.append(f"{len(outside)} of {len(rows)} points are outside of that; their error is not known.")
     changed = [name for name in ("friction", "electric", "roughness") if getattr(scene, name) != getattr(default, name)]

@@ -79,7 +79,7 @@ def toml(found: Sequence[Key]) -> str:
         if where != table:
             table, many = where, where.endswith("[]")
             plain = where.replace("[]", "")
-            lines += ["", f"# [[{plain}]]" if many else f"[{plain}]" if _has_values(found, where) else f"# [{plain}]"]
+            lines += ["", f"# [[{plain}]]" if many else f"[{plain}]" if _read(found, where) else f"# [{plain}]"]
         lines += textwrap.wrap(key.meaning, _WIDTH, initial_indent="# ", subsequent_indent="# ")
         off = key.default is None or key.name in unread or "[]" in key.name
         given = f"{'# ' * off}{name} ={'' if key.default is None else ' ' + _value(key.default)}"
@@ -108,8 +108,9 @@ def _short(key: Key) -> str:
     return f"{key.default:.12g}" if isinstance(key.default, float) else _default(key)
 
 
-def _has_values(found: Sequence[Key], table: str) -> bool:
-    return any(key.default is not None for key in found if key.name.rpartition(".")[0] == table)
+def _read(found: Sequence[Key], table: str) -> bool:
+    """Return whether a file of the defaults has a table: one with a value, and in no list."""
+    return "[]" not in table and any(key.default is not None for key in found if key.name.rpartition(".")[0] == table)
 
 
 def _default(key: Key) -> str:

@@ -21,6 +21,7 @@ from fingerpad.scene.contradictions import ways
 
 RUNS, FORCE, VOLTAGE = 113.5, 0.33, 0.74
 SHARES = {"force": 0.26, "voltage": 0.10, "slide": 0.64}
+SLIDE = 120e-6  # m, largest step
 SAMPLE = 0.04  # of a waveform: as of a charge, which has 2 to 3 steps
 FORMULATIONS = {"penalty": 1.0, "nitsche": 1.85, "augmented": 7.15}
 SECONDS = 2.66e-6  # of the processor, for a factorisation and an unknown
@@ -67,8 +68,8 @@ def factorisations(scene: Scene) -> list[float]:
         f_ext = load.f_ext if load.f_ext is not None else f_ext
         wave, share = load.wave, _share(load)
         if wave is not None:
-            # The steps of a waveform are as many as its samples; the factor below counts smaller steps again.
-            share = SAMPLE * wave.count(load.seconds(way or 0.0), 1.0)
+            # Its steps are as many as its samples, or as a slide takes; the factor below is that of smaller steps.
+            share = SAMPLE * max(wave.count(load.seconds(way or 0.0), 1.0), abs(way or 0.0) / SLIDE)
         voltage = wave.peak if wave is not None else voltage if load.level is None else load.level
         force = max(f_ext, 1.0) / 75.0
         found.append(share * RUNS * force**FORCE * math.exp(VOLTAGE * (voltage / 200.0) ** 2))
