@@ -61,7 +61,7 @@ def tables(folder: Path) -> dict[str, list[dict[str, str]]]:
 @pytest.fixture(autouse=True)
 def bare(monkeypatch):
     """Nothing but tables and the summary is written."""
-    monkeypatch.setattr(Drawing, "write", lambda self, folder: None)
+    monkeypatch.setattr(Drawing, "write", lambda *args: None)
     monkeypatch.setattr(Writer, "dataset", lambda self, result: "")
     monkeypatch.setattr("fingerpad.report.write.attempt", lambda folder: None)
 
@@ -135,7 +135,7 @@ elif kind == "part":
 elif kind == "row":
     kill_at(files.Table, "write")
 from fingerpad.io.drawing import Drawing
-Drawing.write = lambda self, folder: None
+Drawing.write = lambda *args: None
 from fingerpad.__main__ import main
 sys.exit(main(sys.argv[1:]))
 """

@@ -152,7 +152,8 @@ class Continuation:
             touch_depth: how far the bone is lowered by displacement before force takes over (m).
             step_scale: factor on the largest steps of force, voltage and displacement.
         """
-        self.coupling, self.solver, self.solve = coupling, coupling.solver, coupling.solve
+        self.coupling, self.solver = coupling, coupling.solver
+        self.solve: Callable[[bool], None] = lambda pseudo_transient: coupling.solve(pseudo_transient)
         self.problem, self.observer = self.solver.problem, coupling.observer
         self.on_accept, self.touch_depth, self.step_scale = on_accept, touch_depth, step_scale
         self.steps, self.slip = 0, (0.0, False)

@@ -123,6 +123,10 @@ class Iteration:
         self._shifted, self._stop = shifted, stop
         self.snes.setTolerances(max_it=self._most * (_SHIFTED_LONGER if shifted else 1))
         self._anderson.interrupt()
+        pc = self.snes.getKSP().getPC()
+        if pc.getFailedReason():  # as of a tangent that is not a number, after which MUMPS would fail for ever
+            pc.reset()
+            self.tangent.stale = True
         self.tangent.start()
         self.tangent.stale |= shifted
         seconds = self.equations.timings.seconds
