@@ -40,6 +40,7 @@ PAPER = 20e-3  # m of finger, by which the paper multiplies
 CENTRE = 75.0  # N/m, of the runs whose estimate is judged
 COUNTS, FINE = (6, 12, 24, 48, 96), 1536  # slices
 HIGH = 200.0  # V
+_LEAST = 0.3  # N, of the finger in three dimensions: below it a few elements are in contact, and areas are coarse
 Found = Mapping[str, Any]
 
 
@@ -81,8 +82,15 @@ def friction(scenes: Found) -> list[dict[str, float]]:
         for radius in RADII:
             for force in NEWTONS:
                 total = at_force(finger(radius), of, force, Slices().count)
-                found.append(row(total, voltage, radius) | {"by_20_mm": _by_20_mm(of, force)})
+                more = {"by_20_mm": _by_20_mm(of, force), "continued": _continued(total)}
+                found.append(row(total, voltage, radius) | more)
     return found
+
+
+def _continued(total: Total) -> float:
+    """Return the share of the friction force on slices below the least force of the traces."""
+    light = total.columns["f_ext"] < FORCES[0]
+    return float((total.thickness * total.columns["f_t"])[light].sum() / total.totals["f_t"])
 
 
 def _by_20_mm(of: Trace, force: float) -> float:
@@ -262,14 +270,37 @@ def _table_of_paths(numbers: Found) -> str:
          f"{100 * (p['contact_length_raised'] / p['contact_length'] - 1):+.2f}"]
         for p in numbers["paths"]
     ]  # fmt: skip
-    heads = ("f_ext (N/m)", "f_T, pressed first (N/m)", "f_T, raised in sliding (N/m)", "ridges", "ridges")
-    return harness.table((*heads, "change of f_T (%)", "of L_R (%)"), rows)
+    heads = ("f_ext (N/m)", "f_T, pressed first (N/m)", "f_T, raised in sliding (N/m)", "ridges, pressed first")
+    return harness.table((*heads, "ridges, raised in sliding", "change of f_T (%)", "of L_R (%)"), rows)
 
 
 def _table_of_slices(numbers: Found) -> str:
     keys = ("f_ext", "f_t", "contact_area", "gross_area")
     rows = [[str(each["slices"]), *(f"{each[key]:+.1e}" for key in keys)] for each in numbers["refined"]]
     return harness.table(("slices", "F_ext", "F_T", "ridge contact area", "gross area"), rows)
+
+
+def solid(docs: Path) -> str:
+    """Return the comparison with a finger in three dimensions, empty without docs/solid.json."""
+    if not (docs / "solid.json").exists():
+        return ""
+    rows, shares = [], {"force": [], "area": [], "same": []}  # type: ignore[var-annotated]
+    for each in harness.kept("solid", docs).numbers:
+        ratios = (
+            each["f_ext_slices"] / each["f_ext"] - 1, each["area_slices"] / each["area"] - 1,
+            each["area_slices_at_force"] / each["area"] - 1,
+        )  # fmt: skip
+        for kind, ratio in zip(shares, ratios, strict=True):
+            if kind == "force" or each["f_ext"] > _LEAST:
+                shares[kind].append(100 * ratio)
+        width = f"{1e3 * each['f_ext'] / each['centre']:.1f}"
+        cells = (f"{each['f_ext']:.3f}", f"{each['centre']:.1f}", width, f"{1e6 * each['area']:.0f}")
+        rows.append([f"{1e3 * each['depth']:.1f}", *cells, *(f"{100 * ratio:+.1f}" for ratio in ratios)])
+    heads = ("δ (mm)", "force (N)", "centre (N/m)", "their ratio (mm)", "area (mm²)")
+    errors = ("slices: force at equal δ (%)", "area at equal δ (%)", "area at equal force (%)")
+    ends = {f"{kind}_{end}": of(each) for kind, each in shares.items() for end, of in (("low", min), ("high", max))}
+    text = harness.prose("newtons")["solid"].format(least=_LEAST, **ends)
+    return f"## A finger in three dimensions\n\n{text}\n\n{harness.table((*heads, *errors), rows)}"
 
 
 def draw(docs: Path) -> Path:
@@ -284,21 +315,26 @@ def draw(docs: Path) -> Path:
         "mu_app": middle["mu_app"], "centre": middle["centre"], "by_20_mm": middle["by_20_mm"],
         "narrow": 1e3 * widths(numbers)[0], "wide": 1e3 * widths(numbers)[1],
         "low": 100 * lower(numbers)[0], "high": 100 * lower(numbers)[1],
+        "light": FORCES[0], "continued": 100 * middle["continued"],
+        "most_continued": 100 * at(numbers, RADII[1], HIGH)[0]["continued"],
         "estimate": 100 * worst, "lost": -100 * min(lost), "same": 100 * max(same),
     }  # fmt: skip
     body = [
         picture(numbers, docs),
         f"## Full slip over force\n\n{_table_of_friction(numbers)}",
         f"## Errors\n\n{text['errors']}",
+        solid(docs),
         f"## Which model feeds the sum\n\n{text['models']}\n\n{_table_of_models(numbers)}",
         f"## What a run estimates\n\n{text['estimates'].format(**values)}\n\n{_table_of_estimates(numbers)}",
         f"## Two paths to full slip\n\n{text['paths'].format(**values)}\n\n{_table_of_paths(numbers)}",
         f"## Number of slices\n\n{text['slices']}\n\n{_table_of_slices(numbers)}",
     ]
     finding, command = text["finding"].format(**values), "python3 -m benchmarks.newtons"
-    names = ["newtons", "models"]
+    names = ["newtons", "models", *(["solid"] if (docs / "solid.json").exists() else [])]
     path = docs / "newtons.md"
-    return harness.page(path, "Newtons and square millimetres", finding, text["how"], body, command, found.made, names)
+    return harness.page(
+        path, "Newtons and square millimetres", finding, text["how"].format(**values), body, command, found.made, names
+    )
 
 
 if __name__ == "__main__":

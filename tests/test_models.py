@@ -18,6 +18,8 @@ def test_lengths_in_the_program_are_the_runs():
         for k, f in enumerate(cylinders.FORCES):
             run = known[models.name(f, 0.0)]["full"]["summary"]
             assert cylinders.LENGTHS[state][k] == pytest.approx(run[f"{PREFIXES[state]}_contact_length"], abs=0.5e-7)
+            depth = cylinders.INDENTATIONS[state][k]
+            assert depth == pytest.approx(-run[f"{PREFIXES[state]}_bone_height"], abs=0.5e-7)
             assert cylinders.RIDGES[state][k] == run[f"{PREFIXES[state]}_ridges_in_contact"]
 
 

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from fingerpad.io.footprint_picture import footprint
 from fingerpad.scene import Scene, SceneError, override
 from fingerpad.scene.slices import Slices
+from fingerpad.slices import AREA_ERROR, AREA_ERROR_AT_FORCE, FORCE_ERROR
 from fingerpad.slices.finger import MODEL_ERROR, WholeFinger, errors
 from fingerpad.slices.profile import cylinder, profile
 from fingerpad.slices.total import BeyondTrace, at_force, at_indentation
@@ -176,6 +178,33 @@ def test_text_has_both_errors():
     text = str(whole())
     assert "±: estimated discretisation error" in text and MODEL_ERROR in text
     assert "0.300 ± 0.010" in text or "0.301 ± 0.010" in text
+
+
+def test_footprint_has_a_panel_for_each_state(tmp_path):
+    """And one along the finger; its areas are those of the sums."""
+    finger = whole()
+    drawn = footprint(finger, tmp_path / "footprint.png")
+    area = 1e6 * finger.states["full_slip"].totals["gross_area"]
+    assert len(drawn.axes) == 2 and f"full slip\n{area:.1f} mm² gross" in drawn.axes[0].get_title()
+    assert (tmp_path / "footprint.png").stat().st_size > 1000
+
+
+# -- in three dimensions ---------------------------------------------------------------------------------
+SOLID = json.loads((MODELS.parent / "solid.json").read_text())["numbers"]
+
+
+def test_stated_errors_cover_the_finger_in_three_dimensions():
+    """Areas from 0.3 N, below which the kept finger has a few elements in contact."""
+
+    def errors(key, of):
+        return [each[key] / each[of] - 1 for each in SOLID if of == "f_ext" or each["f_ext"] > 0.3]
+
+    for (low, high), key, of in (
+        (FORCE_ERROR, "f_ext_slices", "f_ext"), (AREA_ERROR, "area_slices", "area"),
+        (AREA_ERROR_AT_FORCE, "area_slices_at_force", "area"),
+    ):  # fmt: skip
+        found = errors(key, of)
+        assert len(found) > 4 and low <= min(found) and max(found) <= high
 
 
 # -- refusals ------------------------------------------------------------------------------------------

@@ -12,7 +12,7 @@ from variational.state import ContactState
 Array = NDArray[np.float64]
 NAMES = ("f_ext", "f_t", "f_electrostatic", "contact_length", "gross_width")
 """Columns: N/m the forces, m the lengths."""
-_NOTHING = 1e-9  # of the external force: below it a friction force or an attraction is roundoff
+_NOTHING = 1e-12  # of the largest external force: values below it are roundoff
 
 
 class TraceError(ValueError):
@@ -66,24 +66,33 @@ class Trace:
                 f"under {self.end[1]:.4g} N/m"
             )
         borne = self.columns["f_ext"] + self.columns["f_electrostatic"]
-        found = {name: self._power(self.columns[name], depth) for name in NAMES if name != "f_t"}
-        grip = self._power(self.columns["f_t"] / borne, depth, grows=False)
+        slopes = {name: self._slope(self.columns[name]) for name in NAMES}
+        # No shorter contact than one in which the mean pressure falls with the forces.
+        forces = [slopes[name] for name in ("f_ext", "f_electrostatic") if self.columns[name].any()]
+        slopes["contact_length"] = min(slopes["contact_length"], *forces)
+        found = {name: self._power(self.columns[name], depth, slopes[name]) for name in NAMES if name != "f_t"}
+        grip = self._power(self.columns["f_t"] / borne, depth, 0.0)
         return found | {"f_t": grip * (found["f_ext"] + found["f_electrostatic"])}
 
-    def _power(self, values: Array, depth: Array, grows: bool = True) -> Array:
+    def _slope(self, values: Array) -> float:
+        """Return the exponent of the power law of the first two points; 0 where values fall, or are 0."""
+        if values[0] <= 0 or values[1] <= 0:
+            return 0.0
+        return max(float(np.log(values[1] / values[0]) / np.log(self.depth[1] / self.depth[0])), 0.0)
+
+    def _power(self, values: Array, depth: Array, slope: float) -> Array:
         """Return values at indentations.
 
         Args:
             values: at the points.
             depth: where they are wanted (m).
-            grows: whether they go to 0 with the indentation; else the first value holds below the first point.
+            slope: exponent below the first point.
         """
         found, touches = np.zeros_like(depth), depth > 0
-        if np.all(values <= _NOTHING * self.columns["f_ext"].max() * grows + _NOTHING * (not grows)):
+        if np.all(values <= _NOTHING * self.columns["f_ext"].max()):
             return found
         x, y = np.log(self.depth), np.log(np.maximum(values, np.finfo(float).tiny))
         at = np.minimum(np.log(depth, where=touches, out=np.full_like(depth, x[0])), x[-1])
-        slope = max((y[1] - y[0]) / (x[1] - x[0]), 0.0) if grows else 0.0
         inside = np.exp(PchipInterpolator(x, y)(np.maximum(at, x[0])))
         found[touches] = (inside * np.exp(slope * np.minimum(at - x[0], 0.0)))[touches]
         return found
