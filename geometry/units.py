@@ -18,6 +18,7 @@ QUANTITIES = {
     "m": "length",
     "Pa": "pressure",
     "N": "force",
+    "m^2": "area",
     "N/m": "force per length",
     "Pa/m": "pressure per length",
     "V": "voltage",

@@ -12,6 +12,8 @@ from fingerpad.cli.measured import Measured, read
 from fingerpad.io.result import Result
 from fingerpad.runs.sweep import sweep
 from fingerpad.scene import Scene, SceneError
+from fingerpad.slices.finger import WholeFinger
+from fingerpad.slices.total import Total
 from tests.commands import ROOT, refused
 from variational.state import ContactState
 
@@ -53,9 +55,15 @@ def test_units_are_converted(table):
         ("force (furlong), friction (1)\n1, 2\n", "line 2, column 1: the unit of force is 'furlong'; its unit is not"),
         ("force (wibble), friction (1)\n1, 2\n", "the unit of force is 'wibble'; its unit is not known"),
         ("voltage (V), friction (N)\n1, 2\n", "line 2, column 2: the unit of friction is 'N'; it must be 1"),
-        ("force (N), friction (1)\n1, 2\n", "force is in N, of a whole finger; ours is a force per length"),
-        ("force (mN), friction (1)\n1, 2\n", "force is in mN, of a whole finger"),
-        ("force (N/m), contact area (mm^2)\n1, 2\n", "column 2: 'contact area' is of a whole finger"),
+        (
+            "force (N), contact length (mm)\n1, 2\n",
+            "column 2: ours has no 'contact length'; columns are voltage, force",
+        ),
+        ("force (N/m), contact area (mm^2)\n1, 2\n", "column 1: the unit of force is 'N/m'; its unit is not a unit of"),
+        (
+            "force (N), area (mm^2)\n1, 2\n",
+            "column 2: ours has no 'area'; columns are voltage, force, friction force, ",
+        ),
         ("force (N/m), perceived intensity (1)\n1, 2\n", "ours has no 'perceived intensity'; columns are force, volt"),
         ("force (N/m), friction (1)\n1, 2\n3,\n", "line 4, column 2: the friction is missing; leave the row out"),
         ("force (N/m), friction (1)\n1, 2\n\n3\n", "line 5, column 2: the friction is missing"),
@@ -107,7 +115,7 @@ def test_tables_in_the_repository_are_read():
 def known(folder, **values):
     """Return ours of a sweep's folder for a table of friction."""
     table = Measured(ROOT / "x.csv", "X", "full_slip", "friction", values, (0.3,), (np.nan,))
-    return ours.ours(ours.read(folder, sweep=True), table)
+    return ours.ours(ours.read([folder], sweep=True), table)
 
 
 def test_ours_is_the_sweep(folder):
@@ -126,7 +134,7 @@ def test_ours_is_the_sweep(folder):
 def test_missing_points_are_not_compared(folder):
     """A failed run leaves its neighbours as they are."""
     found = known(folder)
-    found.values[0, 1] = np.nan
+    found.curves[1].values[0] = np.nan
     at = found.at(np.array([25.0, 25.0, 75.0, 50.0]), np.array([0.0, 100.0, 100.0, 100.0]))
     assert list(np.isnan(at)) == [False, True, False, True]
 
@@ -149,19 +157,43 @@ def test_press_of_a_run_is_compared(table):
     steps = (state(1, 10.0), state(2, 20.0), state(3, 20.0, 100.0), state(4, 20.0, 100.0, 1e-3, mu_app=0.4))
     run = Result(Scene(), "full", steps[1], steps[2], steps[3], steps=steps)
     pressed = read(table("# state: uncharged\nforce (N/m), depth (mm)\n15, 0.3\n"))
-    found = _Compared(pressed, ours.ours(run, pressed))
+    found = _Compared(pressed, ours.ours([run], pressed))
     assert found.ours == pytest.approx([1.5e-4]) and found.ratio == pytest.approx([0.5])
     slip = read(table("friction (1)\n0.2\n"))
-    assert _Compared(slip, ours.ours(run, slip)).ratio == pytest.approx([2.0])
+    assert _Compared(slip, ours.ours([run], slip)).ratio == pytest.approx([2.0])
     with pytest.raises(SceneError, match="no state full slip"):
-        ours.ours(Result(Scene(), "full", steps[1], None, None, steps=steps[:2]), slip)
+        ours.ours([Result(Scene(), "full", steps[1], None, None, steps=steps[:2])], slip)
+
+
+def test_whole_finger_is_compared(table):
+    """Newtons and mm² are of the runs' whole fingers, by force and voltage; a cross-section has none."""
+    finger = [total(0.4, 8e-5), total(0.6, 1e-4)]
+    slip = [state(4, 40.0, 100.0, mu_app=0.3), state(4, 60.0, 100.0, mu_app=0.3)]
+    runs = [
+        Result(Scene(), "full", None, None, s, finger=WholeFinger({"full_slip": f}, "test"))
+        for s, f in zip(slip, finger, strict=True)
+    ]
+    area = read(table("force (mN), voltage (V), gross area (mm^2), spread (mm^2)\n500, 100, 45, 50\n"))
+    assert area.whole and area.conditions["f_ext"] == pytest.approx((0.5,)) and area.values == pytest.approx((4.5e-5,))
+    assert _Compared(area, ours.ours(runs, area)).ratio == pytest.approx([2.0])
+    friction = read(table("force (N), friction (1)\n0.4, 0.25\n"))
+    assert _Compared(friction, ours.ours(runs[:1], friction)).ratio == pytest.approx([2.0])
+    with pytest.raises(SceneError, match="the run has no newtons"):
+        ours.ours([Result(Scene(), "full", None, None, slip[0])], friction)
+
+
+def total(force, area):
+    """Return a whole finger of one slice, 1 mm thick, whose friction is half its force."""
+    values = {"f_ext": force, "f_t": force / 2, "f_electrostatic": 0.0, "contact_length": area / 5, "gross_width": area}
+    one = np.ones(1)
+    return Total(1e-3, 0 * one, one, 1e-3 * one, force, {name: value * one for name, value in values.items()})
 
 
 # -- the command ---------------------------------------------------------------------------------------------
 def test_misfit_is_printed_and_drawn(folder, table, tmp_path, capsys):
     """Measured as twice ours: the ratio is a half everywhere and the shape is exact."""
     found = known(folder)
-    lines = [f"75, {u:g}, {2 * v:.17g}, {3 * v:g}" for u, v in zip(found.voltage, found.values[1], strict=True)]
+    lines = [f"75, {u:g}, {2 * v:.17g}, {3 * v:g}" for u, v in ((c.voltage, c.values[1]) for c in found.curves)]
     file = table(
         "\n".join(["# doi: 10.1/x", "force (N/m), voltage (V), friction (1), spread (1)", *lines, "500, 0, 1, 1"])
     )
@@ -181,6 +213,7 @@ def test_misfit_is_printed_and_drawn(folder, table, tmp_path, capsys):
         ("force (N/m), friction (1)\n25, 0.3\n", "has no voltage, and ours has 3; add a column 'voltage (V)'"),
         ("voltage (V), friction (1)\n100, 0.3\n", "has no force, and ours has 2; add a column 'force (N/m)'"),
         ("force (N/m), voltage (V), friction (1)\n5, 0, 0.3\n", "is within ours, which has 25 to 75 N/m, 0 to 200 V"),
+        ("force (N), friction (1)\n25, 0.3\n", "the table of the sweep has no newtons, which"),
         ("force (N/m), voltage (V), depth (mm)\n25, 0, 0.3\n", "the table of the sweep has no depth of full slip"),
     ],
 )

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from fingerpad.cli import ours
 from fingerpad.cli.arguments import Parser, echo, path, writable
-from fingerpad.cli.measured import QUANTITIES, Measured, read
+from fingerpad.cli.measured import Measured, read
 from fingerpad.cli.tables import Column, text
 from fingerpad.io.states import WORDS
 from fingerpad.scene.messages import SceneError, clip
@@ -22,7 +22,7 @@ _EXAMPLES = """
     fingerpad compare-data mine.csv --sweep results/sweep --out mine.png
     fingerpad compare-data data/measured/ayyildiz2018.csv --run results/mine
 """
-_SCALES = {"m": ("mm", 1e3), "N/m": ("N/m", 1.0), "1": ("", 1.0)}
+_SCALES = {"m": ("mm", 1e3), "m^2": ("mm²", 1e6), "N/m": ("N/m", 1.0), "N": ("N", 1.0), "1": ("", 1.0)}
 _NAMED = 4  # curves in the legend of a picture
 
 
@@ -35,13 +35,13 @@ def main(argv: Sequence[str]) -> int:
     )
     parser.add_argument("tables", nargs="+", type=path, metavar="TABLE", help="CSV with a header of units and a source")
     which = parser.add_mutually_exclusive_group(required=True)
-    which.add_argument("--run", type=path, metavar="DIR", help="folder of a run")
+    which.add_argument("--run", nargs="+", type=path, metavar="DIR", help="folders of runs")
     which.add_argument("--sweep", type=path, metavar="DIR", help="folder of a sweep over f_ext, voltage or both")
     parser.add_out(None, "picture (PNG) of tables and ours")
     args = parser.read(argv)
     writable(args.out)
     tables = [read(file) for file in args.tables]
-    found = ours.read(args.run or args.sweep, sweep=args.sweep is not None)
+    found = ours.read(args.run or [args.sweep], sweep=args.sweep is not None)
     compared = [_Compared(table, ours.ours(found, table)) for table in tables]
     echo("\n\n".join("\n".join(each.lines()) for each in compared))
     if args.out:
@@ -61,7 +61,9 @@ class _Compared:
         self.ours = known.at(self.force, self.voltage)
         self.ratio = self.ours / self.measured
         if not self.within.any():
-            spans = ", ".join(_span(axis, unit) for axis, unit in ((known.force, "N/m"), (known.voltage, "V")))
+            spans = ", ".join(
+                _span(axis, unit) for axis, unit in ((known.force, table.force_unit), (known.voltage, "V"))
+            )
             raise SceneError(f"no row of {clip(str(table.file), 80)} is within ours, which has {spans}")
 
     @property
@@ -71,9 +73,9 @@ class _Compared:
 
     def lines(self) -> Iterator[str]:
         """Yield the table and the misfit as text."""
-        unit, scale = _SCALES[QUANTITIES[self.table.quantity][1]]
+        unit, scale = _SCALES[self.table.unit]
         columns = [
-            Column("force", "force", "N/m"),
+            Column("force", "force", self.table.force_unit),
             Column("voltage", "voltage", "V"),
             Column("measured", "measured", unit, scale),
             Column("spread", "spread", unit, scale),
@@ -122,10 +124,10 @@ def _panel(ax: "Axes", each: _Compared) -> None:
     from fingerpad.cli import plot
     from fingerpad.io import style
 
-    unit, scale = _SCALES[QUANTITIES[each.table.quantity][1]]
+    unit, scale = _SCALES[each.table.unit]
     over_voltage = len(np.unique(each.voltage)) > len(np.unique(each.force))
     x, other = (each.voltage, each.force) if over_voltage else (each.force, each.voltage)
-    along, name = (each.known.voltage, "N/m") if over_voltage else (each.known.force, "V")
+    along, name = (each.known.voltage, each.table.force_unit) if over_voltage else (each.known.force, "V")
     for k, held in enumerate(np.unique(other)):
         mine, level = other == held, np.full(len(along), held)
         curve = each.known.at(level, along) if over_voltage else each.known.at(along, level)
@@ -142,7 +144,8 @@ def _panel(ax: "Axes", each: _Compared) -> None:
             capsize=3,
             label=f"measured, {held:g} {name}" if k < _NAMED else "_",
         )
-    ax.set(xlabel="voltage (V)" if over_voltage else "force per length (N/m)")
+    force = "force (N)" if each.table.whole else "force per length (N/m)"
+    ax.set(xlabel="voltage (V)" if over_voltage else force)
     ax.set(ylabel=f"{each.table.quantity} ({unit or '–'})", title=clip(each.table.source, 40))
     ax.set_ylim(bottom=0)
     ax.legend()

@@ -7,6 +7,7 @@
     force (N/m), voltage (V), friction (1), spread (1)
     50, 100, 0.31, 0.04
 
+A table with a column in newtons, or of an area, is of a whole finger; without one it is of a cross-section, in N/m.
 The conditions are ``force`` and ``voltage``, each optional; one more column is the quantity, and ``spread`` is its
 standard deviation, in the same unit. Only the source is required of the comments; without a state it is full slip.
 """
@@ -15,7 +16,7 @@ import csv
 import io
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -33,6 +34,16 @@ QUANTITIES = {
     "depth": ("depth", "m"),
 }
 """The same of the columns that are compared; ``depth`` is the way that the bone has come down."""
+WHOLE = {
+    "force": ("f_ext", "N"),
+    "friction force": ("f_t", "N"),
+    "attraction": ("f_electrostatic", "N"),
+    "gross area": ("gross_area", "m^2"),
+    "contact area": ("contact_area", "m^2"),
+    "friction": ("mu_app", "1"),
+    "depth": ("indentation", "m"),
+}
+"""The same of a table of a whole finger: one with a column in newtons, or of an area."""
 STATES = {"uncharged": "uncharged", "charged": "charged", "full slip": "full_slip"}
 """What ``# state:`` can be, and the name of ours."""
 _COMMENT = re.compile(r"#\s*(source|doi|url|people|state)\s*:\s*(.*?)\s*")
@@ -50,7 +61,7 @@ class Measured:
     state: str
     """A name of :data:`fingerpad.io.states.STATES`."""
     quantity: str
-    """A name of :data:`QUANTITIES`."""
+    """A name of :data:`QUANTITIES`, or of :data:`WHOLE`."""
     conditions: dict[str, tuple[float, ...]]
     """Values by key, ``f_ext`` and ``voltage``; those of the columns that the table has."""
     values: tuple[float, ...]
@@ -58,6 +69,28 @@ class Measured:
     """NaN in every row of a table without it."""
     about: dict[str, str] = field(default_factory=dict)
     """The comments by name."""
+    whole: bool = False
+    """Whether it is of a whole finger, in N and m², and not of a cross-section."""
+
+    @property
+    def key(self) -> str:
+        """The quantity's name in ours."""
+        return _names(self.whole)[self.quantity][0]
+
+    @property
+    def unit(self) -> str:
+        """The quantity's SI unit."""
+        return _names(self.whole)[self.quantity][1]
+
+    @property
+    def force_unit(self) -> str:
+        """The SI unit of forces."""
+        return "N" if self.whole else "N/m"
+
+
+def _names(whole: bool) -> dict[str, tuple[str, str]]:
+    """Return key and unit of every column that can be in a table."""
+    return {"voltage": CONDITIONS["voltage"]} | WHOLE if whole else CONDITIONS | QUANTITIES
 
 
 @dataclass(frozen=True)
@@ -89,13 +122,14 @@ def read(file: Path) -> Measured:
         raise SceneError(f"{name}: state is {clip(repr(state))}; it must be one of {', '.join(STATES)}")
     if len(rows) < 2:
         raise SceneError(f"{name} has no rows of numbers below a header such as 'force (N/m), friction (1)'")
-    columns = _columns(name, *rows[0])
+    whole = any((parts := _HEAD.fullmatch(head)) and _of_whole(*parts.groups()) for head in rows[0][1])
+    columns = _columns(name, *rows[0], whole)
     found = [_numbers(name, line, cells, columns) for line, cells in rows[1:]]
     by_name = dict(zip((column.name for column in columns), zip(*found, strict=True), strict=True))
-    quantity = next(each for each in by_name if each in QUANTITIES)
+    quantity = next(each for each in by_name if each in _names(whole) and each not in CONDITIONS)
     conditions = {key: by_name[each] for each, (key, _) in CONDITIONS.items() if each in by_name}
     spread = by_name.get("spread", (math.nan,) * len(found))
-    return Measured(file, about["source"], STATES[state], quantity, conditions, by_name[quantity], spread, about)
+    return Measured(file, about["source"], STATES[state], quantity, conditions, by_name[quantity], spread, about, whole)
 
 
 def _parts(lines: Sequence[str]) -> tuple[dict[str, str], list[tuple[int, list[str]]]]:
@@ -110,38 +144,41 @@ def _parts(lines: Sequence[str]) -> tuple[dict[str, str], list[tuple[int, list[s
     return about, rows
 
 
-def _columns(name: str, line: int, heads: Sequence[str]) -> list[_Column]:
-    columns = [_column(f"{name}, line {line}, column {k}", head) for k, head in enumerate(heads, start=1)]
+def _of_whole(name: str, unit: str) -> bool:
+    return bool(_NEWTONS.fullmatch(unit)) or "area" in name.lower()
+
+
+def _columns(name: str, line: int, heads: Sequence[str], whole: bool) -> list[_Column]:
+    known = _names(whole)
+    columns = [_column(f"{name}, line {line}, column {k}", head, known) for k, head in enumerate(heads, start=1)]
     names = [column.name for column in columns]
     if twice := next((each for each in names if names.count(each) > 1), None):
         raise SceneError(f"{name}, line {line}: two columns have the name {twice}; give one")
-    quantities = [column for column in columns if column.name in QUANTITIES]
+    allowed = [each for each in known if each not in CONDITIONS]
+    quantities = [column for column in columns if column.name in allowed]
     if len(quantities) != 1:
         which = ", ".join(column.name for column in quantities) or "none"
-        raise SceneError(f"{name}, line {line} must have one quantity out of {', '.join(QUANTITIES)}; it has {which}")
-    return list(_with_spread(name, line, columns, quantities[0]))
+        raise SceneError(f"{name}, line {line} must have one quantity out of {', '.join(allowed)}; it has {which}")
+    return list(_with_spread(name, line, columns, known[quantities[0].name][1]))
 
 
-def _with_spread(name: str, line: int, columns: Sequence[_Column], quantity: _Column) -> Iterator[_Column]:
+def _with_spread(name: str, line: int, columns: Sequence[_Column], wanted: str) -> Iterator[_Column]:
     """Yield the columns; that of the spread has the dimension of the quantity."""
     for column in columns:
         if column.name == "spread":
             where = f"{name}, line {line}, column {columns.index(column) + 1}"
-            yield _Column("spread", column.unit, _factor(where, "spread", column.unit, QUANTITIES[quantity.name][1]))
+            yield _Column("spread", column.unit, _factor(where, "spread", column.unit, wanted))
         else:
             yield column
 
 
-def _column(where: str, head: str) -> _Column:
-    known = CONDITIONS | QUANTITIES
+def _column(where: str, head: str, known: Mapping[str, tuple[str, str]]) -> _Column:
     parts = _HEAD.fullmatch(head)
     if parts is None or not parts[2]:
         raise SceneError(f"{where}: {clip(repr(head))} has no unit; write 'name (unit)', and (1) for a number without")
     name, unit = parts[1].lower(), parts[2]
     if name == "spread":
         return _Column(name, unit, 1.0)
-    if "area" in name:
-        raise SceneError(f"{where}: {clip(repr(name))} is of a whole finger; ours is a cross-section and has lengths")
     if name not in known:
         raise SceneError(f"{where}: ours has no {clip(repr(name))}; columns are {', '.join(known)} and spread")
     return _Column(name, unit, _factor(where, name, unit, known[name][1]))
@@ -153,10 +190,6 @@ def _factor(where: str, name: str, unit: str, wanted: str) -> float:
         if unit != "1":
             raise SceneError(f"{where}: the unit of {name} is {clip(repr(unit))}; it must be 1")
         return 1.0
-    if wanted == "N/m" and _NEWTONS.fullmatch(unit):
-        raise SceneError(
-            f"{where}: {name} is in {clip(unit)}, of a whole finger; ours is a force per length, so give it in N/m"
-        )
     try:
         return to_si(f"1 {unit}", wanted)
     except ValueError as error:

@@ -1,14 +1,15 @@
 """What a finished run or sweep has at the conditions of a measurement; no dolfinx."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.cli.measured import QUANTITIES, Measured
+from fingerpad.cli.measured import Measured
 from fingerpad.io.result import Result
 from fingerpad.io.states import PREFIXES, WORDS, before_sliding
 from fingerpad.report.source import Table
@@ -21,27 +22,42 @@ CONDITIONS = {"f_ext": "force", "voltage": "voltage"}
 _NEAR = 1e-6  # relative, of conditions that count as the same
 
 
+class Curve(NamedTuple):
+    """A quantity of ours over the force at a voltage (V); SI units."""
+
+    voltage: float
+    force: Array
+    """Increasing, shape (forces,)."""
+    values: Array
+    """Shape (forces,); NaN where a run has no result."""
+
+
 @dataclass(frozen=True, eq=False)
 class Ours:
     """A quantity of ours over force and voltage; SI units."""
 
-    force: Array
-    """Increasing, shape (forces,)."""
-    voltage: Array
-    """Increasing, shape (voltages,)."""
-    values: Array
-    """Shape (forces, voltages); NaN where a run has no result."""
+    curves: tuple[Curve, ...]
+    """By growing voltage."""
+
+    @property
+    def force(self) -> Array:
+        """All forces, growing."""
+        return np.unique(np.concatenate([curve.force for curve in self.curves]))
+
+    @property
+    def voltage(self) -> Array:
+        """All voltages, growing."""
+        return np.array([curve.voltage for curve in self.curves])
 
     def at(self, force: Array, voltage: Array) -> Array:
         """Return ours at pairs of force and voltage; NaN outside of ours.
 
         Between two forces ours is taken as linear, between two voltages as linear in U², as which attraction rises.
         """
-        squares = self.voltage**2
         found = []
         for f, u in zip(force, voltage, strict=True):
-            over = [_between(u**2, squares, row) for row in self.values]
-            found.append(_between(f, self.force, over))
+            over = [_between(f, curve.force, curve.values) for curve in self.curves]
+            found.append(_between(u**2, self.voltage**2, over))
         return np.array(found)
 
 
@@ -53,33 +69,61 @@ def _between(x: float, known: Array, values: Sequence[float] | Array) -> float:
     return float(np.interp(x, known, values)) if known[0] < x < known[-1] else math.nan
 
 
-def read(folder: Path, sweep: bool) -> Result | Table:
-    """Return the run or the sweep in a folder.
+def read(folders: Sequence[Path], sweep: bool) -> list[Result] | Table:
+    """Return the runs in folders, or the sweep in one.
 
     Raises:
         SceneError: it is not there, or is of the other kind.
     """
-    found = folder_of(folder)
-    if isinstance(found, Table) != sweep:
-        given, right = ("--run", "--sweep") if isinstance(found, Table) else ("--sweep", "--run")
-        kind = "a sweep" if isinstance(found, Table) else "a run"
-        raise SceneError(f"{given} {clip(str(folder), 80)} holds {kind}; give it by {right}")
-    return found
+    runs: list[Result] = []
+    for folder in folders:
+        found = folder_of(folder)
+        if isinstance(found, Table) != sweep:
+            given, right = ("--run", "--sweep") if isinstance(found, Table) else ("--sweep", "--run")
+            kind = "a sweep" if isinstance(found, Table) else "a run"
+            raise SceneError(f"{given} {clip(str(folder), 80)} holds {kind}; give it by {right}")
+        if isinstance(found, Table):
+            return found
+        runs.append(found)
+    return runs
 
 
-def ours(found: Result | Table, table: Measured) -> Ours:
-    """Return the quantity of a table in a run or a sweep.
+def ours(found: Sequence[Result] | Table, table: Measured) -> Ours:
+    """Return the quantity of a table in runs or a sweep.
 
     Raises:
         SceneError: ours does not have it.
     """
     if isinstance(found, Table):
         return _of_sweep(found, table)
-    states = _states(found, table.state)
-    if not states:
+    points = {at: value for run in found for at, value in (_whole if table.whole else _section)(run, table)}
+    if not points:
         raise SceneError(f"the run has no state {WORDS[table.state]}, of which {_name(table)} is; compare another run")
-    points = {(s.f_ext, s.voltage): _value(s, table) for s in states}
-    return _grid(points, table)
+    return _curves(points, table)
+
+
+def _section(found: Result, table: Measured) -> Iterator[tuple[tuple[float, float], float]]:
+    """Yield force and voltage of each state of the cross-section, and the value there."""
+    for state in _states(found, table.state):
+        yield (
+            (state.f_ext, state.voltage),
+            -state.bone_height if table.key == "depth" else float(getattr(state, table.key)),
+        )
+
+
+def _whole(found: Result, table: Measured) -> Iterator[tuple[tuple[float, float], float]]:
+    """Yield the same of the whole finger.
+
+    Raises:
+        SceneError: the run has none.
+    """
+    if found.finger is None:
+        raise SceneError(
+            f"the run has no newtons, which {_name(table)} has; run a scene of press, charge and slide again"
+        )
+    if table.state in found.finger.states:
+        voltage = 0.0 if table.state == "uncharged" else found.named[table.state].voltage
+        yield (found.finger.f_ext, voltage), found.finger.values(table.state)[table.key]
 
 
 def _states(found: Result, state: str) -> list[ContactState]:
@@ -91,20 +135,16 @@ def _states(found: Result, state: str) -> list[ContactState]:
     return [] if named is None else [named]
 
 
-def _value(state: ContactState, table: Measured) -> float:
-    key = QUANTITIES[table.quantity][0]
-    value = -state.bone_height if key == "depth" else float(getattr(state, key))
-    return value
-
-
 def _of_sweep(found: Table, table: Measured) -> Ours:
+    if table.whole:
+        raise SceneError(f"the table of the sweep has no newtons, which {_name(table)} has; give its runs by --run")
     others = [axis for axis in found.axes if axis not in CONDITIONS]
     if others:
         raise SceneError(
             f"the sweep in {clip(str(found.folder), 80)} is over {others[0]}, which no measurement has; "
             "give one over f_ext and voltage alone"
         )
-    column = f"{PREFIXES[table.state]}_{QUANTITIES[table.quantity][0]}"
+    column = f"{PREFIXES[table.state]}_{table.key}"
     if column not in found.rows[0]:
         raise SceneError(
             f"the table of the sweep has no {table.quantity} of {WORDS[table.state]}, which {_name(table)} has; "
@@ -125,15 +165,17 @@ def _of_sweep(found: Table, table: Measured) -> Ours:
             )
     except (ValueError, KeyError, TypeError) as error:
         raise SceneError(f"the table of the sweep in {clip(str(found.folder), 80)} cannot be read: {error}") from None
-    return _grid(points, table)
+    return _curves(points, table)
 
 
-def _grid(points: dict[tuple[float, float], float], table: Measured) -> Ours:
-    forces, voltages = (np.array(sorted(set(values))) for values in zip(*points, strict=True))
-    values = np.array([[points.get((f, u), np.nan) for u in voltages] for f in forces])
-    if np.isnan(values).all():
+def _curves(points: dict[tuple[float, float], float], table: Measured) -> Ours:
+    if all(math.isnan(value) for value in points.values()):
         raise SceneError(f"ours has no {table.quantity} of {WORDS[table.state]}, which {_name(table)} has")
-    return Ours(forces, voltages, values)
+    curves = []
+    for voltage in sorted({u for _, u in points}):
+        forces = sorted(f for f, u in points if u == voltage)
+        curves.append(Curve(voltage, np.array(forces), np.array([points[f, voltage] for f in forces])))
+    return Ours(tuple(curves))
 
 
 def conditions(table: Measured, known: Ours) -> tuple[Array, Array]:
@@ -146,7 +188,7 @@ def conditions(table: Measured, known: Ours) -> tuple[Array, Array]:
     for key, axis in (("f_ext", known.force), ("voltage", known.voltage)):
         if key not in table.conditions and len(axis) > 1:
             name = CONDITIONS[key]
-            unit = "N/m" if name == "force" else "V"
+            unit = table.force_unit if name == "force" else "V"
             raise SceneError(f"{_name(table)} has no {name}, and ours has {len(axis)}; add a column '{name} ({unit})'")
         found.append(np.array(table.conditions.get(key, (axis[0],) * len(table.values))))
     return found[0], found[1]
