@@ -76,15 +76,18 @@ class Writer:
     def restart(self) -> None:
         """Delete tables and close fields, to be started anew; collective."""
         written = list(self._tables)
+        self._close_fields()
         self._close_tables()
         if self._place is not None:
             for name in written:
                 (self._place.folder / f"{name}.csv").unlink()
 
-    def _close_tables(self) -> None:
+    def _close_fields(self) -> None:
         if self._fields is not None:
             self._fields.close()
             self._fields = None
+
+    def _close_tables(self) -> None:
         for table in self._tables.values():
             table.close()
         self._tables.clear()
@@ -95,8 +98,9 @@ class Writer:
         Args:
             whole: all ranks do so; else fields stay as they are, since closing them waits for all ranks.
         """
+        self._close_tables()
         if whole:
-            self._close_tables()
+            self._close_fields()
         elif self._fields is not None:
             self._fields.abandon()
         for handler in self.log.handlers:
