@@ -7,7 +7,7 @@ from collections.abc import Container, Mapping
 from typing import Any
 
 from fingerpad.report.page import folded, paragraph, table, text
-from fingerpad.scene import Scene
+from fingerpad.scene import Scene, SceneError, override
 from fingerpad.scene.reading import flat
 
 PAPER = (
@@ -70,13 +70,31 @@ def cite() -> str:
     )
 
 
-def option_of(key: str, value: Any) -> str:
-    """Return a key and its value as an option of a command line, quoted for a shell."""
-    return f"--set {shlex.quote(f'{key}={_toml(value)}')}"
+def option_of(key: str, value: Any, option: str = "--set") -> str:
+    """Return a key and its value as an option of a command line, quoted for a shell.
+
+    Args:
+        key: a dotted key.
+        value: a number, a switch, a text or a list of these; of another option than ``--set``, its text as it stands.
+        option: which takes ``KEY=VALUE``.
+    """
+    shown = value if option != "--set" else _bare(value) if isinstance(value, str) else toml(value)
+    return f"{option} {shlex.quote(f'{key}={shown}')}"
 
 
-def _toml(value: Any) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value) if isinstance(value, str) else repr(value)
+def toml(value: Any) -> str:
+    """Return a number, a switch, a text or a list of these as TOML."""
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(toml, value))}]"
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, str | bool) else repr(value)
+
+
+def _bare(text: str) -> str:
+    """Return a text as ``--set`` reads it: without quotation marks, where it would be nothing else without them."""
+    try:
+        return text if override(f"key={text}")[1] == text else toml(text)
+    except SceneError:
+        return toml(text)
 
 
 def _shown(value: Any) -> str:
