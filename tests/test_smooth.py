@@ -121,6 +121,42 @@ def test_every_number_comes_with_its_error(answer):
     assert answer[0].cost.factorisations > 0
 
 
+class Recorder:
+    """In the place of a console."""
+
+    def __init__(self):
+        self.whole, self.told = 0.0, []
+
+    def expect(self, loads, after):
+        self.whole = sum(loads.values()) + after
+
+    def phase(self, text, part):
+        self.told.append((text, part))
+
+
+def test_stages_are_those_that_take_time(answer):
+    """Tables that are kept are read; the two fingers are half of the time each."""
+    shown = Recorder()
+    smooth.solve(from_data(SCENE), answer[1], console=shown)
+    assert [part for _, part in shown.told] == [0.0, 0.5]
+    assert all(text.startswith("the smooth finger") for text, _ in shown.told)
+    assert shown.whole == 2 * smooth._FINGER
+
+
+@pytest.mark.parametrize(("voltage", "count"), [(0.0, 4), (100.0, 6)])
+def test_tables_that_are_missing_count(tmp_path, voltage, count):
+    """Of each of two meshes: one table or two, and the finger. Its last stage is not the end."""
+    shown = Recorder()
+    scenes = [from_data(SCENE | {"voltage": voltage, "mesh": SCENE["mesh"] | {"contact": h}}) for h in (1e-5, 5e-6)]
+    stages = smooth._Stages(scenes, tmp_path, MPI.COMM_SELF, shown)
+    for k in range(count):
+        stages.begin(str(k))
+    parts = [part for _, part in shown.told]
+    assert [text for text, _ in shown.told] == [str(k) for k in range(count)]
+    assert parts[0] == 0.0 and parts == sorted(set(parts))
+    assert parts[-1] == pytest.approx(1 - smooth._FINGER / shown.whole)
+
+
 def test_table_that_ends_too_soon_is_said(answer, monkeypatch):
     """A table to a fiftieth of the force: the finger stops where it ends, with one sentence."""
     folder, tables = answer[1], ridge_cell.tables

@@ -83,9 +83,7 @@ def tables(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Table
     Raises:
         StepFailed: the cell could not be pressed or slid.
     """
-    made_of = comm.bcast(_made_of(scene))  # a law without a source counts by the process that it is in
-    name = hashlib.sha256(json.dumps(made_of, sort_keys=True).encode()).hexdigest()[:16]
-    file = folder / f"{name}.json"
+    made_of, file = _place(scene, folder, comm)
     data = json.loads(file.read_text(encoding="utf-8")) if comm.rank == 0 and file.exists() else None
     data = comm.bcast(data)
     if data is None:
@@ -96,7 +94,20 @@ def tables(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Table
             replace_json(file, data)
     normal, slip = (RidgeTable(**{k: np.array(v) for k, v in data[state].items()}) for state in ("normal", "slip"))
     rest = {k: data[k] for k in ("period", "tangential", "seconds", "factorisations", "unknowns")}
-    return Tables(name, normal, slip, **rest)
+    return Tables(file.stem, normal, slip, **rest)
+
+
+def are_kept(scene: Scene, folder: Path, comm: MPI.Comm) -> bool:
+    """Return whether the tables of a scene's ridge are in a folder; collective."""
+    file = _place(scene, folder, comm)[1]
+    return bool(comm.bcast(file.exists() if comm.rank == 0 else None))
+
+
+def _place(scene: Scene, folder: Path, comm: MPI.Comm) -> tuple[dict[str, Any], Path]:
+    """Return what a table depends on, and its file; collective."""
+    made_of = comm.bcast(_made_of(scene))  # a law without a source counts by the process that it is in
+    name = hashlib.sha256(json.dumps(made_of, sort_keys=True).encode()).hexdigest()[:16]
+    return made_of, folder / f"{name}.json"
 
 
 def _made_of(scene: Scene) -> dict[str, Any]:

@@ -122,7 +122,8 @@ def _expect(scene: Scene, model: FingerModel, comm: MPI.Comm, console: Console) 
     seconds = [each / comm.size for each in by_load(scene, model.options)]
     path = {load.name: each for load, each in zip(loads, seconds, strict=True)}
     slipping = [load.name for load in loads if load.until_full_slip]
-    console.expect(path, ERRORS * sum(seconds) if model.options.errors else 0.0, slipping, coefficient(scene) or 0.0)
+    after = ERRORS * sum(seconds) if model.options.errors and not model.asked else 0.0
+    console.expect(path, after, slipping, coefficient(scene) or 0.0, whole=not model.asked)
 
 
 def exit_code(result: Result) -> int:
