@@ -37,7 +37,7 @@ from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
 from variational.attraction.insulator import VACUUM_PERMITTIVITY
 from variational.body import Body
-from variational.contact.ridge_law import RidgeTable
+from variational.contact.ridge_law import KNOTS, RidgeTable
 from variational.materials.material import Material
 from variational.materials.ogden import Ogden
 from variational.problem import Interface
@@ -224,11 +224,29 @@ class _Cell:
         apart = np.concatenate([[last + _SNAP], _APART[_APART > last + 2 * _SNAP]])
         pull = [_unpressed(self.finger, self.closure(0.0).d_eq, self.scene, y) for y in apart]
         free = np.stack([apart, 0 * apart, pull, 0 * apart], axis=1)
+        found = thinned(found, KNOTS - len(free) - 1)
         everything = np.concatenate([found, free, [[_NOWHERE, 0.0, 0.0, 0.0]]])
         return {name: list(map(float, column)) for name, column in zip(_COLUMNS, everything.T, strict=True)}
 
 
 _COLUMNS = ("y", "contact", "attraction", "length")
+
+
+def thinned(rows: Array, most: int) -> Array:
+    """Return no more rows of a table, those left out that a line between their neighbours comes nearest to.
+
+    Args:
+        rows: heights and values, shape (rows, 1 + values), the heights ascending.
+        most: rows, at least 2; the first and the last stay.
+    """
+    scale = np.abs(rows[:, 1:]).max(axis=0)
+    scale[scale == 0] = 1.0
+    while len(rows) > most:
+        before, here, after = rows[:-2], rows[1:-1], rows[2:]
+        part = ((here - before)[:, :1]) / ((after - before)[:, :1])
+        off = np.abs(before + part * (after - before) - here)[:, 1:] / scale
+        rows = np.delete(rows, 1 + int(off.max(axis=1).argmin()), axis=0)
+    return rows
 
 
 def flat_junction(finger: Fingertip) -> Fingertip:
