@@ -3,6 +3,8 @@
 import csv
 import errno
 import json
+import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +18,7 @@ from fingerpad.io.result import Result
 from fingerpad.runs import sweep_dataset
 from fingerpad.scene import from_data
 from tests.runs import run
+from variational.state import Skin
 
 SCENE = {
     "geometry": {"ridge_count": 9},
@@ -111,13 +114,43 @@ def test_parameters_are_attributes(folder, data):
     assert data.attrs["roughness.h_rms"] == scene["roughness"]["h_rms"]
 
 
-def test_dataset_of_a_result_that_was_read_back(folder, data):
-    """But for the skin, which no table holds."""
+def test_dataset_of_a_result_that_was_read_back(folder):
+    """The same file, to the last byte."""
     again = Result.load(folder).to_xarray()
-    assert set(data.variables) - set(again.variables) == {f"skin_{name}" for name in (*columns.SKIN, "ridge")}
-    for name, value in again.data_vars.items():
-        if not name.startswith("state_"):  # a loaded state has no step
-            np.testing.assert_array_equal(value, data[name], name)
+    assert bytes(again.to_netcdf(engine="scipy", format="NETCDF3_64BIT")) == (folder / "result.nc").read_bytes()
+
+
+def test_skin_that_was_read_back_is_that_of_the_run(folder, data):
+    """Without what fills up the rows of a state on fewer facets."""
+    for name, state in Result.load(folder).named.items():
+        known = data["skin_ridge"].sel(state=name).notnull().values
+        assert state.skin.x.shape == state.skin.p_el.shape == (known.sum(), 4)
+        assert state.skin.ridge.dtype.kind == "i"
+        np.testing.assert_array_equal(state.skin.p_n, data["skin_p_n"].sel(state=name).values[known])
+
+
+def test_skins_of_several_meshes_come_back_without_filling(folder, tmp_path):
+    """Five facets of one point in one state, as they were."""
+    result = Result.load(folder)
+    whole = result.charged.skin
+    few = Skin(whole.ridge[:5], *(getattr(whole, name)[:5, :1] for name in columns.SKIN))
+    assert not dataset.save(replace(result, folder=tmp_path, charged=replace(result.charged, skin=few)))
+    found = dataset.skins(tmp_path)
+    np.testing.assert_array_equal(found["charged"].x, few.x)
+    np.testing.assert_array_equal(found["uncharged"].p_n, result.uncharged.skin.p_n)
+
+
+@pytest.mark.parametrize("content", [None, b"", b"CDF\x02", "half"])
+def test_skin_is_left_out_where_the_dataset_is_not_whole(folder, tmp_path, content):
+    """All other numbers are those of the tables."""
+    copy = Path(shutil.copytree(folder, tmp_path / "run", ignore=shutil.ignore_patterns("*.bp", "*.png", "*.npz")))
+    whole = (copy / "result.nc").read_bytes()
+    (copy / "result.nc").unlink()
+    if content is not None:
+        (copy / "result.nc").write_bytes(whole[: len(whole) // 2] if content == "half" else content)
+    again = Result.load(copy)
+    assert all(state.skin is None for state in again.named.values())
+    assert again.charged.contact_length == Result.load(folder).charged.contact_length
 
 
 # -- sweeps ----------------------------------------------------------------------------------------------
