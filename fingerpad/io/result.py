@@ -205,9 +205,9 @@ class Result:
         try:
             summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
             found = cls.from_dict(summary, folder)
-            for name, skin in dataset.skins(folder).items():
-                if name in found.named:
-                    found = replace(found, **{name: replace(found.named[name], skin=skin)})
+            skins = dataset.skins(folder)
+            known = {name: replace(state, skin=skins.get(name)) for name, state in found.named.items()}
+            found = replace(found, **{name: known.get(name) for name in STATES})  # type: ignore[arg-type]
             if found.model != "full":
                 return found
             with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
