@@ -17,9 +17,16 @@ PAPER = (
 
 
 def changed(parameters: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the parameters that are not those of the default scene, by dotted key."""
+    """Return the parameters that are not those of the default scene, by dotted key.
+
+    A mesh of its own is the key ``geometry.file``, and the keys that it leaves unread are not there.
+    """
     default = flat(json.loads(json.dumps(Scene().parameters())))
-    given = flat(json.loads(json.dumps(parameters)))
+    given = flat({key: value for key, value in json.loads(json.dumps(parameters)).items() if key != "laws"})
+    mesh = parameters.get("laws", {}).get("mesh")
+    if mesh is not None:
+        unread = [key for key in given if key.startswith(("geometry.", "mesh.")) and key != "geometry.sc_thickness"]
+        given = {key: value for key, value in given.items() if key not in unread} | {"geometry.file": mesh["path"]}
     return {key: value for key, value in given.items() if key not in default or default[key] != value}
 
 
@@ -45,7 +52,7 @@ def all_of(parameters: Mapping[str, Any], varied: Container[str] = ()) -> str:
 
 def again(parameters: Mapping[str, Any], model: str, folder: str) -> str:
     """Return how a run is repeated."""
-    if parameters.get("laws"):
+    if parameters.get("laws", {}).keys() - {"mesh"}:
         return paragraph(
             f"The scene has laws of its own, written in Python ({parameters['laws']}); run the program that made them."
         )
@@ -53,8 +60,8 @@ def again(parameters: Mapping[str, Any], model: str, folder: str) -> str:
     option = "" if model == "full" else f" --model {model}"
     if any("[" in key or isinstance(value, list) or value is None for key, value in given.items()):
         code = (
-            "import json\nimport fingerpad as fp\nfrom fingerpad.scene import from_data\n\n"
-            f'scene = from_data(json.load(open("scene.json")))  # in this folder\n'
+            "import json\nimport fingerpad as fp\nfrom fingerpad.scene import from_kept\n\n"
+            f'scene = from_kept(json.load(open("scene.json")))  # in this folder\n'
             f'fp.run(scene, model="{model}", out="results/again")'
         )
         return f"<pre><code>{text(code)}</code></pre>"

@@ -214,7 +214,7 @@ def _scenes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> list[Scene]:
     """Return the scenes of all points, checked."""
     if not axes:
         raise SceneError("the sweep has no axis; give values of at least one key, such as voltage=[0, 100, 200]")
-    if scene.parameters().get("laws"):
+    if scene.parameters().get("laws", {}).keys() - {"mesh"}:
         raise SceneError(
             "the scene has laws of its own, which the processes of a sweep cannot be given; call run for each point"
         )
