@@ -14,6 +14,7 @@ from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad.cli import main
+from fingerpad.io.place import full_scene
 from fingerpad.model.check import check
 from fingerpad.model.options import plan
 from fingerpad.report.parameters import again
@@ -121,6 +122,8 @@ def test_scene_is_kept_with_its_mesh(tmp_path):
     given = from_data({"geometry": {"file": file}})
     kept = json.loads(json.dumps(given.parameters()))
     assert from_kept(kept).parameters() == given.parameters()
+    (tmp_path / "scene.json").write_text(json.dumps(kept), encoding="utf-8")
+    assert full_scene(tmp_path).parameters() == given.parameters(), "of run --resume"
     write_text(tmp_path / "one.msh", "other")
     with pytest.raises(fp.SceneError, match="which is not the file that the scene was kept with"):
         from_kept(kept)
