@@ -6,6 +6,7 @@ import json
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -151,6 +152,28 @@ def test_skin_is_left_out_where_the_dataset_is_not_whole(folder, tmp_path, conte
     again = Result.load(copy)
     assert all(state.skin is None for state in again.named.values())
     assert again.charged.contact_length == Result.load(folder).charged.contact_length
+
+
+# -- fields ----------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("name", "components", "unit"), [("displacement", 3, "m"), ("stress", 9, "Pa"), ("sed", 1, "J/m^3")]
+)
+def test_fields_are_what_a_reader_of_vtx_asks_for(folder, data, monkeypatch, name, components, unit):
+    """The schema names variables that are there; a vector has three components, to warp by; times have their loads."""
+    monkeypatch.setenv("ADIOS2_ALWAYS_USE_MPI", "1")
+    adios2 = pytest.importorskip("adios2")
+    rows = [row for row in rows_of(folder, "fields") if row["variable"] == name]
+    assert [row["load"] for row in rows] == list(data["load"].values)
+    assert {(row["file"], row["unit"]) for row in rows} == {(f"{name}.bp", unit)}
+    with adios2.FileReader(str(folder / f"{name}.bp")) as file:
+        schema = ElementTree.fromstring(file.available_attributes()["vtk.xml"]["Value"].strip('"').replace("\\n", "\n"))
+        arrays = {
+            array.attrib["Name"]: (array.text or array.attrib["Name"]).strip() for array in schema.iter("DataArray")
+        }
+        times = file.read(arrays["TIME"], step_selection=[0, file.num_steps()])
+        assert set(arrays.values()) <= set(file.available_variables()) and arrays[name] == name
+        assert file.read(name, block_id=0, step_selection=[0, 1]).shape[1] == components
+    assert [float(row["time"]) for row in rows] == list(times) == [float(k) for k in data["load_last_step"]]
 
 
 # -- sweeps ----------------------------------------------------------------------------------------------

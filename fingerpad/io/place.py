@@ -30,6 +30,7 @@ LEFT = (
         "receptors.csv",
         "*_final.csv",
         "coupling.csv",
+        "fields.csv",
         "summary.json",
         "summary.json.part",
         "run.log",
