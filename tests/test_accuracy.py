@@ -69,6 +69,24 @@ def search(monkeypatch, asked, solve=known, pause=lambda: None) -> Refinement:
     return found
 
 
+@pytest.mark.parametrize("asked", [{"mu_app": 0.01}, {"contact_length": 0.02}])
+def test_no_more_solves_are_announced_than_come(monkeypatch, asked):
+    """At least so many; in the last round all of them."""
+    told, own = [], Refinement.__init__
+
+    def start(self, model, path, comm, show, pause):
+        own(self, model, path, comm, show, lambda: told.append((self.to_come, self.solves.least())))
+
+    monkeypatch.setattr(Refinement, "__init__", start)
+    found = search(monkeypatch, asked)
+    count = len(found.solves.found) - 1
+    assert len(told) == count and all(0 < number <= count - k for k, (number, _) in enumerate(told))
+    assert [number for number, _ in told[-2:]] == [2, 1], (
+        "the last of the meshes, and the screen of twice the stiffness"
+    )
+    assert [seconds for _, seconds in told] == [0.0] + [1.0] * (count - 1), "of the solve before, on another mesh"
+
+
 @pytest.mark.parametrize("tolerance", [0.05, 0.01, 0.002])
 def test_true_error_is_within_what_is_asked_for(monkeypatch, tolerance):
     found = search(monkeypatch, {"mu_app": tolerance})

@@ -3,7 +3,10 @@
 import csv
 import errno
 import json
+import shutil
+from dataclasses import replace
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -16,6 +19,7 @@ from fingerpad.io.result import Result
 from fingerpad.runs import sweep_dataset
 from fingerpad.scene import from_data
 from tests.runs import run
+from variational.state import Skin
 
 SCENE = {
     "geometry": {"ridge_count": 9},
@@ -111,13 +115,65 @@ def test_parameters_are_attributes(folder, data):
     assert data.attrs["roughness.h_rms"] == scene["roughness"]["h_rms"]
 
 
-def test_dataset_of_a_result_that_was_read_back(folder, data):
-    """But for the skin, which no table holds."""
+def test_dataset_of_a_result_that_was_read_back(folder):
+    """The same file, to the last byte."""
     again = Result.load(folder).to_xarray()
-    assert set(data.variables) - set(again.variables) == {f"skin_{name}" for name in (*columns.SKIN, "ridge")}
-    for name, value in again.data_vars.items():
-        if not name.startswith("state_"):  # a loaded state has no step
-            np.testing.assert_array_equal(value, data[name], name)
+    assert bytes(again.to_netcdf(engine="scipy", format="NETCDF3_64BIT")) == (folder / "result.nc").read_bytes()
+
+
+def test_skin_that_was_read_back_is_that_of_the_run(folder, data):
+    """Without what fills up the rows of a state on fewer facets."""
+    for name, state in Result.load(folder).named.items():
+        known = data["skin_ridge"].sel(state=name).notnull().values
+        assert state.skin.x.shape == state.skin.p_el.shape == (known.sum(), 4)
+        assert state.skin.ridge.dtype.kind == "i"
+        np.testing.assert_array_equal(state.skin.p_n, data["skin_p_n"].sel(state=name).values[known])
+
+
+def test_skins_of_several_meshes_come_back_without_filling(folder, tmp_path):
+    """Five facets of one point in one state, as they were."""
+    result = Result.load(folder)
+    whole = result.charged.skin
+    few = Skin(whole.ridge[:5], *(getattr(whole, name)[:5, :1] for name in columns.SKIN))
+    assert not dataset.save(replace(result, folder=tmp_path, charged=replace(result.charged, skin=few)))
+    found = dataset.skins(tmp_path)
+    np.testing.assert_array_equal(found["charged"].x, few.x)
+    np.testing.assert_array_equal(found["uncharged"].p_n, result.uncharged.skin.p_n)
+
+
+@pytest.mark.parametrize("content", [None, b"", b"CDF\x02", "half"])
+def test_skin_is_left_out_where_the_dataset_is_not_whole(folder, tmp_path, content):
+    """All other numbers are those of the tables."""
+    copy = Path(shutil.copytree(folder, tmp_path / "run", ignore=shutil.ignore_patterns("*.bp", "*.png", "*.npz")))
+    whole = (copy / "result.nc").read_bytes()
+    (copy / "result.nc").unlink()
+    if content is not None:
+        (copy / "result.nc").write_bytes(whole[: len(whole) // 2] if content == "half" else content)
+    again = Result.load(copy)
+    assert all(state.skin is None for state in again.named.values())
+    assert again.charged.contact_length == Result.load(folder).charged.contact_length
+
+
+# -- fields ----------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("name", "components", "unit"), [("displacement", 3, "m"), ("stress", 9, "Pa"), ("sed", 1, "J/m^3")]
+)
+def test_fields_are_what_a_reader_of_vtx_asks_for(folder, data, monkeypatch, name, components, unit):
+    """The schema names variables that are there; a vector has three components, to warp by; times have their loads."""
+    monkeypatch.setenv("ADIOS2_ALWAYS_USE_MPI", "1")
+    adios2 = pytest.importorskip("adios2")
+    rows = [row for row in rows_of(folder, "fields") if row["variable"] == name]
+    assert [row["load"] for row in rows] == list(data["load"].values)
+    assert {(row["file"], row["unit"]) for row in rows} == {(f"{name}.bp", unit)}
+    with adios2.FileReader(str(folder / f"{name}.bp")) as file:
+        schema = ElementTree.fromstring(file.available_attributes()["vtk.xml"]["Value"].strip('"').replace("\\n", "\n"))
+        arrays = {
+            array.attrib["Name"]: (array.text or array.attrib["Name"]).strip() for array in schema.iter("DataArray")
+        }
+        times = file.read(arrays["TIME"], step_selection=[0, file.num_steps()])
+        assert set(arrays.values()) <= set(file.available_variables()) and arrays[name] == name
+        assert file.read(name, block_id=0, step_selection=[0, 1]).shape[1] == components
+    assert [float(row["time"]) for row in rows] == list(times) == [float(k) for k in data["load_last_step"]]
 
 
 # -- sweeps ----------------------------------------------------------------------------------------------

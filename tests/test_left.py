@@ -1,12 +1,16 @@
 """How far a run is and what time is left of it, in a terminal, in a file, and in quiet."""
 
+from dataclasses import fields
+
 import pytest
 from mpi4py import MPI
 
-from fingerpad.cli import main
+from fingerpad.cli import compare, main
 from fingerpad.io.console import Console
-from fingerpad.io.left import Pace, between, left
+from fingerpad.io.left import Pace, between, in_words, left
+from fingerpad.io.result import Result
 from fingerpad.runs.batch import times_left
+from variational.state import ContactState, StepRecord
 
 PRESS = '[[history]]\nname = "press"\nbone_height = -50e-6\n\n[output]\nerrors = false\nreceptors = false\n'
 MESH = "\n[mesh]\ncontact = 40e-6\nreceptor = 80e-6\ninterface = 150e-6\ngrowth = 0.8\n"
@@ -62,6 +66,11 @@ def test_range_is_in_the_unit_of_the_longer_time(low, high, words):
     assert between(low, high) == words
 
 
+@pytest.mark.parametrize(("seconds", "words"), [(7.26, "7.3 s"), (119.0, "120 s"), (300.0, "5 minutes")])
+def test_time_is_in_the_unit_in_which_it_is_read(seconds, words):
+    assert in_words(seconds) == words
+
+
 def test_time_left_of_a_sweep_is_by_its_runs():
     """Six runs left, two at a time: from two rounds and a half of the shortest to three of the longest."""
     assert times_left([10.0, 30.0], 6, 2) == (25.0, 90.0)
@@ -79,6 +88,22 @@ def test_phase_is_a_line_in_a_file(capsys):
     assert capsys.readouterr().out == "meshing\nestimating; 0 to 0 s left\n"
 
 
+@pytest.mark.parametrize(("whole", "words"), [(True, "20 to 60 s"), (False, "20 to 60 s, path alone")])
+def test_time_left_of_a_step_is_said_to_be_of_the_path_where_more_is_to_come(capsys, monkeypatch, whole, words):
+    """With an accuracy, whose meshes are not known yet."""
+    monkeypatch.setattr(Pace, "left", lambda pace: "20 to 60 s")
+    console = Console(MPI.COMM_SELF)
+    console.expect({"press": 60.0}, 0.0, whole=whole)
+    work = {field.name: 0 for field in fields(StepRecord)}
+    conditions = {"f_ext": 1.0, "voltage": 0.0, "f_contact": 1.0, "f_electrostatic": 0.0, "f_t": 0.0, "mu_app": 0.0}
+    console.step(
+        ContactState(**conditions, load="press", contact_length=1e-3, ridges_in_contact=1, record=StepRecord(**work)),
+        0.5,
+    )
+    console.close()
+    assert capsys.readouterr().out.endswith(f"  {words}\n")
+
+
 @pytest.mark.parametrize("quiet", [False, True])
 def test_run_in_quiet_prints_the_result_alone(tmp_path, write, capsys, quiet):
     """No step, no phase; the result as a table either way, once."""
@@ -87,6 +112,28 @@ def test_run_in_quiet_prints_the_result_alone(tmp_path, write, capsys, quiet):
     said = capsys.readouterr().out
     assert said.count("ridges in contact") == 1
     assert ("time left" in said, "meshing the finger" in said) == (not quiet, not quiet)
+    assert said.endswith(f"Report: {tmp_path / 'out' / 'report.html'}\n") == (not quiet)
+
+
+def test_run_without_a_report_names_none(tmp_path, monkeypatch, capsys):
+    """Where it could not be made."""
+    monkeypatch.setattr("fingerpad.report.write.attempt", lambda folder: None)
+    assert main(["run", "--model", "cylinders", "--out", str(tmp_path / "out")]) == 0
+    assert "Report" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("quiet", [False, True])
+def test_compare_in_quiet_has_models_that_print_nothing(tmp_path, monkeypatch, quiet):
+    given = []
+
+    def solved(scene, model, out, **shown):
+        given.append((model, shown))
+        return Result(scene, model, None, None, None, failure="none")
+
+    monkeypatch.setattr(compare, "solved", solved)
+    main(["compare", "--model", "smooth", "full", "--out", str(tmp_path), *(["--quiet"] if quiet else [])])
+    shown = {"lines": not quiet, "bar": not quiet}
+    assert given == [("smooth", shown), ("full", shown)]
 
 
 def test_sweep_in_quiet_prints_its_table_alone(tmp_path, write, capsys):

@@ -1,5 +1,11 @@
 """A scene on the mesh of a gmsh file: the same numbers as on its own mesh, what is left out, and what is refused."""
 
+import csv
+import hashlib
+import html
+import json
+import re
+import shlex
 from pathlib import Path
 
 import gmsh
@@ -7,9 +13,12 @@ import pytest
 from mpi4py import MPI
 
 import fingerpad as fp
+from fingerpad.cli import main
+from fingerpad.io.place import full_scene
 from fingerpad.model.check import check
 from fingerpad.model.options import plan
-from fingerpad.scene import from_data
+from fingerpad.report.parameters import again
+from fingerpad.scene import from_data, from_kept, load, override
 from geometry import fingertip
 from geometry.parameters import Fingertip, MeshSize
 from tests.test_meshfile import write
@@ -54,6 +63,112 @@ def test_same_numbers_as_on_its_own_mesh(place):
     assert file.charged.bone_height == pytest.approx(own.charged.bone_height, rel=1e-9)
     assert file.charged.contact_length == pytest.approx(own.charged.contact_length, rel=1e-9)
     assert file.steps[-1].mesh_contact < 100e-6  # that of the file: the shortest facet that can touch
+
+
+def test_key_of_a_file_is_the_argument(place, tmp_path):
+    """The same run to the last digit, and the same scene in its folder; a path is looked for beside the file."""
+    write(place, finger(2e-3))
+    loads = '[[history]]\nname = "press"\nf_ext = 5.0\n\n[[history]]\nname = "nudge"\nbone_x = 1e-9\n'
+    rest = "friction = 0.0\n\n[output]\nerrors = false\nreceptors = false\n"
+    file = place.with_name("scene.toml")
+    file.write_text(f'{rest}\n[geometry]\nfile = "mine.msh"\n\n{loads}', encoding="utf-8")
+    by_key = fp.run(fp.Scene.load(file), out=tmp_path / "key")
+    history = [{"name": "press", "f_ext": 5.0}, {"name": "nudge", "bone_x": 1e-9}]
+    by_argument = fp.run(scene(history=history), mesh=place, out=tmp_path / "argument")
+    for name in ("steps.csv", "ridges.csv", "scene.json"):
+        kept = [(tmp_path / door / name).read_text(encoding="utf-8") for door in ("key", "argument")]
+        table = [[row.split(",")[:-1] for row in text.splitlines()] for text in kept]  # without the seconds
+        assert table[0] == table[1]
+    summary = json.loads((tmp_path / "key" / "summary.json").read_text(encoding="utf-8"))
+    assert summary["laws"]["mesh"] == str(place)
+    assert summary["parameters"]["laws"]["mesh"]["sha256"] == hashlib.sha256(place.read_bytes()).hexdigest()
+    assert by_key.charged.contact_length == by_argument.charged.contact_length > 0
+    command = html.unescape(again(summary["parameters"], "full", "key"))
+    assert from_kept(summary["parameters"]).parameters() == fp.Scene.load(file).parameters()
+    assert 'from_kept(json.load(open("scene.json")))' in command
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"geometry": {"file": "gone.msh"}}, "geometry.file: mesh is 'gone.msh', and there is no such file"),
+        ({"geometry": {"file": 5}}, "geometry.file is 5; it must be a text"),
+        ({"geometry": {"file": "m.msh", "width": 0.02}}, "geometry.width is given and geometry.file too, whose mesh"),
+        ({"geometry": {"file": "m.msh"}, "mesh": {"contact": 1e-5}}, "mesh.contact is given and geometry.file too"),
+        ({"geometry": {"file": "m.msh"}, "accuracy": {"mu_app": 0.01}}, "accuracy is given and geometry.file too"),
+    ],
+)
+def test_file_that_cannot_be_is_refused(given, words, tmp_path, monkeypatch):
+    """Before anything is meshed, in one sentence."""
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(fp.SceneError, match=f"^{re.escape(words)}") as refused:
+        from_data(given)
+    assert "\n" not in str(refused.value)
+
+
+def test_file_stays_with_other_keys_and_changes_with_its_own(tmp_path):
+    one, other = (write_text(tmp_path / name, name) for name in ("one.msh", "other.msh"))
+    given = from_data({"geometry": {"file": one, "sc_thickness": 3e-4}})
+    assert given.replace(voltage=100.0).laws == given.laws
+    assert given.replace(geometry={"file": other}).laws == fp.Scene().with_laws(mesh=other).laws
+    assert given.replace(geometry={"file": None}).laws == fp.Scene().laws
+    with pytest.raises(fp.SceneError, match="geometry.width is given and geometry.file too"):
+        given.replace(geometry={"width": 0.021})
+
+
+def test_scene_is_kept_with_its_mesh(tmp_path):
+    """For processes and for going on; a mesh that was changed since is refused."""
+    file = write_text(tmp_path / "one.msh", "one")
+    given = from_data({"geometry": {"file": file}})
+    kept = json.loads(json.dumps(given.parameters()))
+    assert from_kept(kept).parameters() == given.parameters()
+    (tmp_path / "scene.json").write_text(json.dumps(kept), encoding="utf-8")
+    assert full_scene(tmp_path).parameters() == given.parameters(), "of run --resume"
+    write_text(tmp_path / "one.msh", "other")
+    with pytest.raises(fp.SceneError, match="which is not the file that the scene was kept with"):
+        from_kept(kept)
+    with pytest.raises(fp.SceneError, match="laws of its own, written in Python"):
+        from_kept(kept | {"laws": {"friction": {}}})
+
+
+def write_text(path: Path, text: str) -> str:
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def test_command_line_is_the_run_again(tmp_path):
+    file = write_text(tmp_path / "my mesh.msh", "one")
+    kept = from_data({"geometry": {"file": file, "sc_thickness": 3e-4}, "voltage": 100.0}).parameters()
+    words = shlex.split(html.unescape(again(kept, "full", "x")).removeprefix("<pre><code>").partition(" --out")[0])
+    assert words[:2] == ["fingerpad", "run"]
+    assert load(None, dict(override(word) for word in words[3::2])).parameters() == kept
+
+
+def test_check_reads_and_draws_the_file(place, tmp_path, capsys):
+    """Its triangles, and what is wrong with it; the command for meshes refuses it."""
+    write(place)
+    words = ["--set", f"geometry.file={place}", "--set", "voltage=0", "--out", str(tmp_path / "out")]
+    assert main(["check", *words]) == 0
+    said = capsys.readouterr().out
+    assert re.search(r"\d+ triangles of element P2, the shortest edge", said) and "1 ridges can touch" in said
+    assert (tmp_path / "out" / "mesh.png").stat().st_size > 10_000
+    assert main(["mesh", *words[:2], "--out", str(tmp_path / "other.msh")]) == 2
+    assert "geometry.file is given, which is a mesh already" in capsys.readouterr().err
+    place.write_text("no mesh", encoding="utf-8")
+    assert main(["check", *words]) == 2
+    assert "is no mesh of gmsh" in capsys.readouterr().err
+
+
+def test_study_with_a_mesh_runs_its_points(place, tmp_path):
+    """Each in a process of its own, from what is kept of the scene; the path starts at the file of the study."""
+    write(place)
+    file = place.with_name("study.toml")
+    text = 'friction = 0.0\n[geometry]\nfile = "mine.msh"\n[[history]]\nname = "press"\nf_ext = 2.0\n'
+    file.write_text(f'{text}[output]\nerrors = false\n[sweep]\n"history[0].f_ext" = [1.0, 2.0]\n', encoding="utf-8")
+    assert main(["sweep", str(file), "--out", str(tmp_path / "out"), "--jobs", "1", "--quiet"]) == 0
+    with (tmp_path / "out" / "table.csv").open(encoding="utf-8", newline="") as rows:
+        forces = [float(row["history[0].f_ext"]) for row in csv.DictReader(rows) if not row["failure"]]
+    assert forces == [1.0, 2.0]
 
 
 def test_skin_outside_the_ridges_touches(place):

@@ -1,8 +1,11 @@
 """The report of a folder: its numbers are the folder's, a browser opens it, and bad folders are refused or told."""
 
 import csv
+import html
+import itertools
 import json
 import re
+import shlex
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -10,12 +13,13 @@ from pathlib import Path
 import pytest
 
 from fingerpad.cli import main
+from fingerpad.cli import sweep as cli_sweep
 from fingerpad.io.result import Result
 from fingerpad.report import parameters, run_page, trust
 from fingerpad.report.write import NAME, write
 from fingerpad.runs.solve import solved
 from fingerpad.runs.sweep import sweep
-from fingerpad.scene import Scene, SceneError
+from fingerpad.scene import Scene, SceneError, from_data, override
 from tests.browser import asked
 from tests.small_finger import small
 
@@ -258,3 +262,35 @@ def test_files_of_an_earlier_sweep_do_not_stay_beside_a_new_table(tmp_path, monk
 def test_options_are_quoted_for_a_shell():
     assert parameters.option_of("friction", 0.3) == "--set friction=0.3"
     assert parameters.option_of("geometry.ridge_profile", [1.0, -0.1]) == "--set 'geometry.ridge_profile=[1.0, -0.1]'"
+
+
+@pytest.mark.parametrize(
+    "value", [0.3, 5, True, "penalty", "5", "true", "a b'c.msh", "[x].csv", [True, "a"], [1.0, -0.1]]
+)
+def test_option_is_read_as_its_value(value):
+    flag, option = shlex.split(parameters.option_of("key", value))
+    assert flag == "--set" and override(option) == ("key", value)
+
+
+@pytest.mark.parametrize(
+    "axes",
+    [
+        {"voltage": [100 / 3, 200], "geometry.ridge_count": [21, 23]},
+        {"materials.exponent": ["printed", "abaqus"], "output.errors": [True, False]},
+    ],
+)
+def test_sweep_is_reproduced_by_what_its_report_says(tmp_path, axes):
+    """The values as they were, with an accuracy, three of whose keys are empty."""
+    scene = Scene.model_validate({"accuracy": {"mu_app": 0.01}})
+    found = sweep(scene, tmp_path, model="cylinders", **axes)
+    kept = tmp_path / "full" / "0" / "asked.json"  # as runs leave it
+    kept.parent.mkdir(parents=True)
+    kept.write_text(json.dumps(scene.parameters()), encoding="utf-8")
+    code = html.unescape(re.search(r"<pre><code>(.*?)</code>", write(tmp_path).read_text("utf-8"), re.DOTALL)[1])
+    *study, command = code.splitlines()
+    (tmp_path / "study.toml").write_text("\n".join(study), encoding="utf-8")
+    words = shlex.split(command)
+    given = {name: [word for flag, word in itertools.pairwise(words) if flag == name] for name in ("--set", "--over")}
+    data, along = cli_sweep.study(tmp_path / "study.toml" if study else None, given["--set"], given["--over"])
+    assert from_data(data).parameters() == scene.parameters()
+    assert {key: tuple(values) for key, values in along.items()} == found.axes

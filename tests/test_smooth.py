@@ -1,5 +1,7 @@
 """Rung 2 on a finger of few ridges, lightly pressed: what it answers, and that it is in balance."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -9,6 +11,7 @@ from fingerpad.richardson import ONCE
 from fingerpad.scene import SceneError, from_data
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
+from variational.contact.ridge_law import RidgeTable
 from variational.state import RESULTS, ContactState
 
 SCENE = {
@@ -62,18 +65,29 @@ def rough(voltage: float, contact: float):
     return from_data(SCENE | {"voltage": voltage, "roughness": ROUGH, "mesh": mesh})
 
 
-@pytest.mark.long
-def test_facets_that_lose_the_ridge_are_refused(tmp_path):
-    """At 200 V a lifted ridge of facets of 20 um is lost while it is pressed on the screen: no answer comes of that."""
+def test_table_of_many_rows_keeps_those_that_bend():
+    """Of a line with a bend, its ends and the bend; a column of zeros has no part."""
+    y = np.linspace(0.0, 1.0, 61)
+    rows = np.stack([y, np.maximum(y - y[20], 0.0), 0 * y], axis=1)
+    np.testing.assert_array_equal(ridge_cell.thinned(rows, 3), rows[[0, 20, 60]])
+    assert ridge_cell.thinned(rows, 61) is rows
+
+
+def test_facets_that_lose_the_ridge_are_refused():
+    """A lifted ridge that is lost while 2 % of its largest force press it on the screen: no answer comes of that."""
+    y, force = np.array([-2e-6, 0.0, 2e-6, 4e-6]), np.array([1.0, 0.02, 0.0, 0.0])
+    table = RidgeTable(y, force, 0 * y, (force > 0) * 1e-5)
     with pytest.raises(SceneError, match=r"mesh.contact is 2e-05 m, .* is lost at .*; give a mesh.contact of 1e-05 m"):
-        smooth.solve(rough(200.0, 20e-6), tmp_path)
+        smooth._refuse_lost(rough(200.0, 20e-6), table)
+    smooth._refuse_lost(rough(200.0, 20e-6), replace(table, contact=np.array([1.0, 0.009, 0.0, 0.0])))
 
 
 @pytest.mark.long
-def test_error_covers_the_difference_to_finer_facets(tmp_path):
-    """Facets of 20 um at 100 V, against those of a quarter of their size."""
-    coarse = smooth.solve(rough(100.0, 20e-6), tmp_path)
-    finer = smooth._solved(rough(100.0, 5e-6), tmp_path, MPI.COMM_WORLD)[1]
+@pytest.mark.parametrize("voltage", [100.0, 200.0])
+def test_error_covers_the_difference_to_finer_facets(tmp_path, voltage):
+    """Facets of 20 um, against those of a quarter of their size; at 200 V a table of 10 um has too many rows."""
+    coarse = smooth.solve(rough(voltage, 20e-6), tmp_path)
+    finer = smooth.solve(rough(voltage, 5e-6), tmp_path).named
     for name, state in coarse.named.items():
         for quantity in ("f_electrostatic", "contact_length"):
             change = abs(getattr(state, quantity) - getattr(finer[name], quantity))
@@ -119,6 +133,42 @@ def test_every_number_comes_with_its_error(answer):
     slip = answer[0].full_slip
     assert 0 < slip.error.contact_length < 0.5 * slip.contact_length
     assert answer[0].cost.factorisations > 0
+
+
+class Recorder:
+    """In the place of a console."""
+
+    def __init__(self):
+        self.whole, self.told = 0.0, []
+
+    def expect(self, loads, after):
+        self.whole = sum(loads.values()) + after
+
+    def phase(self, text, part):
+        self.told.append((text, part))
+
+
+def test_stages_are_those_that_take_time(answer):
+    """Tables that are kept are read; the two fingers are half of the time each."""
+    shown = Recorder()
+    smooth.solve(from_data(SCENE), answer[1], console=shown)
+    assert [part for _, part in shown.told] == [0.0, 0.5]
+    assert all(text.startswith("the smooth finger") for text, _ in shown.told)
+    assert shown.whole == 2 * smooth._FINGER
+
+
+@pytest.mark.parametrize(("voltage", "count"), [(0.0, 4), (100.0, 6)])
+def test_tables_that_are_missing_count(tmp_path, voltage, count):
+    """Of each of two meshes: one table or two, and the finger. Its last stage is not the end."""
+    shown = Recorder()
+    scenes = [from_data(SCENE | {"voltage": voltage, "mesh": SCENE["mesh"] | {"contact": h}}) for h in (1e-5, 5e-6)]
+    stages = smooth._Stages(scenes, tmp_path, MPI.COMM_SELF, shown)
+    for k in range(count):
+        stages.begin(str(k))
+    parts = [part for _, part in shown.told]
+    assert [text for text, _ in shown.told] == [str(k) for k in range(count)]
+    assert parts[0] == 0.0 and parts == sorted(set(parts))
+    assert parts[-1] == pytest.approx(1 - smooth._FINGER / shown.whole)
 
 
 def test_table_that_ends_too_soon_is_said(answer, monkeypatch):

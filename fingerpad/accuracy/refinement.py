@@ -57,6 +57,7 @@ class Refinement:
         failure: why the accuracy asked for is not reached, else empty.
         notes: remarks on the estimate.
         penalty: change of each quantity by a rigid screen, where contact is a penalty.
+        to_come: solves that are still to come, the one that starts now among them; more where they are not enough.
     """
 
     def __init__(
@@ -90,6 +91,7 @@ class Refinement:
         self.base = self._stepped = path
         self.failure, self.notes = "", list[str]()
         self.penalty: dict[str, float] = {}
+        self.to_come = 0
         receptors = "sed" in self.asked or (not self.asked and model.options.receptors)
         keys = [key for key in _SIZES if key != "receptor" or receptors]
         if model.options.friction and "charged" in path.states and {"contact_length", "sed"} & set(self.asked):
@@ -120,9 +122,13 @@ class Refinement:
                 self.failure = f"the accuracy asked for could not be established: {error}"
             else:
                 self._note(f"discretisation errors could not be estimated: {error}")
-        if self.solves.restart is None and self.model.contact.formulation == "penalty" and self.base.states:
+        if self.solves.restart is None and self._has_penalty() and self.base.states:
+            self.to_come = 1
             self._stiffen()
         return self.solves.restart
+
+    def _has_penalty(self) -> bool:
+        return self.model.contact.formulation == "penalty"
 
     def _stiffen(self) -> None:
         """Solve again over a screen of twice the stiffness."""
@@ -143,7 +149,8 @@ class Refinement:
     def _refine(self) -> None:
         todo = list(self.parameters)
         for _ in range(1 + _ROUNDS):
-            for key in todo:
+            for k, key in enumerate(todo):
+                self.to_come = len(todo) - k + self._has_penalty()
                 self._halve(key)
             self._report()
             todo = to_refine(self.parameters, self.allowed())

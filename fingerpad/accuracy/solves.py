@@ -103,6 +103,13 @@ class Solves:
         )
         return solve
 
+    def least(self) -> float:
+        """Return the processor time (s) of this rank that a solve to come takes at least, about; 0 where not known.
+
+        It is that of the last solve on another mesh than the path's, since those to come have no larger elements.
+        """
+        return next((s.processor_seconds for s in reversed(self.found) if s.mesh != self.found[0].mesh), 0.0)
+
     def cost(self) -> dict[str, Any]:
         """Return what each solve and all of them took, ready for JSON; collective."""
         seconds = [float(np.sum(self._comm.allgather(solve.processor_seconds))) for solve in self.found]

@@ -3,6 +3,7 @@
 import importlib.util
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.io.folder import check_folder
@@ -14,6 +15,9 @@ from fingerpad.model.touching import by_rule
 from fingerpad.scene import Load, Scene
 from fingerpad.scene.laws import used
 from geometry.sizing import touching_ridges
+
+if TYPE_CHECKING:
+    from fingerpad.cli.section import Section
 
 _EXAMPLES = """
     fingerpad check scene.toml --out results/check
@@ -32,18 +36,28 @@ def main(argv: Sequence[str]) -> int:
     scene = scene_of(args)
     check_folder(args.out)
     needed = plan(scene)
+    own = _own_mesh(scene, needed)
     for title, lines in (
         ("Loads, in order", _loads(scene)),
         ("Laws, numbers in SI units", (f"{name.replace('_', ' ')}: {law}" for name, law in used(scene).items())),
-        ("Model", _model(scene, needed)),
+        ("Model", _model(scene, needed) if own is None else _model_of_file(scene, own)),
         ("Omitted", (f"{omission.what}: {omission.reason}" for omission in needed.omitted)),
-        (f"Cost, an estimate within a factor of {cost.FACTOR:g}", _cost(scene, needed)),
+        (f"Cost, an estimate within a factor of {cost.FACTOR:g}", _cost(scene, needed, own)),
     ):
         shown = list(lines) or ["nothing"]
         echo("\n".join([title, *(f"  {line}" for line in shown)]))
-    echo(_picture(scene, needed, args.out))
+    echo(_picture(scene, needed, args.out, own))
     echo("The scene can be run.")
     return 0
+
+
+def _own_mesh(scene: Scene, needed: ModelOptions) -> "Section | None":
+    """Return the mesh of a scene's file, checked; None where it has none."""
+    if scene.laws.mesh is None:
+        return None
+    from fingerpad.cli import section  # gmsh
+
+    return section.section(scene, needed)
 
 
 def _loads(scene: Scene) -> Iterator[str]:
@@ -86,8 +100,22 @@ def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
     yield f"some {found.memory * 1e-9:.2g} GB of memory, of the {scene.numerics.memory * 1e-9:.3g} GB allowed"
 
 
-def _cost(scene: Scene, needed: ModelOptions) -> Iterator[str]:
-    found = cost.expected(scene, needed)
+def _model_of_file(scene: Scene, own: "Section") -> Iterator[str]:
+    found = estimate(scene, triangles=len(own.triangles))
+    yield f"{len(own.triangles)} triangles of element {scene.numerics.element}, the shortest edge {_um(own.shortest)}"
+    yield f"the lowest point is {_um(own.lowest[1])} above the screen"
+    yield f"some {about(found.unknowns)} unknowns, within a factor of 1.5"
+    yield f"{own.ridges} ridges can touch, as the file has them"
+    yield f"some {found.memory * 1e-9:.2g} GB of memory; a mesh of a file is not refused for it"
+
+
+def _um(length: float) -> str:
+    return f"{length * 1e6:.3g} µm"
+
+
+def _cost(scene: Scene, needed: ModelOptions, own: "Section | None") -> Iterator[str]:
+    unknowns = None if own is None else estimate(scene, triangles=len(own.triangles)).unknowns
+    found = cost.expected(scene, needed, unknowns)
     few, many = (about(found.factorisations * factor) for factor in (1 / cost.FACTOR, cost.FACTOR))
     yield f"{few} to {many} factorisations"
     yield f"{_within(found.seconds)} of processor time, on a machine like that of docs/performance.md:"
@@ -105,7 +133,7 @@ def _within(seconds: float) -> str:
     return between(seconds / cost.FACTOR, seconds * cost.FACTOR)
 
 
-def _picture(scene: Scene, needed: ModelOptions, folder: Path) -> str:
+def _picture(scene: Scene, needed: ModelOptions, folder: Path, own: "Section | None") -> str:
     """Draw the mesh; return what was drawn, or why nothing was."""
     missing = [name for name in ("gmsh", "matplotlib") if importlib.util.find_spec(name) is None]
     if missing:
@@ -113,5 +141,5 @@ def _picture(scene: Scene, needed: ModelOptions, folder: Path) -> str:
     from fingerpad.cli import section
 
     folder.mkdir(parents=True, exist_ok=True)
-    section.draw(folder / "mesh.png", section.section(scene, needed), by_rule(scene))
+    section.draw(folder / "mesh.png", own or section.section(scene, needed), by_rule(scene))
     return f"Mesh drawn: {folder / 'mesh.png'}"

@@ -36,6 +36,7 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--contact-length", type=positive(float), metavar="M", help="cylinders: the length in contact")
     parser.add_argument("--ridges", type=positive(int), metavar="N", help="cylinders: on so many ridges")
     parser.add_argument("--run", type=path, metavar="DIR", help="cylinders: contact lengths of this full run")
+    parser.add_argument("--quiet", action="store_true", help="print the table alone: no steps, no progress bar")
     args, petsc = parser.read_with_petsc(argv)
     given = [name for name in ("contact_length", "ridges", "run") if getattr(args, name) is not None]
     if given and "cylinders" not in args.model:
@@ -51,7 +52,8 @@ def main(argv: Sequence[str]) -> int:
     def answer(model: str) -> Result:
         if model == "cylinders":
             return cylinders.solve(scene, footprint)
-        return solved(scene, model, args.out / "full" if model == "full" else args.out, lines=True)
+        out = args.out / "full" if model == "full" else args.out
+        return solved(scene, model, out, lines=not args.quiet, bar=not args.quiet)
 
     def answer_or_refusal(model: str) -> Result:
         try:

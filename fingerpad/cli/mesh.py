@@ -27,6 +27,8 @@ def main(argv: Sequence[str]) -> int:
     if args.out.suffix != ".msh":
         raise SceneError(f"--out {args.out.name[:60]} does not end with .msh, the ending of the format of gmsh")
     scene = scene_of(args)
+    if scene.laws.mesh is not None:
+        raise SceneError("geometry.file is given, which is a mesh already; fingerpad check draws it")
     from fingerpad.cli import section
 
     found = section.write(scene, args.out)

@@ -8,6 +8,7 @@ from fingerpad.cli.arguments import Parser, echo, path, scene_of
 from fingerpad.io import terminal
 from fingerpad.io.folder import check_folder
 from fingerpad.io.place import full_scene
+from fingerpad.report.write import NAME
 from fingerpad.runs.solve import MODELS, solved
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
@@ -54,6 +55,7 @@ def main(argv: Sequence[str]) -> int:
         if petsc:
             raise SceneError(f"{petsc[0]} is given and --model is cylinders, which solves nothing by PETSc")
         echo(str(solved(scene, args.model, args.out if terminal.rank() == 0 else None, force=args.force)))
+        _say_report(args)
         return 0
     from fingerpad.startup import start
 
@@ -74,7 +76,14 @@ def main(argv: Sequence[str]) -> int:
         echo(str(result))
     elif args.force is not None:
         echo(f"\n{result.finger}")
+    _say_report(args)
     return exit_code(result)
+
+
+def _say_report(args: Namespace) -> None:
+    """Print where the report of the run is, if there is one."""
+    if not args.quiet and (args.out / NAME).exists():
+        echo(f"Report: {args.out / NAME}")
 
 
 def _cut_short(args: Namespace) -> Scene:

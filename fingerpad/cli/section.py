@@ -32,6 +32,17 @@ class Section:
     ridges: int
     """Number of ridges that can touch."""
 
+    @property
+    def lowest(self) -> NDArray[np.float64]:
+        """The lowest vertex (m), shape (2,)."""
+        return np.asarray(self.points[self.points[:, 1].argmin()])
+
+    @property
+    def shortest(self) -> float:
+        """Length of the shortest edge (m)."""
+        corners = self.points[self.triangles]
+        return float(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).min())
+
 
 @contextmanager
 def meshed(scene: Scene, receptors: bool, half: bool) -> Iterator[Any]:
@@ -62,9 +73,31 @@ def meshed(scene: Scene, receptors: bool, half: bool) -> Iterator[Any]:
 
 
 def section(scene: Scene, needed: ModelOptions) -> Section:
-    """Return the mesh of what a run of a scene would hold, for a picture."""
+    """Return the mesh of what a run of a scene would hold, for a picture; that of its file, checked, if it has one.
+
+    Raises:
+        SceneError: the finger cannot be meshed, or the file has no such mesh.
+    """
+    if scene.laws.mesh is not None:
+        return _of_file(Path(scene.laws.mesh))
     with meshed(scene, needed.receptors, not needed.both_halves) as gmsh:
         return _read(gmsh)
+
+
+def _of_file(file: Path) -> Section:
+    import gmsh
+
+    from geometry import meshfile
+
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.model.add("file")
+        return _read(gmsh, meshfile.file(file)())
+    except GeometryError as error:
+        raise SceneError(f"mesh: {error}") from None
+    finally:
+        gmsh.finalize()
 
 
 def write(scene: Scene, file: Path) -> Section:
@@ -82,10 +115,12 @@ def write(scene: Scene, file: Path) -> Section:
         return _read(gmsh)
 
 
-def _read(gmsh: Any) -> Section:
+def _read(gmsh: Any, unit: float = 1e-3) -> Section:
+    """Return the mesh of the current session, whose lengths are in a unit (m)."""
     numbers, coordinates, _ = gmsh.model.mesh.getNodes()
     triangles, layers = [], []
-    for tag in tags.LAYERS.values():
+    groups = {tag for _, tag in gmsh.model.getPhysicalGroups(2)}
+    for tag in filter(groups.__contains__, tags.LAYERS.values()):
         for entity in gmsh.model.getEntitiesForPhysicalGroup(2, tag):
             for nodes in gmsh.model.mesh.getElements(2, entity)[2]:
                 triangles.append(nodes.astype(int).reshape(-1, 3))
@@ -94,7 +129,7 @@ def _read(gmsh: Any) -> Section:
     every = np.concatenate(triangles)
     used = np.unique(every)  # the others guide the element size
     order = np.argsort(numbers)
-    points = coordinates.reshape(-1, 3)[order[np.searchsorted(numbers, used, sorter=order)], :2] * 1e-3
+    points = coordinates.reshape(-1, 3)[order[np.searchsorted(numbers, used, sorter=order)], :2] * unit
     return Section(points, np.searchsorted(used, every), np.concatenate(layers), ridges)
 
 
@@ -106,34 +141,47 @@ def draw(file: Path, found: Section, scene: Scene) -> None:
     shape = scene.geometry
     period, deep = shape.ridge_wavelength, shape.sc_thickness + shape.ve_thickness
     size = scene.mesh.contact
-    views = (
+    centre = 0.0
+    views: tuple[tuple[str, tuple[float, float] | None], ...] = (
         ("whole finger", None),
         (f"ridge 0, of {period * 1e3:.3g} mm", (1.5 * deep, 2 * deep)),
         (f"tip of ridge 0: facets of {size * 1e6:.3g} µm", (20 * size, 25 * size)),
     )
+    if scene.laws.mesh is not None:
+        centre, size = found.lowest[0], found.shortest
+        views = (
+            ("whole mesh", None),
+            ("around the lowest point", (100 * size, 130 * size)),
+            (f"lowest point: shortest edge of {size * 1e6:.3g} µm", (20 * size, 25 * size)),
+        )
     title = f"Mesh of the unloaded finger: {len(found.triangles)} triangles, {found.ridges} ridges can touch\n"
     with plot.panels(file, title, 3) as (figure, panels):
         x, y = found.points.T * 1e3
         for ax, (title, view) in zip(panels, views, strict=True):
-            _fill(ax, x, y, found, view)
+            _fill(ax, x, y, found, view, centre)
             ax.set(xlabel="x (mm)", ylabel="height (mm)", aspect="equal", title=title)
             ax.axhline(0, color="k", lw=2)
             ax.locator_params(nbins=5)
             if view is not None:
-                left = 0.0 if x.min() > -1e-6 else -view[0] * 1e3
-                ax.set(xlim=(left, view[0] * 1e3), ylim=(-0.03 * view[1] * 1e3, view[1] * 1e3))
+                left = 0.0 if x.min() > -1e-6 else (centre - view[0]) * 1e3
+                ax.set(xlim=(left, (centre + view[0]) * 1e3), ylim=(-0.03 * view[1] * 1e3, view[1] * 1e3))
         handles = [plot.patch(LAYER_COLOURS[tag], name) for name, tag in tags.LAYERS.items()]
         figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
 
 
 def _fill(
-    ax: Any, x: NDArray[np.float64], y: NDArray[np.float64], found: Section, view: tuple[float, float] | None
+    ax: Any,
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    found: Section,
+    view: tuple[float, float] | None,
+    middle: float,
 ) -> None:
     """Fill the triangles that are in a view, with edges where there is room for them."""
     triangles, layer = found.triangles, found.layer
     if view is not None:
         centre = found.points[triangles].mean(axis=1)
-        inside = (np.abs(centre[:, 0]) < 1.2 * view[0]) & (centre[:, 1] < 1.2 * view[1])
+        inside = (np.abs(centre[:, 0] - middle) < 1.2 * view[0]) & (centre[:, 1] < 1.2 * view[1])
         triangles, layer = triangles[inside], layer[inside]
     from matplotlib.colors import ListedColormap
 

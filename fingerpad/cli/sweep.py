@@ -11,7 +11,7 @@ from fingerpad.runs.solve import MODELS
 from fingerpad.runs.sweep import FILES, sweep
 from fingerpad.scene import from_data, override
 from fingerpad.scene.messages import SceneError, clip, show
-from fingerpad.scene.reading import flat, plain, put, read
+from fingerpad.scene.reading import flat, put, read_study
 
 _EXAMPLES = """
     fingerpad sweep --over voltage=0:200:5 --over f_ext=25,75 --jobs 2 --out results/sweep
@@ -56,7 +56,7 @@ def study(file: Path | None, given: Sequence[str], over: Sequence[str]) -> tuple
     Raises:
         SceneError: nothing is varied, or a key is given twice.
     """
-    data: dict[str, Any] = plain(read(file)) if file is not None else {}
+    data = read_study(file) if file is not None else {}
     axes: dict[str, list[Any]] = {}
     table = data.pop("sweep", {})
     if not isinstance(table, dict):

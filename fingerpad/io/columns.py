@@ -11,6 +11,13 @@ class Column(NamedTuple):
     meaning: str
 
 
+FIELDS = {
+    "displacement": Column("m", "displacement, plane"),
+    "stress": Column("Pa", "Cauchy stress, 3 x 3, row by row"),
+    "sed": Column("J/m^3", "strain energy density per reference volume"),
+}
+"""Variables of the files for ParaView, each in the file of its name."""
+
 STEPS = {
     "step": Column("1", "number of the accepted step"),
     "load": Column("1", "name of the load"),

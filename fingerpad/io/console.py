@@ -51,7 +51,14 @@ class Console:
         if self._lines:
             self._progress.console.print(text, highlight=False, soft_wrap=True, markup=False)
 
-    def expect(self, loads: Mapping[str, float], after: float, slipping: Collection[str] = (), mu_0: float = 0) -> None:
+    def expect(
+        self,
+        loads: Mapping[str, float],
+        after: float,
+        slipping: Collection[str] = (),
+        mu_0: float = 0,
+        whole: bool = True,
+    ) -> None:
         """Take what is expected of a path that starts now.
 
         Args:
@@ -59,8 +66,11 @@ class Console:
             after: time of what comes after the loads (s).
             slipping: names of the loads that end with full slip.
             mu_0: friction coefficient.
+            whole: whether this is all; else what follows takes a time that cannot be told, and the time left is of the
+                path alone.
         """
         self._pace, self._slipping, self._mu_0 = Pace([*loads.values()], after), slipping, mu_0
+        self._of = "" if whole else ", path alone"
 
     def phase(self, text: str, part: float | None = None) -> None:
         """Show what is being done besides steps: in the bar, or as a line where there is none.
@@ -91,7 +101,7 @@ class Console:
         assert s.record is not None
         most = self._mu_0 * s.f_contact if s.load in self._slipping else 0.0
         self._pace.on_path(done, abs(s.f_t) / most if most > 0 else 0.0)
-        left = self._pace.left()
+        left = self._pace.left() + self._of
         self.show(
             f"{s.step:4d} {s.load[:7]:7s} {s.f_ext:7.3f} {s.voltage:5.1f} {s.bone_x * 1e3:7.4f} "
             f"{s.bone_height * 1e3:8.5f} {s.f_t:8.4f} {s.mu_app:7.4f} {s.f_electrostatic:7.3f} "
@@ -100,7 +110,9 @@ class Console:
         )
         loads = f"{s.load}: {s.f_ext:.1f} N/m, {s.voltage:.0f} V, x {s.bone_x * 1e3:.2f} mm"
         words = f"{loads}, µ_app {s.mu_app:.3f}"
-        self._progress.update(self._task, completed=self._pace.part, description=words, left=f"{left} left")
+        self._progress.update(
+            self._task, completed=self._pace.part, description=words, left=f"{self._pace.left()} left{self._of}"
+        )
 
     def close(self) -> None:
         """Take the progress bar away."""

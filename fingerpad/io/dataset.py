@@ -14,13 +14,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.io import netcdf_file
 
 from fingerpad.io import columns
 from fingerpad.io.columns import Column
 from fingerpad.io.files import replace
 from fingerpad.io.states import STATES
 from fingerpad.scene.reading import flat
-from variational.state import ContactState, Errors
+from variational.state import ContactState, Errors, Skin
 
 if TYPE_CHECKING:
     import xarray
@@ -77,6 +78,25 @@ def save(result: "Result") -> str:
     """
     assert result.folder is not None
     return write(result.folder / FILE, lambda: dataset(result))
+
+
+def skins(folder: Path) -> dict[str, Skin]:
+    """Return the skin of the named states that ``result.nc`` of a folder holds; none where it cannot be read."""
+    try:
+        with netcdf_file(folder / FILE, mmap=False) as file:
+            if "skin_ridge" not in file.variables:
+                return {}
+            ridge, *values = (np.array(file.variables[f"skin_{name}"][:]) for name in ("ridge", *columns.SKIN))
+    except (OSError, ValueError, TypeError, KeyError, IndexError):  # no file, or not a whole one
+        return {}
+    found = {}
+    for name, numbers, *parts in zip(STATES, ridge, *values, strict=True):
+        facets = np.isfinite(numbers)
+        points = np.isfinite(parts[0]).any(axis=0)
+        if facets.any():
+            arrays = {key: part[facets][:, points] for key, part in zip(columns.SKIN, parts, strict=True)}
+            found[name] = Skin(ridge=numbers[facets].astype(int), **arrays)
+    return found
 
 
 def write(file: Path, make: "Callable[[], xarray.Dataset]") -> str:

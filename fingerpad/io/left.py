@@ -26,9 +26,19 @@ def left(expected: float, elapsed: float, part: float) -> tuple[float, float]:
 
 def between(low: float, high: float) -> str:
     """Return a range of times (s) in words, in the unit in which the longer one is read."""
-    units = ((3600.0, "hours"), (60.0, "minutes"))
-    size, unit = next(((s, u) for s, u in units if high >= 2 * s), (1.0, "s"))
+    size, unit = _unit(high)
     return f"{about(low / size)} to {about(high / size)} {unit}"
+
+
+def in_words(seconds: float) -> str:
+    """Return a time (s) in words, in the unit in which it is read."""
+    size, unit = _unit(seconds)
+    return f"{about(seconds / size)} {unit}"
+
+
+def _unit(seconds: float) -> tuple[float, str]:
+    units = ((3600.0, "hours"), (60.0, "minutes"))
+    return next(((s, u) for s, u in units if seconds >= 2 * s), (1.0, "s"))
 
 
 def about(value: float) -> str:

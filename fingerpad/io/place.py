@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from fingerpad.io.files import replace_json
-from fingerpad.scene import Scene, SceneError, from_data
+from fingerpad.scene import Scene, SceneError, from_kept
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -30,6 +30,7 @@ LEFT = (
         "receptors.csv",
         "*_final.csv",
         "coupling.csv",
+        "fields.csv",
         "summary.json",
         "summary.json.part",
         "run.log",
@@ -149,6 +150,7 @@ def full_scene(folder: Path) -> Scene:
 
     Raises:
         PlaceError: there is none, or it is of another model, or has laws of its own.
+        SceneError: its mesh is gone or was changed.
     """
     try:
         kept = dict(json.loads((folder / "scene.json").read_text(encoding="utf-8")))
@@ -156,12 +158,12 @@ def full_scene(folder: Path) -> Scene:
         raise PlaceError(f"{_short(folder)} has no scene.json, and so no run to go on with") from None
     if "model" in kept:
         raise PlaceError(f"{_short(folder)} has a run of the model {kept['model']!r}; only a full one can go on")
-    if "laws" in kept:
+    if kept.get("laws", {}).keys() - {"mesh"}:
         raise PlaceError(
-            f"the run in {_short(folder)} has laws or a mesh of its own; go on with it from Python, by fp.run with the "
-            "same ones and resume=True"
+            f"the run in {_short(folder)} has laws of its own; go on with it from Python, by fp.run with the same ones "
+            "and resume=True"
         )
-    return from_data(kept)
+    return from_kept(kept)
 
 
 def _difference(old: dict[str, Any], new: dict[str, Any], table: str = "") -> str:

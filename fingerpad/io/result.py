@@ -193,17 +193,21 @@ class Result:
 
     @classmethod
     def load(cls, folder: str | Path) -> "Result":
-        """Return the result of a run from its folder; arrays along the skin stay in ``surface.npz`` there.
+        """Return the result of a run from its folder; the skin of its named states is that of ``result.nc`` there.
 
         Raises:
             SceneError: the folder holds no result that can be read.
         """
+        from fingerpad.io import dataset  # it takes a Result
         from fingerpad.io.drawing import Drawing  # Matplotlib, which reading numbers does not need
 
         folder = Path(folder)
         try:
             summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
             found = cls.from_dict(summary, folder)
+            skins = dataset.skins(folder)
+            known = {name: replace(state, skin=skins.get(name)) for name, state in found.named.items()}
+            found = replace(found, **{name: known.get(name) for name in STATES})  # type: ignore[arg-type]
             if found.model != "full":
                 return found
             with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:

@@ -7,7 +7,7 @@ from typing import Any
 
 from mpi4py import MPI
 
-from fingerpad.io import dataset
+from fingerpad.io import columns, dataset
 from fingerpad.io.files import Table, replace_json
 from fingerpad.io.place import Place
 from fingerpad.io.result import Result
@@ -57,10 +57,13 @@ class Writer:
                 self._tables[name] = Table(self._place.folder / f"{name}.csv", row)
             self._tables[name].write(row)
 
-    def fields(self, step: int) -> None:
-        """Write the present fields under the number of their step; collective."""
+    def fields(self, step: int, load: str) -> None:
+        """Write the present fields under the number of their step, and the load's name and units beside; collective."""
         if self._fields is not None:
             self._fields.write(float(step))
+            for name, column in columns.FIELDS.items():
+                about = {"unit": column.unit, "meaning": column.meaning}
+                self.row("fields", {"file": f"{name}.bp", "variable": name, "time": step, "load": load} | about)
 
     def summary(self, found: Mapping[str, Any]) -> None:
         """Write ``summary.json``, on rank 0."""

@@ -48,16 +48,23 @@ class Cost:
         return self.path + self.errors + self.beside
 
 
-def expected(scene: Scene, needed: ModelOptions) -> Cost:
-    """Return what the path of a scene's loads will take on the mesh that it starts from."""
+def expected(scene: Scene, needed: ModelOptions, unknowns: float | None = None) -> Cost:
+    """Return what the path of a scene's loads will take on the mesh that it starts from.
+
+    Args:
+        scene: what is run.
+        needed: the parts of the model.
+        unknowns: of a mesh that is there; without it they are estimated.
+    """
     loads = factorisations(scene)
-    path = sum(by_load(scene, needed))
+    path = sum(by_load(scene, needed, unknowns))
     return Cost(sum(loads), path, ERRORS * path if needed.errors else 0.0, BESIDE * path)
 
 
-def by_load(scene: Scene, needed: ModelOptions) -> list[float]:
-    """Return the processor time (s) of each load."""
-    unknowns = estimate(scene, needed).unknowns
+def by_load(scene: Scene, needed: ModelOptions, unknowns: float | None = None) -> list[float]:
+    """Return the processor time (s) of each load; arguments as of :func:`expected`."""
+    if unknowns is None:
+        unknowns = estimate(scene, needed).unknowns
     return [SECONDS * number * unknowns for number in factorisations(scene)]
 
 

@@ -30,13 +30,16 @@ class Budget:
     """Bytes, on all ranks together."""
 
 
-def estimate(scene: Scene, needed: ModelOptions | None = None) -> Budget:
+def estimate(scene: Scene, needed: ModelOptions | None = None, triangles: int | None = None) -> Budget:
     """Return what a scene will come to, some milliseconds.
 
     Args:
         scene: one whose geometry was checked.
         needed: the parts of the model; those that the scene needs if None.
+        triangles: of a mesh of a file.
     """
+    if triangles is not None:
+        return _of(triangles, scene.numerics.element)
     return _budget(scene.geometry, by_rule(scene).mesh, scene.numerics.element, needed or plan(scene))
 
 
@@ -62,7 +65,10 @@ def refuse_beyond(finger: Fingertip, size: MeshSize, numerics: Numerics, needed:
 
 
 def _budget(finger: Fingertip, size: MeshSize, element: str, needed: ModelOptions) -> Budget:
-    triangles = count.triangles(finger, size, needed.receptors, not needed.both_halves)
+    return _of(count.triangles(finger, size, needed.receptors, not needed.both_halves), element)
+
+
+def _of(triangles: float, element: str) -> Budget:
     unknowns = _UNKNOWNS[element] * triangles
     return Budget(triangles, unknowns, _AT_LEAST + _FIRST * unknowns**_POWER)
 

@@ -93,7 +93,7 @@ class Report:
             last = done[-1].step if done else 0
             if self._written != last == self._simulation.finger.continuation.steps:
                 self._written = last
-                self._writer.fields(last)
+                self._writer.fields(last, done[-1].load if done else "")
                 self._log_checks()
                 snapshot, merkel = self._viewer.picture()
                 if snapshot is not None:

@@ -37,7 +37,7 @@ from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
 from variational.attraction.insulator import VACUUM_PERMITTIVITY
 from variational.body import Body
-from variational.contact.ridge_law import RidgeTable
+from variational.contact.ridge_law import KNOTS, RidgeTable
 from variational.materials.material import Material
 from variational.materials.ogden import Ogden
 from variational.problem import Interface
@@ -83,9 +83,7 @@ def tables(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Table
     Raises:
         StepFailed: the cell could not be pressed or slid.
     """
-    made_of = comm.bcast(_made_of(scene))  # a law without a source counts by the process that it is in
-    name = hashlib.sha256(json.dumps(made_of, sort_keys=True).encode()).hexdigest()[:16]
-    file = folder / f"{name}.json"
+    made_of, file = _place(scene, folder, comm)
     data = json.loads(file.read_text(encoding="utf-8")) if comm.rank == 0 and file.exists() else None
     data = comm.bcast(data)
     if data is None:
@@ -96,7 +94,20 @@ def tables(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Table
             replace_json(file, data)
     normal, slip = (RidgeTable(**{k: np.array(v) for k, v in data[state].items()}) for state in ("normal", "slip"))
     rest = {k: data[k] for k in ("period", "tangential", "seconds", "factorisations", "unknowns")}
-    return Tables(name, normal, slip, **rest)
+    return Tables(file.stem, normal, slip, **rest)
+
+
+def are_kept(scene: Scene, folder: Path, comm: MPI.Comm) -> bool:
+    """Return whether the tables of a scene's ridge are in a folder; collective."""
+    file = _place(scene, folder, comm)[1]
+    return bool(comm.bcast(file.exists() if comm.rank == 0 else None))
+
+
+def _place(scene: Scene, folder: Path, comm: MPI.Comm) -> tuple[dict[str, Any], Path]:
+    """Return what a table depends on, and its file; collective."""
+    made_of = comm.bcast(_made_of(scene))  # a law without a source counts by the process that it is in
+    name = hashlib.sha256(json.dumps(made_of, sort_keys=True).encode()).hexdigest()[:16]
+    return made_of, folder / f"{name}.json"
 
 
 def _made_of(scene: Scene) -> dict[str, Any]:
@@ -213,11 +224,29 @@ class _Cell:
         apart = np.concatenate([[last + _SNAP], _APART[_APART > last + 2 * _SNAP]])
         pull = [_unpressed(self.finger, self.closure(0.0).d_eq, self.scene, y) for y in apart]
         free = np.stack([apart, 0 * apart, pull, 0 * apart], axis=1)
+        found = thinned(found, KNOTS - len(free) - 1)
         everything = np.concatenate([found, free, [[_NOWHERE, 0.0, 0.0, 0.0]]])
         return {name: list(map(float, column)) for name, column in zip(_COLUMNS, everything.T, strict=True)}
 
 
 _COLUMNS = ("y", "contact", "attraction", "length")
+
+
+def thinned(rows: Array, most: int) -> Array:
+    """Return no more rows of a table, those left out that a line between their neighbours comes nearest to.
+
+    Args:
+        rows: heights and values, shape (rows, 1 + values), the heights ascending.
+        most: rows, at least 2; the first and the last stay.
+    """
+    scale = np.abs(rows[:, 1:]).max(axis=0)
+    scale[scale == 0] = 1.0
+    while len(rows) > most:
+        before, here, after = rows[:-2], rows[1:-1], rows[2:]
+        part = ((here - before)[:, :1]) / ((after - before)[:, :1])
+        off = np.abs(before + part * (after - before) - here)[:, 1:] / scale
+        rows = np.delete(rows, 1 + int(off.max(axis=1).argmin()), axis=0)
+    return rows
 
 
 def flat_junction(finger: Fingertip) -> Fingertip:

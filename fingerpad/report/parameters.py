@@ -7,7 +7,7 @@ from collections.abc import Container, Mapping
 from typing import Any
 
 from fingerpad.report.page import folded, paragraph, table, text
-from fingerpad.scene import Scene
+from fingerpad.scene import Scene, SceneError, override
 from fingerpad.scene.reading import flat
 
 PAPER = (
@@ -17,9 +17,16 @@ PAPER = (
 
 
 def changed(parameters: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the parameters that are not those of the default scene, by dotted key."""
+    """Return the parameters that are not those of the default scene, by dotted key.
+
+    A mesh of its own is the key ``geometry.file``, and the keys that it leaves unread are not there.
+    """
     default = flat(json.loads(json.dumps(Scene().parameters())))
-    given = flat(json.loads(json.dumps(parameters)))
+    given = flat({key: value for key, value in json.loads(json.dumps(parameters)).items() if key != "laws"})
+    mesh = parameters.get("laws", {}).get("mesh")
+    if mesh is not None:
+        unread = [key for key in given if key.startswith(("geometry.", "mesh.")) and key != "geometry.sc_thickness"]
+        given = {key: value for key, value in given.items() if key not in unread} | {"geometry.file": mesh["path"]}
     return {key: value for key, value in given.items() if key not in default or default[key] != value}
 
 
@@ -45,7 +52,7 @@ def all_of(parameters: Mapping[str, Any], varied: Container[str] = ()) -> str:
 
 def again(parameters: Mapping[str, Any], model: str, folder: str) -> str:
     """Return how a run is repeated."""
-    if parameters.get("laws"):
+    if parameters.get("laws", {}).keys() - {"mesh"}:
         return paragraph(
             f"The scene has laws of its own, written in Python ({parameters['laws']}); run the program that made them."
         )
@@ -53,8 +60,8 @@ def again(parameters: Mapping[str, Any], model: str, folder: str) -> str:
     option = "" if model == "full" else f" --model {model}"
     if any("[" in key or isinstance(value, list) or value is None for key, value in given.items()):
         code = (
-            "import json\nimport fingerpad as fp\nfrom fingerpad.scene import from_data\n\n"
-            f'scene = from_data(json.load(open("scene.json")))  # in this folder\n'
+            "import json\nimport fingerpad as fp\nfrom fingerpad.scene import from_kept\n\n"
+            f'scene = from_kept(json.load(open("scene.json")))  # in this folder\n'
             f'fp.run(scene, model="{model}", out="results/again")'
         )
         return f"<pre><code>{text(code)}</code></pre>"
@@ -70,13 +77,31 @@ def cite() -> str:
     )
 
 
-def option_of(key: str, value: Any) -> str:
-    """Return a key and its value as an option of a command line, quoted for a shell."""
-    return f"--set {shlex.quote(f'{key}={_toml(value)}')}"
+def option_of(key: str, value: Any, option: str = "--set") -> str:
+    """Return a key and its value as an option of a command line, quoted for a shell.
+
+    Args:
+        key: a dotted key.
+        value: a number, a switch, a text or a list of these; of another option than ``--set``, its text as it stands.
+        option: which takes ``KEY=VALUE``.
+    """
+    shown = value if option != "--set" else _bare(value) if isinstance(value, str) else toml(value)
+    return f"{option} {shlex.quote(f'{key}={shown}')}"
 
 
-def _toml(value: Any) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value) if isinstance(value, str) else repr(value)
+def toml(value: Any) -> str:
+    """Return a number, a switch, a text or a list of these as TOML."""
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(toml, value))}]"
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, str | bool) else repr(value)
+
+
+def _bare(text: str) -> str:
+    """Return a text as ``--set`` reads it: without quotation marks, where it would be nothing else without them."""
+    try:
+        return text if override(f"key={text}")[1] == text else toml(text)
+    except SceneError:
+        return toml(text)
 
 
 def _shown(value: Any) -> str:

@@ -103,19 +103,29 @@ def _parameters(table: Table) -> str:
 
 
 def _cite(table: Table) -> str:
-    over = []
-    for key in table.axes:
-        values = dict.fromkeys(row[key] for row in table.rows)
-        over.append(f"--over {key}={','.join(_plain(value) for value in values)}")
     given = {} if table.parameters is None else parameters.changed(table.parameters)
-    kept = {key: value for key, value in given.items() if key not in table.axes and "[" not in key}
+    kept = {key: value for key, value in given.items() if not (key in table.axes or "[" in key or value is None)}
     options = [parameters.option_of(key, value) for key, value in kept.items()]
-    code = " ".join(["fingerpad sweep", *options, *over, "--out results/again"])
+    values = {key: list(dict.fromkeys(row[key] for row in table.rows)) for key in table.axes}
+    if all(_read(value) is not None for each in values.values() for value in each):
+        over = [parameters.option_of(key, ",".join(each), "--over") for key, each in values.items()]
+        code = " ".join(["fingerpad sweep", *options, *over, "--out results/again"])
+    else:  # --over reads numbers alone
+        lines = [f"{parameters.toml(key)} = [{', '.join(map(_toml, each))}]" for key, each in values.items()]
+        command = " ".join(["fingerpad sweep study.toml", *options, "--out results/again"])
+        code = "\n".join(["# study.toml", "[sweep]", *lines, "", "# the command", command])
     note = "Loads of its own in a scene file and a cheaper model are not in this line." if table.parameters else ""
     return html.section(
         "reproduce", "How to reproduce and cite", f"<pre><code>{html.text(code)}</code></pre>",
         html.paragraph(note, "note") if note else "", parameters.cite(),
     )  # fmt: skip
+
+
+def _toml(cell: str) -> str:
+    """Return a value of the table as TOML: a number as it stands, a switch, or a text."""
+    if _read(cell) is not None:
+        return cell
+    return cell.lower() if cell in ("True", "False") else parameters.toml(cell)
 
 
 def _curves(table: Table) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.io import petsc_options
 from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt, Interrupted
+from fingerpad.io.left import in_words
 from fingerpad.io.over_time import NOTE
 from fingerpad.io.provenance import provenance
 from fingerpad.io.result import Result
@@ -83,10 +84,12 @@ class Attempt:
         """Stop if asked to, or tell how far the error estimate is."""
         self._interrupt.stop_if_asked(self.simulation.finger.continuation.steps)
         self._solves += 1
-        if self._model.asked:  # until it is met
-            self._console.phase(f"states on other meshes, to the accuracy asked for: number {self._solves}")
-            return
         assert self._refinement is not None
+        if self._model.asked:  # until it is met
+            number, least = self._refinement.to_come, self._refinement.solves.least()
+            text = f"states on other meshes, to the accuracy asked for: solve {self._solves}, {number} or more to come"
+            self._console.phase(f"{text}; {in_words(number * least)} or more left" if least else text)
+            return
         number = len(self._refinement.parameters) + (self._model.contact.formulation == "penalty")
         text = f"estimating discretisation errors: solve {self._solves} of {number}"
         self._console.phase(text, (self._solves - 0.5) / number)

@@ -133,9 +133,9 @@ def _one(scene: Path, folder: Path, model: str) -> None:
     start()
     from fingerpad.io.checkpoint import CheckpointError
     from fingerpad.runs.solve import kept, solved, tables_in
-    from fingerpad.scene import SceneError, from_data
+    from fingerpad.scene import SceneError, from_kept
 
-    asked = from_data(json.loads(scene.read_text(encoding="utf-8")))
+    asked = from_kept(json.loads(scene.read_text(encoding="utf-8")))
     try:
         if model == "full":
             try:

@@ -95,6 +95,8 @@ def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console, journal
             while True:
                 _expect(scene, model, comm, console)
                 attempt = Attempt(model, comm, writer, console, clock, interrupt, journal)
+                if model.mesh_file is not None:
+                    _expect(scene, model, comm, console, attempt.simulation.finger.unknowns)
                 restart = attempt.follow()
                 if restart is None:
                     break
@@ -116,13 +118,14 @@ def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console, journal
         raise full from error
 
 
-def _expect(scene: Scene, model: FingerModel, comm: MPI.Comm, console: Console) -> None:
-    """Tell the console what the path will take, about."""
+def _expect(scene: Scene, model: FingerModel, comm: MPI.Comm, console: Console, unknowns: int | None = None) -> None:
+    """Tell the console what the path will take, about; of a mesh whose unknowns are not estimated but known."""
     loads = scene.loads()
-    seconds = [each / comm.size for each in by_load(scene, model.options)]
+    seconds = [each / comm.size for each in by_load(scene, model.options, unknowns)]
     path = {load.name: each for load, each in zip(loads, seconds, strict=True)}
     slipping = [load.name for load in loads if load.until_full_slip]
-    console.expect(path, ERRORS * sum(seconds) if model.options.errors else 0.0, slipping, coefficient(scene) or 0.0)
+    after = ERRORS * sum(seconds) if model.options.errors and not model.asked else 0.0
+    console.expect(path, after, slipping, coefficient(scene) or 0.0, whole=not model.asked)
 
 
 def exit_code(result: Result) -> int:

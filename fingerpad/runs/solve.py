@@ -110,8 +110,8 @@ def solved(
         model: one of :data:`MODELS`.
         out: folder of results.
         comm: communicator.
-        lines: whether the full model prints its steps.
-        bar: whether it shows a progress bar.
+        lines: whether the full model prints its steps, and the smooth finger what it does.
+        bar: whether they show a progress bar.
         report: whether ``report.html`` is written beside the results.
         force: on the whole finger, as of :func:`run`.
         resume: whether the full model goes on from where a run in the folder was cut short.
@@ -151,7 +151,8 @@ def _whole(
     value, own = traces.newtons(force), out if model == "full" else None
 
     def solve(each: Scene, name: str) -> Result:
-        return _solved(each, model, traces.folder_of(own, name), comm, lines, bar, resume=False)
+        shown = model == "full"  # the others have many scenes of seconds
+        return _solved(each, model, traces.folder_of(own, name), comm, lines and shown, bar and shown, resume=False)
 
     found = traces.whole(scene, value, model, solve)
     if out is None or (terminal.rank() if comm is None else comm.rank) != 0:
@@ -175,9 +176,14 @@ def _with_finite_elements(
         from fingerpad.runs import full
 
         return full.run(scene, out, comm, lines, bar, resume)
+    from fingerpad.io.console import Console
     from fingerpad.reduced import smooth
 
-    return kept(smooth.solve(scene, tables_in(out), comm), out, comm)
+    console = Console(comm, lines, bar)
+    try:
+        return kept(smooth.solve(scene, tables_in(out), comm, console), out, comm)
+    finally:
+        console.close()
 
 
 def kept(result: Result, out: Path | None, comm: "MPI.Comm | Serial") -> Result:

@@ -202,9 +202,11 @@ def sweep(
 def _along(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> dict[str, list[Scene]]:
     """Return the scenes along each axis."""
     for key, values in axes.items():
-        listed = isinstance(values, Sequence | np.ndarray) and not isinstance(values, str)
-        if not listed or np.ndim(values) != 1 or len(values) == 0:
-            raise SceneError(f"{key} of the sweep is {show(values)}; it must be a list of at least one value")
+        listed = isinstance(values, Sequence | np.ndarray) and not isinstance(values, str) and len(values)
+        if not listed or any(np.iterable(value) and not isinstance(value, str | Mapping) for value in values):
+            raise SceneError(
+                f"{key} of the sweep is {show(values)}; it must be a list of at least one value, none a list"
+            )
     return {key: [_with(scene, {key: value}) for value in values] for key, values in axes.items()}
 
 
@@ -212,7 +214,7 @@ def _scenes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> list[Scene]:
     """Return the scenes of all points, checked."""
     if not axes:
         raise SceneError("the sweep has no axis; give values of at least one key, such as voltage=[0, 100, 200]")
-    if scene.parameters().get("laws"):
+    if scene.parameters().get("laws", {}).keys() - {"mesh"}:
         raise SceneError(
             "the scene has laws of its own, which the processes of a sweep cannot be given; call run for each point"
         )

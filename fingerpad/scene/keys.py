@@ -106,11 +106,11 @@ def _allowed(parts: tuple[Any, ...]) -> tuple[str, str]:
 @cache
 def docstrings(model: type[BaseModel]) -> dict[str, str]:
     """Return what is written under the keys of a model, in one line each; empty where there is no source."""
+    found = {key: words for base in model.__bases__ if base is not BaseModel for key, words in docstrings(base).items()}
     try:
         body = ast.parse(textwrap.dedent(inspect.getsource(model))).body[0]
     except (OSError, TypeError):
-        return {}
-    found = {}
+        return found
     lines = getattr(body, "body", [])
     for line, after in zip(lines, lines[1:], strict=False):
         if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name):

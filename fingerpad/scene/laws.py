@@ -7,7 +7,7 @@ scene, so that folders and kept tables tell scenes apart, and :func:`used` names
 import hashlib
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import partial
 from numbers import Real
 from pathlib import Path
@@ -87,6 +87,17 @@ class Laws:
             object.__setattr__(self, "mesh_sha256", hashlib.sha256(content).hexdigest())
         self.parameters()  # reads the sources of the user's code, which may be edited while a run is on
 
+    def with_file(self, file: str | None) -> "Laws":
+        """Return the laws with the mesh that the key ``geometry.file`` names, or without one.
+
+        Raises:
+            SceneError: there is no such file, or it cannot be read.
+        """
+        try:
+            return self if file is None and self.mesh is None else replace(self, mesh=file)
+        except SceneError as error:
+            raise SceneError(f"geometry.file: {error}") from None
+
     def __eq__(self, other: object) -> bool:
         """Return whether other laws are described alike; laws may hold arrays, which have no one truth value."""
         return self.parameters() == other.parameters() if isinstance(other, Laws) else NotImplemented
@@ -126,6 +137,29 @@ def refuse_thickness(closure: Any, h_0: float) -> None:
         raise ValueError(
             f"the closure {type(closure).__name__} has h_0 = {float(own):.7g} m, and the attraction has an effective "
             f"insulator thickness h_0 of {h_0:.7g} m; the two must be the same"
+        )
+
+
+def refuse_beside_mesh(data: Mapping[str, Any]) -> None:
+    """Refuse keys of a scene beside ``geometry.file`` that a run on that mesh does not read.
+
+    Args:
+        data: nested tables, as they were given.
+
+    Raises:
+        SceneError: the first of them.
+    """
+    shape = data.get("geometry")
+    if not isinstance(shape, Mapping) or shape.get("file") is None:
+        return
+    sizes = data.get("mesh")
+    given = [f"geometry.{key}" for key in shape if key not in ("file", "sc_thickness")]
+    given += [f"mesh.{key}" for key in sizes] if isinstance(sizes, Mapping) else []
+    given += ["accuracy"] if data.get("accuracy") is not None else []
+    if given:
+        raise SceneError(
+            f"{clip(given[0])} is given and geometry.file too, whose mesh has its own shape and sizes and cannot be "
+            "refined; leave one of the two out"
         )
 
 

@@ -22,6 +22,7 @@ from fingerpad.scene.messages import NUMBER, WAVE, show
 from fingerpad.scene.table import Finite, Part, Switch
 from fingerpad.scene.waveform import Volts, Waveform
 from geometry.bounds import within
+from geometry.parameters import Fingertip
 
 if TYPE_CHECKING:
     from variational.contact.formulation import Formulation
@@ -187,6 +188,18 @@ class Accuracy(Part):
     def tolerances(self) -> dict[str, float]:
         """Return what is asked for, by quantity."""
         return {name: value for name in type(self).model_fields if (value := getattr(self, name)) is not None}
+
+
+class Geometry(Fingertip):
+    """Cross-section of a fingertip (Table 1 of Forsbach et al. 2023; all lengths in m), or the file of its mesh.
+
+    The outline is an ellipse that the ridge tips touch; the lowest tip is at y = 0. Choices that the paper leaves open
+    are marked as *assumption*.
+    """
+
+    file: Annotated[str | None, Field(exclude=True)] = None  # a scene keeps it as a law, with a hash
+    """File of a gmsh mesh in place of the cross-section and of the sizes in mesh, by the rules of ``docs/mesh.md``; a
+    relative path starts at the scene file. Only sc_thickness is read of the other keys, for the attraction."""
 
 
 class Contact(Part):

@@ -44,23 +44,37 @@ def read(path: Path) -> dict[str, Any]:
 
 
 def read_scene(path: Path) -> dict[str, Any]:
-    """Return the data of a scene file; files of a height map and of voltages are looked for beside it.
+    """Return the data of a scene file; files that it names are looked for beside it.
 
     Raises:
         SceneError: the file cannot be read, or holds a study.
     """
-    data: dict[str, Any] = plain(read(path))
-    roughness = data.get("roughness")
-    topography = roughness.get("topography") if isinstance(roughness, dict) else None
-    if isinstance(topography, dict) and isinstance(topography.get("file"), str):
-        topography["file"] = str(path.parent / topography["file"])
-    for load in data["history"] if isinstance(data.get("history"), list) else ():
-        voltage = load.get("voltage") if isinstance(load, dict) else None
-        if isinstance(voltage, dict) and isinstance(voltage.get("file"), str):
-            voltage["file"] = str(path.parent / voltage["file"])
+    data = read_study(path)
     if "sweep" in data:
         raise SceneError(f"{path} has a table sweep, which makes it a study; run it by fingerpad sweep, or without it")
     return data
+
+
+def read_study(path: Path) -> dict[str, Any]:
+    """Return the data of a scene file that may have a table ``[sweep]``.
+
+    Files of a mesh, of a height map and of voltages are looked for beside it.
+
+    Raises:
+        SceneError: the file cannot be read.
+    """
+    data: dict[str, Any] = plain(read(path))
+    loads = data["history"] if isinstance(data.get("history"), list) else ()
+    tables = [data.get("geometry"), *(_inner(load, "voltage") for load in loads)]
+    tables.append(_inner(data.get("roughness"), "topography"))
+    for table in tables:
+        if isinstance(table, dict) and isinstance(table.get("file"), str):
+            table["file"] = str(path.parent / table["file"])
+    return data
+
+
+def _inner(table: Any, key: str) -> Any:
+    return table.get(key) if isinstance(table, dict) else None
 
 
 def read_bytes(path: Path) -> bytes:

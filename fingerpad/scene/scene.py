@@ -14,16 +14,16 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from fingerpad.scene.changes import changed, with_coarse_start
 from fingerpad.scene.contradictions import DEFAULT_HISTORY, refuse_contradictions
-from fingerpad.scene.laws import LAYERS, Laws, refuse_thickness, refuse_unread
+from fingerpad.scene.laws import LAYERS, Laws, refuse_beside_mesh, refuse_thickness, refuse_unread
 from fingerpad.scene.materials import Electric, Materials, Roughness
 from fingerpad.scene.messages import SceneError, first_error, show
-from fingerpad.scene.parameters import Accuracy, Contact, Load, Numerics, Output
+from fingerpad.scene.parameters import Accuracy, Contact, Geometry, Load, Numerics, Output
 from fingerpad.scene.reading import plain, put, read_scene
 from fingerpad.scene.slices import Slices
 from fingerpad.scene.table import Finite, Part
 from fingerpad.scene.waveform import Volts
 from geometry.bounds import within
-from geometry.parameters import Fingertip, MeshSize
+from geometry.parameters import MeshSize
 from variational.contact.friction import Friction, law_of
 from variational.roughness.closure import Closure
 
@@ -55,7 +55,7 @@ class Scene(Part):
     """Loads to reach one after the other, at most 1000, in place of the default press, charge and slide."""
     friction: Annotated[Finite, within(1e-6, 2.0, zero=True)] = 0.25
     """Friction coefficient mu_0 of skin on the screen. 0 is no friction; 2 is the coefficient of rubber."""
-    geometry: Fingertip = Fingertip()
+    geometry: Geometry = Geometry()
     mesh: MeshSize = MeshSize()
     materials: Materials = Materials()
     electric: Electric = Electric()
@@ -73,12 +73,15 @@ class Scene(Part):
         """
         if "laws" in data:
             raise SceneError("laws is no key, since no file can hold one; give laws from Python, by Scene.with_laws")
-        text = json.dumps(with_coarse_start(plain(data)))
+        given = plain(data)
+        refuse_beside_mesh(given)
+        text = json.dumps(with_coarse_start(given))
         try:
             # As JSON, because there a list is a tuple and a table is a model even under strict rules.
             self.__pydantic_validator__.validate_json(text, strict=True, self_instance=self)
         except ValidationError as error:
             raise SceneError(first_error(error, Scene)) from None
+        self._laws = self._laws.with_file(self.geometry.file)
 
     output: Output = Output()
     slices: Slices = Slices()
@@ -109,6 +112,8 @@ class Scene(Part):
             setattr(found, name, value)
         if "friction" in changes:
             found._laws = replace(found._laws, friction=None)
+        if found.geometry.file != self.geometry.file:
+            found._laws = found._laws.with_file(found.geometry.file)
         refuse_unread(self, found)
         return found._checked()
 
@@ -239,3 +244,23 @@ def from_data(data: Mapping[str, Any]) -> Scene:
     if not isinstance(data, dict):
         raise SceneError(f"a scene is {show(data)}; it must be a table of keys")
     return Scene(**data)
+
+
+def from_kept(parameters: Mapping[str, Any]) -> Scene:
+    """Return the scene of what :meth:`Scene.parameters` gave, which may have a mesh of its own.
+
+    Raises:
+        SceneError: another law of its own, a mesh that is gone or was changed, or the first key at fault.
+    """
+    given, laws = dict(parameters), parameters.get("laws", {})
+    if not isinstance(laws, Mapping) or laws.keys() - {"mesh"}:
+        raise SceneError("the scene has laws of its own, written in Python, which no file holds")
+    given.pop("laws", None)
+    scene = from_data(given)
+    if not laws:
+        return scene
+    path, was = laws["mesh"]["path"], laws["mesh"]["sha256"]
+    scene = scene.with_laws(mesh=path)
+    if scene.laws.mesh_sha256 != was:
+        raise SceneError(f"mesh is {show(path)}, which is not the file that the scene was kept with; put that one back")
+    return scene

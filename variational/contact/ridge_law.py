@@ -37,7 +37,8 @@ from numpy.typing import NDArray
 from variational.contact.formulation import Contact, Formulation, Skin, Springs
 
 Array = NDArray[np.float64]
-_KNOTS = 48  # of a law, whatever its table has
+KNOTS = 48
+"""Rows of a law, and the most that a table has."""
 _GAMMA = 1e9  # Pa/m, by which a pressure becomes an augmented gap; cancels
 
 
@@ -64,8 +65,8 @@ class RidgeTable:
             raise ValueError("heights of a ridge's table do not ascend; make the table anew")
         if self.contact[-1] or self.attraction[-1] or self.length[-1]:
             raise ValueError("a ridge's table ends before its forces vanish; make the table anew")
-        if len(self.y) > _KNOTS:
-            raise ValueError(f"a ridge's table has {len(self.y)} rows; at most {_KNOTS}")
+        if len(self.y) > KNOTS:
+            raise ValueError(f"a ridge's table has {len(self.y)} rows; at most {KNOTS}")
 
     def at(self, y: Array) -> tuple[Array, Array, Array]:
         """Return contact force, attraction (N/m) and length in contact (m) at heights (m)."""
@@ -98,7 +99,7 @@ class RidgeLaw(Formulation):
     def set(self, table: RidgeTable) -> None:
         """Put another table in place."""
         self.table = table
-        rows = np.zeros((_KNOTS, 3))
+        rows = np.zeros((KNOTS, 3))
         forces = (ramps(table.y, np.asarray(f / self.period, dtype=float)) for f in (table.contact, table.attraction))
         rows[: len(table.y)] = np.stack([table.y, *forces], axis=1)
         self._rows = rows
