@@ -254,7 +254,10 @@ def test_refused_options(tmp_path):
             command.main([*words, "--resume", str(tmp_path)])
     with pytest.raises(SceneError, match=r"has no scene.json, and so no run to go on with"):
         command.main(["--resume", str(tmp_path)])
-    for kept, match in (('{"model": "smooth"}', "only a full one can go on"), ('{"laws": {"friction": {}}}', "resume=True")):
+    for kept, match in (
+        ('{"model": "smooth"}', "only a full one can go on"),
+        ('{"laws": {"friction": {}}}', "resume=True"),
+    ):
         (tmp_path / "scene.json").write_text(kept, encoding="utf-8")
         with pytest.raises(SceneError, match=match):
             command.main(["--resume", str(tmp_path)])
