@@ -92,7 +92,7 @@ def test_key_of_a_file_is_the_argument(place, tmp_path):
     ("given", "words"),
     [
         ({"geometry": {"file": "gone.msh"}}, "geometry.file: mesh is 'gone.msh', and there is no such file"),
-        ({"geometry": {"file": 5}}, "geometry.file is 5; it must be a text"),
+        ({"geometry": {"file": 5}}, "geometry.file is 5; it must be text"),
         ({"geometry": {"file": "m.msh", "width": 0.02}}, "geometry.width is given and geometry.file too, whose mesh"),
         ({"geometry": {"file": "m.msh"}, "mesh": {"contact": 1e-5}}, "mesh.contact is given and geometry.file too"),
         ({"geometry": {"file": "m.msh"}, "accuracy": {"mu_app": 0.01}}, "accuracy is given and geometry.file too"),

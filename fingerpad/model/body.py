@@ -173,15 +173,13 @@ class Body:
         return self._reach(Target("lift", bone_height=_finite("height", height, "m")))
 
     def charge(self, voltage: Quantity) -> "Body":
-        """Change the voltage U (V) between screen and body; return the body.
+        """Change the voltage U (V) between screen and body, of either sign; return the body.
 
         Raises:
-            ValueError: the body has no roughness, or ``voltage`` is negative.
+            ValueError: the body has no roughness.
             StepFailed: see :meth:`slide`.
         """
         u = _finite("voltage", voltage, "V")
-        if u < 0:
-            raise ValueError(f"voltage is {u:g} V; it must not be negative")
         if self._closure is None:
             raise ValueError("the body has no roughness, so that it has no air gap to charge; give Body a roughness")
         return self._reach(Target("charge", voltage=u))
