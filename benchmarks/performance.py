@@ -189,19 +189,20 @@ def worst(found: Mapping[str, Any], reference: Mapping[str, Any]) -> float:
     return float(differences.max())
 
 
-def _explicit(found: Mapping[str, Any], path: float) -> str:
+def _explicit(found: Mapping[str, Any], run: Mapping[str, Any]) -> str:
     rows, costs, finger = list[list[Any]](), list[list[Any]](), found["finger"]
+    residuals = sum(run["path"].values()) / run["path"]["residual"] * run["calls"]["residual"]  # as long as the path
     for each in found["ridges"]:
         size, base = f"{1e6 * each['size']:g} µm", each["implicit"]
         rows.append([size, "implicit", base["steps"], base["iterations"], None, None, 1.0, base["seconds"]])
-        for name, run in zip(_MASSES, each["explicit"], strict=True):
-            shares = [f"{100 * share:.2g} %" for share in (run["ratio"], worst(run, base))]
-            times = run["seconds"] / base["seconds"]
-            rows.append([size, name, run["steps"], run["steps"], *shares, times, run["seconds"]])
-    for name, (low, high), run in zip(_MASSES, finger["frequencies"], each["explicit"], strict=True):
-        steps = 3 * run["periods"] * np.pi * high / low / found["safety"]
-        seconds = steps * finger["residual"]
-        costs.append([name, run["periods"], high / low, f"{steps:.2g}", seconds / path, seconds / 3600])
+        for name, ran in zip(_MASSES, each["explicit"], strict=True):
+            shares = [f"{100 * share:.2g} %" for share in (ran["ratio"], worst(ran, base))]
+            times = ran["seconds"] / base["seconds"]
+            rows.append([size, name, ran["steps"], ran["steps"], *shares, times, ran["seconds"]])
+    for name, (low, high), ran in zip(_MASSES, finger["frequencies"], each["explicit"], strict=True):
+        steps = 3 * ran["periods"] * np.pi * high / low / found["safety"]
+        hours = steps * finger["residual"] / 3600
+        costs.append([name, ran["periods"], high / low, f"{steps:.2g}", steps / residuals, hours])
     head = ["facets", "way", "steps", "iterations or residuals", "kinetic over strain energy", "largest difference"]
     far = ["default finger", "periods a load", "largest over least frequency", "steps", "over the path", "core hours"]
     text = prose("performance")["explicit"].format(**found)
@@ -238,7 +239,7 @@ def draw(docs: Path) -> Path:
         f"## Two ranks\n\n{two}",
         text["tried"],
         f"{text['cluster']}\n\n{_cluster(sizes)}\n\n{text['array']}",
-        f"## Explicit dynamics\n\n{_explicit(of['explicit'], path)}",
+        f"## Explicit dynamics\n\n{_explicit(of['explicit'], run)}",
         f"## Versions and load\n\n{_origin(found.numbers)}",
     ]
     file, command = docs / "performance.md", "make performance"
