@@ -2,6 +2,7 @@
 
 import re
 import shlex
+import textwrap
 import tomllib
 from pathlib import Path
 
@@ -51,6 +52,9 @@ def folder(tmp_path, monkeypatch) -> Path:
     (tmp_path / "scene.toml").write_text(SMALL, encoding="utf-8")
     heights = np.random.default_rng(1).normal(size=(32, 32))
     np.savetxt(tmp_path / "skin.csv", heights, delimiter=",")
+    page = (ROOT / "docs" / "command.md").read_text(encoding="utf-8")
+    shown = re.search(r"^    # source: .*?(?=\n\n)", page, re.MULTILINE | re.DOTALL)
+    (tmp_path / "mine.csv").write_text(textwrap.dedent(shown[0]), encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -61,14 +65,14 @@ def small(line: str) -> list[str]:
     words = shlex.split(line)[1:]
     if "--force" in words and "cylinders" not in words:  # which know the default finger alone
         words.insert(1, "scene.toml")
-        words[words.index("--force") + 1] = "0.01 N"
-        words += ["--set", "mesh.contact=2e-5"] * ("smooth" in words)
+        words[words.index("--force") + 1] = "0.02 N" if "smooth" in words else "0.01 N"
+        words += ["--set", "mesh.contact=1e-5", "--set", "mesh.touching_half_arc=2.5e-3"] * ("smooth" in words)
     return words
 
 
 def cases() -> list:
     """Return the lines; those that run several models or loads, which other tests do smaller, take long."""
-    several = ("fingerpad compare", "fingerpad sweep", "fingerpad run --force")
+    several = ("fingerpad compare ", "fingerpad sweep", "fingerpad run --force")
     return [pytest.param(line, marks=pytest.mark.long) if line.startswith(several) else line for line in SHOWN]
 
 
@@ -78,6 +82,8 @@ def test_shown_command_runs(line, folder, capsys, monkeypatch):
     words = small(line)
     if words[0] == "report":
         fp.run(model="cylinders", out=words[1])
+    if words[0] == "compare-data":
+        fp.sweep(fp.Scene(), "results/sweep", model="cylinders", voltage=[0, 200], f_ext=[25, 75])
     if "--resume" in words:  # a run that was killed when its checkpoint was whole
         with monkeypatch.context() as kept, no_pictures():
             kept.setattr(Journal, "end", lambda self: None)
