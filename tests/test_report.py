@@ -177,6 +177,38 @@ def test_contacts_of_enough_facets_and_other_formulations_are_not_told(folder):
     assert FEW not in [each.what for each in trust.findings(few)]
 
 
+@pytest.mark.parametrize(
+    ("error", "what", "words"),
+    [
+        (0.019, "mesh", "1.9 % of its value"),
+        (0.09, "the mesh is coarse", "good for trends"),
+        (0.11, "the mesh is coarse", "too coarse for more than a trend"),
+        (float("nan"), "errors are not estimated", "no estimate"),
+    ],
+)
+def test_size_of_the_error_is_told(folder, error, what, words):
+    result = Result.load(folder)
+    state = replace(result.full_slip, mu_app=1.0, error=replace(result.full_slip.error, mu_app=error))
+    found = {each.what: each for each in trust.findings(replace(result, full_slip=state))}
+    assert words in found[what].words
+    assert found[what].verdict == (trust.GOOD if error < 0.02 else trust.CARE)
+
+
+@pytest.mark.parametrize(("energy", "words"), [(1e-3, "released 0.001 J/m"), (1e-7, "released less than 1e-06 J/m")])
+def test_energy_of_jumps_is_told_where_it_is_known(folder, energy, words):
+    result = Result.load(folder)
+    step = result.steps[-1]
+    jumped = replace(step, record=replace(step.record, jump=True, energy_released=energy, released_error=1e-6))
+    found = trust.findings(replace(result, steps=(*result.steps[:-1], jumped)))
+    assert words in {each.what: each.words for each in found}["jumps"]
+
+
+@pytest.mark.parametrize(("failure", "kind"), [("the load slide was not reached", trust.BAD), ("", trust.CARE)])
+def test_slide_without_full_slip_is_told(folder, failure, kind):
+    found = trust.findings(replace(Result.load(folder), full_slip=None, failure=failure))
+    assert {each.what: each.verdict for each in found}["full slip was not reached"] == kind
+
+
 # -- a sweep -----------------------------------------------------------------------------------------------
 @pytest.mark.parametrize("size", SIZES)
 def test_browser_opens_a_sweep(table, tmp_path, size):
