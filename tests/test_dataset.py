@@ -15,6 +15,7 @@ from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad.io import columns, dataset
+from fingerpad.io.over_time import QUANTITIES, OverTime
 from fingerpad.io.result import Result
 from fingerpad.runs import sweep_dataset
 from fingerpad.scene import from_data
@@ -93,6 +94,56 @@ def test_states_are_those_of_the_summary(folder, data):
             assert float(data[f"state_{key}"].sel(state=name)) == values[key]
     assert np.isnan(data["state_mu_app"].sel(state="full_slip"))
     assert list(data["load"].values) == [load["name"] for load in summary["loads"]]
+
+
+def test_a_state_that_is_missing_has_no_values(data):
+    """Numbers have NaN for it, whole numbers -1: 0 ridges would be a lifted finger."""
+    slip = data.sel(state="full_slip")
+    assert [int(slip[f"state_{name}"]) for name in ("step", "ridges_in_contact", "stable")] == [-1, -1, -1]
+    assert np.isnan(slip["state_f_t"])
+
+
+def test_errors_of_states(folder):
+    """The discretisation's and the penalty's, each under its name."""
+    result, given = Result.load(folder), {"error": 2e-5, "penalty": 3e-6}
+    changed = {kind: replace(result.charged.error, contact_length=value) for kind, value in given.items()}
+    found = dataset.dataset(replace(result, charged=replace(result.charged, **changed))).sel(state="charged")
+    for kind, value in given.items():
+        assert found[f"state_contact_length_{kind}"] == value
+        assert found[f"state_contact_length_{kind}"].attrs["units"] == "m"
+
+
+def test_loads_are_those_of_the_summary(folder, data):
+    """Extremes, and in a load over time the means and the spectrum; no value for the other loads."""
+    result = Result.load(folder)
+    for load in result.loads:
+        for name, extremes in load.extremes.items():
+            at = data.sel(load=load.name)
+            assert (float(at[f"load_{name}_min"]), float(at[f"load_{name}_max"])) == (extremes.min, extremes.max)
+    means = {name: 1.0 + k for k, name in enumerate(QUANTITIES)}
+    timed = OverTime(0.5, 2.0, means, 2, (1.0, 2.0), (0.3, 0.1))
+    loads = (replace(result.loads[0], over_time=timed), *result.loads[1:])
+    at = dataset.dataset(replace(result, loads=loads)).isel(load=0)
+    assert {name: float(at[f"load_{name}_mean"]) for name in means} == means
+    assert (float(at["load_start"]), float(at["load_seconds"])) == (0.5, 2.0)
+    assert list(at["load_f_t_amplitude"].values) == [0.3, 0.1] and list(at["load_frequency"].values) == [1.0, 2.0]
+    others = dataset.dataset(replace(result, loads=loads)).isel(load=slice(1, None))
+    assert others["load_f_t_mean"].isnull().all() and others["load_f_t_amplitude"].isnull().all()
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [
+        ("skin_p_el", "Pa"),
+        ("f_t", "N/m"),
+        ("ridge_d_eq", "m"),
+        ("merkel_sed", "J/m^3"),
+        ("stored", "J/m"),
+        ("mu_app", "1"),
+    ],
+)
+def test_units_are_those_of_the_quantity(data, name, unit):
+    assert data[name].attrs["units"] == unit
 
 
 def test_skin_is_along_facets_and_points(data):
