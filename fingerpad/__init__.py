@@ -11,7 +11,7 @@ Importing this package imports nothing heavy; what needs finite elements is impo
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.installed import needed_by
+from fingerpad.installed import needed_by, version
 
 if TYPE_CHECKING:
     import geometry as geometry
@@ -69,6 +69,8 @@ __all__ = [*_HOMES, "geometry"]
 
 def __getattr__(name: str) -> Any:
     """Import what is asked for."""
+    if name == "__version__":
+        return version()
     if name == "geometry":
         return import_module("geometry")
     if name not in _HOMES:

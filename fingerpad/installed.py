@@ -1,15 +1,25 @@
-"""What may not be installed, libraries and the compiler of forms: what needs one of them says so in one sentence."""
+"""What is installed: this package's version; libraries and the compiler of forms, whose absence is one sentence."""
 
 import os
 import shlex
 import shutil
 import sysconfig
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import metadata
 from pathlib import Path
 
 COMPILER = "C compiler"
 OPTIONAL = ("dolfinx", "ufl", "basix", "ffcx", "petsc4py", "mpi4py", "gmsh", "matplotlib", COMPILER)
+
+
+def version() -> str:
+    """Return the version: that of the folder of sources, or of the package that is installed."""
+    project = Path(__file__).parents[1] / "pyproject.toml"
+    if project.is_file():
+        return str(tomllib.loads(project.read_text(encoding="utf-8"))["project"]["version"])
+    return metadata.version("fingerpad")
 
 
 @contextmanager

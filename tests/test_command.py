@@ -10,8 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import fingerpad as fp
 from fingerpad.cli import COMMANDS, main, ranges
 from fingerpad.cli.arguments import Parser, positive, scene_of, separate
+from fingerpad.io.provenance import provenance
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from tests.commands import ROOT, refused
@@ -151,7 +153,9 @@ def test_unknown_command(capsys):
 
 def test_version(capsys):
     assert main(["--version"]) == 0
-    assert capsys.readouterr().out.startswith("fingerpad 0.")
+    assert capsys.readouterr().out.strip() == f"fingerpad {fp.__version__}"
+    assert fp.__version__ == provenance()["versions"]["fingerpad"]
+    assert fp.__version__.startswith("0.")
 
 
 def test_as_a_module():

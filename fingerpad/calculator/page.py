@@ -6,8 +6,8 @@ import re
 from importlib.resources import files
 
 from fingerpad.calculator.fields import data
-from fingerpad.cli import version
 from fingerpad.cli.estimate import KNOWN_ERROR, KNOWN_FORCES, KNOWN_RUNS, KNOWN_VOLTAGES
+from fingerpad.installed import version
 from fingerpad.io.quantities import PER_LENGTH
 from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene

@@ -7,13 +7,10 @@ Each module has a function ``main(argv) -> int``. It returns the exit code: 0, 1
 import importlib
 import os
 import sys
-import tomllib
 from collections.abc import Sequence
 from difflib import get_close_matches
-from importlib import metadata
-from pathlib import Path
 
-from fingerpad.installed import OPTIONAL, needed_by
+from fingerpad.installed import OPTIONAL, needed_by, version
 from fingerpad.io import terminal
 from fingerpad.scene.messages import SceneError, clip
 
@@ -84,14 +81,6 @@ def _call(words: list[str]) -> int:
         return int(importlib.import_module(f"fingerpad.cli.{name.replace('-', '_')}").main(words[1:]))
     except SystemExit as stop:  # of --help
         return int(stop.code or 0)
-
-
-def version() -> str:
-    """Return the version: that of the folder of sources, or of the package that is installed."""
-    project = Path(__file__).parents[2] / "pyproject.toml"
-    if project.is_file():
-        return str(tomllib.loads(project.read_text(encoding="utf-8"))["project"]["version"])
-    return metadata.version("fingerpad")
 
 
 def _help() -> str:

@@ -3,11 +3,9 @@
 import contextlib
 import ctypes
 import hashlib
-import importlib.metadata
 import os
 import platform
 import re
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +19,7 @@ import scipy
 import ufl
 from petsc4py import PETSc
 
+from fingerpad.installed import version
 from fingerpad.io.petsc_options import in_use
 from variational import jit
 
@@ -51,7 +50,7 @@ def provenance() -> dict[str, Any]:
 
 def _versions() -> dict[str, str]:
     return {
-        "fingerpad": _own_version(),
+        "fingerpad": version(),
         "source": _source(),
         "dolfinx": dolfinx.__version__,
         "basix": basix.__version__,
@@ -63,12 +62,6 @@ def _versions() -> dict[str, str]:
         "scipy": scipy.__version__,
         "python": platform.python_version(),
     }
-
-
-def _own_version() -> str:
-    with contextlib.suppress(importlib.metadata.PackageNotFoundError):
-        return importlib.metadata.version("fingerpad")
-    return str(tomllib.loads((_ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"])
 
 
 def _source() -> str:
