@@ -111,6 +111,12 @@ def changed(change):
     return build
 
 
+def twice():
+    """Give the layer a second name."""
+    entities = gmsh.model.getEntitiesForPhysicalGroup(2, tags.STRATUM_CORNEUM)
+    gmsh.model.addPhysicalGroup(2, entities, 77, "dermis")
+
+
 def two_parts():
     """Two squares of two layers that touch and share no node."""
     geo, lines, surfaces = gmsh.model.geo, [], []
@@ -173,6 +179,7 @@ REFUSED = {
     "far from any": (named(2, 1, "gel"), "group 'gel' of cells is unknown; it must be one of 'stratum corneum', 'via"),
     "no name": (named(2, 1, ""), "group 77 of cells has no name"),
     "no such ridge": (named(1, tags.ridge(0), "ridge 01"), "group 'ridge 01' of facets is unknown"),
+    "two layers in one": (changed(twice), "groups 'stratum corneum' and 'dermis' overlap"),
     "mm": (lambda: RIDGE(), "the body is 0.6 m large, which is no finger; lengths are in m: did you mean mm?"),
     "small": (changed(lambda: scale(1e-4)), "large; it must be at least 1e-06 m"),
     "below": (changed(lambda: scale(1, up=-1e-5)), "the lowest point is at y = -1e-05 m, below the screen at y = 0"),
