@@ -1,6 +1,7 @@
 """A small finger under voltages over time: as by loads by hand, and what is the same whatever the sign or the place."""
 
 import tomllib
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from mpi4py import MPI
 
 from fingerpad.io.over_time import NOTE
 from fingerpad.io.result import Result
+from fingerpad.model.course import Course
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.model.touching import by_rule
@@ -137,6 +139,22 @@ def test_square_jumps_at_one_place():
         # The slip that a jump takes is over within the first samples of a plateau.
         plateau = [state.f_t for state in wave if state.voltage == voltage][-3:]
         assert plateau == pytest.approx([plateau[-1]] * 3, rel=1e-5)
+
+
+def test_course_of_a_square():
+    """Its jumps are cut into steps, its plateaus are not; what is done is counted in time, not by the pieces."""
+    load = Load(name="wave", duration=2 / 60, voltage=WAVE | {"waveform": "square"})
+    course = Course([load], 1.0)
+    targets = course.targets(load, 0.0)
+    jumps = [after for before, after in pairwise(targets) if before.voltage != after.voltage]
+    assert len(jumps) == 3 and not any(target.continues for target in jumps)
+    assert sum(target.continues for target in targets) == len(targets) - 1 - len(jumps)
+    done = []
+    for target in targets:
+        time = course.time(target, 1.0, 0.0)
+        assert course.done(target, 1.0) == pytest.approx(time * 60 / 2, abs=1e-12)
+        done.append(course.done(target, 1.0))
+    assert done == sorted(done) and done[-1] == 1.0
 
 
 @pytest.mark.mpi

@@ -63,6 +63,14 @@ def test_paraboloid_on_an_elastic_foundation(depth):
     assert at_force(profile(Slices()), foundation(), total.totals["f_ext"], 48).delta == pytest.approx(depth, rel=EXACT)
 
 
+def test_pressure_is_what_the_contact_bears_over_its_length():
+    """Force and attraction together; over all slices it makes the contact force."""
+    total = at_indentation(profile(Slices()), kept(200.0), 0.7e-3, 24)
+    borne = total.thickness @ (total.pressure * total.columns["contact_length"])
+    assert borne == pytest.approx(total.totals["f_ext"] + total.totals["f_electrostatic"], rel=1e-12)
+    assert total.totals["f_electrostatic"] > 0.5 * total.totals["f_ext"]
+
+
 def test_tilt_moves_a_parabola():
     """s + θ z is the parabola again, its lowest point at −θ R and lower by θ² R / 2."""
     tilt, force = 0.1, 0.5
