@@ -62,6 +62,16 @@ class Tangent:
         self.counts.factorisations += 1
         self.stale = False
 
+    def unshifted(self) -> PETSc.Mat:
+        """Return K of the present fields without the shift of pseudo-transient continuation, in a matrix of its own."""
+        eta, found = self.equations.problem.eta, self.matrix.duplicate()
+        shift, eta.value = float(eta.value), 0.0
+        with self.equations.timings.phase("assembly"):
+            self.equations.assemble_tangent(found)
+            found.zeroRows(self.equations.prescribed_rows(), diag=self.equations.stiffness)
+        eta.value = shift
+        return found
+
     def make_relative(self, ksp: PETSc.KSP, b: PETSc.Vec, x: PETSc.Vec) -> None:
         """Make the solution of K x = b relative to the bone; what a failed factorisation leaves stays as it is."""
         if ksp.getConvergedReason() > 0:
