@@ -59,7 +59,7 @@ def test_rule_of_the_cost_is_that_of_kept_runs():
 
 def test_cost_of_a_press_is_a_part():
     scene = from_data({"history": [{"name": "press", "f_ext": 75.0}]})
-    assert cost.expected(scene, plan(scene)).factorisations == pytest.approx(0.26 * cost.RUNS)
+    assert cost.expected(scene, plan(scene)).factorisations == pytest.approx(cost.SHARES["force"] * cost.RUNS)
 
 
 @pytest.mark.parametrize(
