@@ -105,6 +105,15 @@ def test_browser_opens_it_and_steps_through_the_states(page, tmp_path, size):
     assert all(drawn for _, drawn in found["charts"])
 
 
+def test_key_numbers_fit_a_phone(page, tmp_path):
+    """All columns at once: that of full slip is the last."""
+    program = """
+    const tables = [...document.querySelectorAll(".wide")].filter((box) => box.querySelector("table.numbers"));
+    return tables.slice(0, 2).map((box) => [box.scrollWidth, box.clientWidth]);"""
+    found = asked(page, program, tmp_path, width=390, height=844)
+    assert len(found) == 2 and all(needed <= there for needed, there in found)
+
+
 def test_numbers_stand_there_without_scripts(page, folder, tmp_path):
     result = Result.load(folder)
     found = asked(page, TEXT, tmp_path, width=390, height=844, scripts=False)
