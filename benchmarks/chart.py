@@ -228,7 +228,7 @@ def draw(docs: Path) -> Path:
     reference = {name: Limit(**each) for name, each in kept.numbers["reference"].items()}
     reference[ALL] = Limit(1.0, max(end.relative for end in reference.values()), None)
     fronts = {quantity: "; ".join(p.label for p in front(points, quantity)) for quantity in (*QUANTITIES, ALL)}
-    lists = "\n".join(f"- {_words(quantity)}: {labels}" for quantity, labels in fronts.items())
+    listed = harness.table(["quantity", "runs"], [[_words(quantity), labels] for quantity, labels in fronts.items()])
     work, time = (_costs(points, reference, measure) for measure in MEASURES)
     body = [
         harness.picture(docs / "chart.png", (9, 7), lambda figure: _paint(figure, points, reference), text["caption"]),
@@ -237,7 +237,7 @@ def draw(docs: Path) -> Path:
         harness.folded("The same by processor time", time),
         "## Other formulations and penalties\n\nDifferences from the limit over the default's penalty.",
         _other_models(points),
-        harness.folded("Fronts over work, from cheap to expensive", lists),
+        harness.folded("Fronts over work, from cheap to expensive", listed),
         f"## Runs\n\n{len(points)} of {len(points) + len(lost)} runs reached full slip.",
         *(f"Not reached: {words}" for words in lost),
     ]

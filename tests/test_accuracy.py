@@ -16,7 +16,6 @@ from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.accuracy.rigid_screen import ORDER
 from fingerpad.io.interrupt import Interrupted
 from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.simulation import Simulation
 from fingerpad.model.touching import by_rule
 from fingerpad.richardson import MORE, ONCE
 from fingerpad.scene import from_data
@@ -329,15 +328,6 @@ def test_run_without_errors_says_none(tmp_path: Path):
     assert 0 < seconds[0]
     assert all(a <= b for a, b in itertools.pairwise([*seconds, summary["processor_seconds"]]))
     assert seconds[-1] > seconds[0]
-
-
-def test_steps_follow_the_scene_s_scale():
-    """And a scene that leaves it as it is has the key that it had before there was a scale."""
-    scene = from_data(SMALL | {"numerics": {"step_scale": 0.5}})
-    assert scene.parameters()["numerics"]["step_scale"] == 0.5
-    assert "step_scale" not in from_data(SMALL).parameters()["numerics"]
-    simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
-    assert simulation.finger.continuation.step_scale == 0.5
 
 
 @pytest.mark.parametrize(

@@ -5,9 +5,13 @@ import itertools
 import pytest
 from mpi4py import MPI
 
+from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.simulation import Simulation
+from fingerpad.scene import from_data
 from geometry.bodies import block
 from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, WIDTH, over
+from tests.test_translation import FINGER
 from variational.solvers import continuation
 from variational.solvers.continuation import StepFailed, Target
 from variational.solvers.failure import NotConverged
@@ -113,3 +117,12 @@ def test_target_that_is_reached_already():
         before = run.steps
         run.run(target)
         assert run.steps == before + 1
+
+
+def test_steps_follow_the_scene_s_scale():
+    """And a scene that leaves it as it is has the key that it had before there was a scale."""
+    scene = from_data(FINGER | {"numerics": {"step_scale": 0.5}})
+    assert scene.parameters()["numerics"]["step_scale"] == 0.5
+    assert "step_scale" not in from_data(FINGER).parameters()["numerics"]
+    simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
+    assert simulation.finger.continuation.step_scale == 0.5

@@ -55,10 +55,7 @@ class Tangent:
         self.kept = not self.stale
         if self.kept:
             return
-        with self.equations.timings.phase("assembly"):
-            K.zeroEntries()
-            self.equations.assemble_tangent(K)
-            K.zeroRows(self.equations.prescribed_rows(), diag=self.equations.stiffness)
+        self._assemble(K)
         self.counts.factorisations += 1
         self.stale = False
 
@@ -66,11 +63,16 @@ class Tangent:
         """Return K of the present fields without the shift of pseudo-transient continuation, in a matrix of its own."""
         eta, found = self.equations.problem.eta, self.matrix.duplicate()
         shift, eta.value = float(eta.value), 0.0
-        with self.equations.timings.phase("assembly"):
-            self.equations.assemble_tangent(found)
-            found.zeroRows(self.equations.prescribed_rows(), diag=self.equations.stiffness)
+        self._assemble(found)
         eta.value = shift
         return found
+
+    def _assemble(self, K: PETSc.Mat) -> None:
+        """Write the tangent of the present fields into a matrix; collective."""
+        with self.equations.timings.phase("assembly"):
+            K.zeroEntries()
+            self.equations.assemble_tangent(K)
+            K.zeroRows(self.equations.prescribed_rows(), diag=self.equations.stiffness)
 
     def make_relative(self, ksp: PETSc.KSP, b: PETSc.Vec, x: PETSc.Vec) -> None:
         """Make the solution of K x = b relative to the bone; what a failed factorisation leaves stays as it is."""
