@@ -270,6 +270,8 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, tuple[Numbers, str]]:
         "softer": _softer(runs),
         "modulus": _modulus(runs),
         "time": _constant(MISS),
+        "relaxation": _constant(MISS),
+        "speed": _constant(MISS),
         "ridges": _ridges(g),
         "gap_sliding": _gap_sliding(g),
         "friction_occluded": _constant(by_factor(1.0, 1.0, 5.0, 5.0, RATIO)),
