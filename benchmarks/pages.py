@@ -5,7 +5,7 @@ python3 -m benchmarks.pages --stale                        also: make stale; nee
 
 A page is older than the code where a file that computes its numbers differs from that which made them: one of the
 packages (geometry, variational, fingerpad without what starts, reads, refuses, orders runs, writes and prints), or of
-the page's own program, the module that only draws it left out. Comments and docstrings do not count, nor packages
+the page's own program, without what only draws it. Comments and docstrings do not count, nor packages
 that were found to compute the same numbers (docs/same.json, by benchmarks/same.py). The commit that made numbers is
 found by the hash of the packages' files that is kept with them; a program in benchmarks/ is compared with that of the
 commit that brought them into git. Numbers of files that are in no commit count as made by the commit that brought them,
@@ -78,12 +78,28 @@ def source(commit: str) -> str:
 
 
 def computes(text: bytes) -> str:
-    """Return the statements of a module, without comments and docstrings."""
+    """Return the statements of a module, without comments, docstrings and what only ``draw(docs)`` uses."""
     module = ast.parse(text)
     for node in ast.walk(module):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node, clean=False):
             node.body = node.body[1:] or [ast.Pass()]
+    drawing = _drawing(module)
+    module.body = [node for node in module.body if getattr(node, "name", "") not in drawing]
     return ast.dump(module)
+
+
+def _drawing(module: ast.Module) -> set[str]:
+    """Return ``draw`` of a page's program and the private functions and classes that nothing else uses; or nothing."""
+    own = {node.name: node for node in module.body if isinstance(node, ast.ClassDef | ast.FunctionDef)}
+    if "draw" not in own:
+        return set()
+    used, rest = set[str](), [node for node in module.body if node not in own.values()]
+    rest += [node for name, node in own.items() if not name.startswith("_") and name != "draw"]
+    while rest:
+        names = {each.id for each in ast.walk(rest.pop()) if isinstance(each, ast.Name)} & own.keys() - used - {"draw"}
+        used |= names
+        rest += [own[name] for name in names]
+    return {name for name in own if name.startswith("_")} - used | {"draw"}
 
 
 def changed(before: Mapping[str, bytes], now: Mapping[str, bytes]) -> set[str]:

@@ -80,6 +80,26 @@ def test_page_is_older_where_its_code_computes_something_else(since):
     assert since("chart", MADE, old=OLD, new={}) == ["benchmarks/chart.py", "variational/x.py"]
 
 
+def test_what_only_draws_a_page_does_not_make_it_older(since):
+    """The function draw and private ones that it alone uses, in turn; not those which compute use too."""
+    old = """
+def _both(): return 1
+def _picture(): return 2
+def _words(): return _picture()
+def shared(): return 3
+def compute(): return _both()
+def draw(docs): return _words(), _both(), shared()
+main(compute, draw)
+"""
+    page = "benchmarks/chart.py"
+    for value, older in ((1, [page]), (2, []), (3, [page])):
+        new = old.replace(f"return {value}", "return 9")
+        assert since("chart", MADE, old={page: old.encode()}, new={page: new.encode()}) == older
+    new = old.replace("_words(), _both()", "_words()").replace("main(compute", "main(compute2")
+    assert since("chart", MADE, old={page: old.encode()}, new={page: new.encode()}) == [page]
+    assert since("chart", MADE, old={page: old.encode()}, new={page: new.replace("compute2", "compute").encode()}) == []
+
+
 def test_numbers_of_several_commits_are_as_old_as_the_oldest(since):
     states = Made("0.1.0", "", "", "02, 01")
     assert since("errors", states, old=OLD, new=NEW | CHANGED) == ["variational/x.py"]
