@@ -11,6 +11,8 @@ from typing import Any
 HOLDS, IN_PART, NOT = "holds", "holds in part", "does not hold"
 BUILT = "holds by construction"
 """The model's symmetry or equations leave nothing else: such a statement checks the program, not the model."""
+HALF = 0.5
+"""Share of the loads, ridges or sites from which on a statement about all of them holds in part."""
 
 
 @dataclass(frozen=True)
