@@ -29,6 +29,7 @@ ROOT = Path(__file__).resolve().parents[1]
 # Each has a function draw(docs), which writes the page's files into a folder and returns the path of the page.
 PAGES = {
     "accuracy": "benchmarks.accuracy",
+    "assumptions": "benchmarks.assumptions",
     "chart": "benchmarks.chart",
     "errors": "benchmarks.errors",
     "hero": "benchmarks.hero",

@@ -1,0 +1,85 @@
+"""The page of assumptions: its rows are the commands that it prints, its sentences hold of its numbers."""
+
+import argparse
+import math
+import re
+import shlex
+
+import pytest
+
+from benchmarks import assumptions
+from benchmarks.assumptions import LEAST_GAP, MOST_GAP, NEAR, PAPER, within
+from benchmarks.harness import DOCS, ROOT, kept
+from fingerpad.cli.arguments import scene_of
+
+
+@pytest.fixture(scope="module")
+def found():
+    return kept("assumptions").numbers
+
+
+def test_printed_options_give_the_scene(monkeypatch):
+    """As the command line reads them; whether errors are estimated is left to it."""
+    monkeypatch.chdir(ROOT)
+    parser = argparse.ArgumentParser()
+    parser.add_argument("scene", nargs="?", type=assumptions.Path)
+    parser.add_argument("--set", action="append", default=[])
+    for name, case in (assumptions.cases() | assumptions.smooth()).items():
+        printed = assumptions._command(case).strip("`").replace("none", "")
+        scene = scene_of(parser.parse_args([*shlex.split(printed), "--set", "output.errors=false"]))
+        assert scene.parameters() == case._replace(errors=False).scene().parameters(), name
+
+
+def test_every_run_is_kept(found):
+    assert list(found["full"]) == list(assumptions.cases()) and list(found["smooth"]) == list(assumptions.smooth())
+
+
+def test_default_is_that_of_other_pages(found):
+    """The same scene at 10 µm, run for the models' page; the other counts the ridges that can touch by a rule."""
+    models = kept("models").numbers["scenes"]["75 N/m, 200 V"]["full"]["summary"]
+    reference = found["full"]["reference"]
+    assert reference["mu_app"] == pytest.approx(models["slip_mu_app"], rel=1e-5)
+    assert reference["normal"] == pytest.approx(models["normal_contact_length"], rel=1e-3)
+
+
+def test_air_gaps_are_counted_by_the_range_of_the_paper():
+    row = {"gaps": {"normal": [LEAST_GAP, 1.6e-6, 3.1e-6], "slip": [MOST_GAP, 1.5e-6]}}
+    assert within(row) == (2, 2, 5)
+
+
+def test_sentences_hold_of_the_numbers(found):
+    """What the prose says without a number of its own."""
+    full, finger, words = found["full"], found["smooth"], assumptions.values(found)
+    mechanical = [name for name in full if "voltage" not in name and "friction" not in name and name != "flat 0"]
+    changes = {name: abs(full[name]["mu_app"] / full["reference"]["mu_app"] - 1) for name in mechanical}
+    profiles = {name for name in assumptions.PARAMETERS if "ridge_profile" in name}
+    assert changes["flat 200"] > max(changes[name] for name in mechanical if name != "flat 200")
+    assert max(changes[name] for name in assumptions.LITTLE) < min(changes[name] for name in profiles)
+    flat, inside = full["flat"], words["flat"]
+    assert inside[0] == inside[2] and abs(flat["mu_app"] / PAPER - 1) <= NEAR  # both statements at 170 V
+    assert max(flat["gaps"]["slip"]) in (flat["gaps"]["slip"][0], flat["gaps"]["slip"][-1])
+    at_200 = [row for name, row in finger.items() if name.endswith("] at 200 V")]
+    assert len(at_200) == 15 and not any(
+        row["d_eq"] >= LEAST_GAP and abs(row["mu_app"] / PAPER - 1) <= NEAR for row in at_200
+    )
+    low = finger["[1, -0.25] at 150 V"]
+    assert low["d_eq"] > LEAST_GAP and low["mu_app"] < PAPER * (1 - NEAR)
+    assert words["met_low"] < 170 < words["met_high"]
+    assert min(words[key] for key in ("light_normal", "heavy_normal")) > 0
+
+
+def test_profiles_fall_from_the_middle_of_a_ridge_to_the_groove():
+    """All of them: their slope has one sign."""
+    for case in assumptions.smooth().values():
+        coefficients = case.scene().geometry.ridge_profile
+        for k in range(1, 200):
+            angle = math.pi * k / 200
+            slope = sum(n * c * math.sin(n * angle) for n, c in enumerate(coefficients, start=1))
+            assert slope > -1e-12
+
+
+def test_page_shows_every_row():
+    text = (DOCS / "assumptions.md").read_text(encoding="utf-8")
+    for change in (*assumptions.PARAMETERS, *assumptions.LITTLE):
+        assert change in text
+    assert len(re.findall(r"^\| `\[1", text, flags=re.MULTILINE)) == 10
