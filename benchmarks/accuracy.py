@@ -268,7 +268,14 @@ def draw(docs: Path) -> Path:
     n, bare, safe = coverage(cases)
     of_bare, of_safe = 100 * bare / n, 100 * safe / n
     verdicts, how = "; ".join(_verdicts(found.numbers["runs"], cases)), text["how"].format(once=ONCE, more=MORE)
-    finding = text["finding"].format(n=n, bare=bare, safe=safe, of_bare=of_bare, of_safe=of_safe, verdicts=verdicts)
+    whole, _, whole_safe = coverage([case for case in cases if case.source == WHOLE])
+    densities = [case for case in cases if case.source in _PARAMETERS and case.kind == "energy density"]
+    alone, _, alone_safe = coverage(densities)
+    finding = text["finding"].format(
+        n=n, bare=bare, safe=safe, of_bare=of_bare, of_safe=of_safe, verdicts=verdicts,
+        whole=whole, whole_safe=whole_safe, alone=alone, alone_safe=alone_safe,
+    )  # fmt: skip
+    one = text["one"].format(scatter=max(case.error for case in densities if case.source == "growth"))
 
     def all_of(name: str, sources: Sequence[str]) -> str:
         return harness.folded(f"All cases of {name}", table([c for s in sources for c in cases if c.source == s]))
@@ -277,7 +284,7 @@ def draw(docs: Path) -> Path:
         f"## Coverage\n\n{_coverages(cases)}",
         f"## Whole runs\n\n{all_of('whole runs', [WHOLE])}",
         harness.folded("Chosen meshes and their cost", _chosen(found.numbers["runs"])),
-        f"## One mesh parameter at a time\n\n{text['one']}\n\n{all_of('one mesh parameter', list(_PARAMETERS))}",
+        f"## One mesh parameter at a time\n\n{one}\n\n{all_of('one mesh parameter', list(_PARAMETERS))}",
         f"## Hertz's contact\n\n{text['hertz']}\n\n" + all_of("Hertz's contact", [HERTZ]),
     ]
     path, command, names = docs / "accuracy.md", "python3 -m benchmarks.accuracy", ["accuracy", "errors"]

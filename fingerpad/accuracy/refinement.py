@@ -16,8 +16,8 @@ largest shares again, until the estimate is within what is allowed, or the run r
 estimate is wanted, the mesh stays and each size is doubled: that costs less than the states did. A state in which
 another number of ridges touches is noted; it appears as a large share.
 
-The result is the *estimated discretisation error*: the estimate with its factors of safety, which covers the known
-errors in nine of ten cases (``docs/accuracy.md``). It is of the mesh, over the screen as it is. The effect of a penalty
+The result is the *estimated discretisation error*: the estimate with its factors of safety, which in whole runs
+covers the known errors of nine of ten numbers (``docs/accuracy.md``). It is of the mesh, over the screen as it is. The effect of a penalty
 is reported beside it (:mod:`fingerpad.accuracy.rigid_screen`).
 
 Not estimated: the effect on normal contact of a friction history that is the first mesh's.
