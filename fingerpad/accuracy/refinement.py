@@ -17,8 +17,8 @@ estimate is wanted, the mesh stays and each size is doubled: that costs less tha
 another number of ridges touches is noted; it appears as a large share.
 
 The result is the *estimated discretisation error*: the estimate with its factors of safety, which in whole runs
-covers the known errors of nine of ten numbers (``docs/accuracy.md``). It is of the mesh, over the screen as it is. The effect of a penalty
-is reported beside it (:mod:`fingerpad.accuracy.rigid_screen`).
+covers the known errors of nine of ten numbers (``docs/accuracy.md``). It is of the mesh, over the screen as it is. The
+effect of a penalty is reported beside it (:mod:`fingerpad.accuracy.rigid_screen`).
 
 Not estimated: the effect on normal contact of a friction history that is the first mesh's.
 """
