@@ -219,8 +219,9 @@ def test_waves_need_ridges_that_come_and_go(grid):
     assert by(judged(grid), "wavy").numbers == PATHS
     assert verdict() == HOLDS
     assert verdict(left_0=0.0) == verdict(new_200=0.0) == verdict(rise_0=0.009) == IN_PART
-    assert verdict(rise_0=0.009, rise_200=0.009) == verdict(rise_0=0.009, new_200=0.0) == NOT
-    assert by(judged(grid, PATHS | {"rise_0": 0.009}), "wavy").why == "at 0 V the waves are under 1 %"
+    assert verdict(rise_0=0.009, rise_200=0.009) == IN_PART  # the cause is there at every voltage
+    assert verdict(rise_0=0.009, new_200=0.0) == NOT
+    assert by(judged(grid, PATHS | {"rise_0": 0.009}), "wavy").why.endswith("at 0 V the waves are under 1 %")
 
 
 def test_paths_count_rises_and_ridges():

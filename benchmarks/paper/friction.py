@@ -259,14 +259,15 @@ def _uncharged(grid: Grid, lost: Array) -> Statement:
 
 
 def _wavy(paths: Mapping[str, float]) -> Statement:
-    """Judge the waves at each voltage: a rise of more than 1 %, a ridge that leaves and one that comes."""
+    """Judge at each voltage waves, rises of more than 1 %, and their cause, a ridge that leaves and one that comes."""
     voltages = [name.removeprefix("rise_") for name in paths if name.startswith("rise_")]
     rise, left, new = ([paths[f"{kind}_{u}"] for u in voltages] for kind in ("rise", "left", "new"))
     waves = [high > 0.01 and go > 0 and come > 0 for high, go, come in zip(rise, left, new, strict=True)]
+    cause = all(go > 0 and come > 0 for go, come in zip(left, new, strict=True))
     words = {"voltages": ", ".join(voltages), "rise": ", ".join(f"{100 * high:.2f}" for high in rise)}
     words |= {kind: ", ".join(f"{n:g}" for n in counts) for kind, counts in (("left", left), ("new", new))}
     words["flat"] = ", ".join(u for u, high in zip(voltages, rise, strict=True) if high <= 0.01)
-    return statement("wavy", paths, all(waves), np.mean(waves) >= HALF, **words)
+    return statement("wavy", paths, all(waves), np.mean(waves) >= HALF or cause, **words)
 
 
 def _area(grid: Grid, lost: Array) -> Statement:
