@@ -8,7 +8,7 @@ import shlex
 import pytest
 
 from benchmarks import assumptions
-from benchmarks.assumptions import LEAST_GAP, MOST_GAP, NEAR, PAPER, within
+from benchmarks.assumptions import LEAST_GAP, NEAR, PAPER
 from benchmarks.harness import DOCS, ROOT, kept
 from fingerpad.cli.arguments import scene_of
 
@@ -43,8 +43,18 @@ def test_default_is_that_of_other_pages(found):
 
 
 def test_air_gaps_are_counted_by_the_range_of_the_paper():
-    row = {"gaps": {"normal": [LEAST_GAP, 1.6e-6, 3.1e-6], "slip": [MOST_GAP, 1.5e-6]}}
-    assert within(row) == (2, 2, 5)
+    row = {"gaps": {"normal": [1.71e-6, 1.69e-6, 3.1e-6], "slip": [2.99e-6, 1.5e-6]}}
+    assert assumptions._counts(row) == (2, 2, 5)
+
+
+def test_run_that_failed_keeps_no_page(monkeypatch, tmp_path):
+    """It is named; the numbers of an earlier page stay."""
+    monkeypatch.setattr(assumptions.harness, "run", lambda scenes, *_: {name: {} for name in scenes})
+    monkeypatch.setattr(assumptions, "sweep", lambda scenes, *_: {"[1] at 200 V": {"failure": "DIVERGED_MAX_IT"}})
+    args = argparse.Namespace(out=tmp_path / "traces", docs=tmp_path, jobs=1)
+    with pytest.raises(SystemExit, match=r"\[1\] at 200 V failed"):
+        assumptions.compute(args)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_sentences_hold_of_the_numbers(found):
