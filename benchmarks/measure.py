@@ -21,6 +21,7 @@ start()
 
 import dolfinx.jit
 import numpy as np
+from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from benchmarks import explicit
@@ -38,18 +39,20 @@ from fingerpad.scene import load
 from variational.quantities import Observer
 from variational.solvers.equations import Equations
 from variational.solvers.iteration import PREFIX, Iteration
+from variational.solvers.skin_layer import SkinLayer
 from variational.solvers.timing import memory_mb
 
 Numbers = dict[str, Any]
 _Key = tuple[str, str]
 _REPEATS, _SIZES = 5, ("contact", "receptor", "interface", "growth")
 _STRAIN = (0.01, -0.02)  # of the body whose operations are timed
-_NEWTON, _PATH, _ERRORS = "rest of Newton's method", "rest of the path", "errors"
-_WHOLE = ("stability", "output", "set-up")  # parts to which all that is called in them belongs
+_NEWTON, _PATH, _ERRORS, _LAYER = "rest of Newton's method", "rest of the path", "errors", "layer at the screen"
+_WHOLE = ("stability", "output", "set-up", _LAYER)  # parts to which all that is called in them belongs
 _WATCHED: dict[str, list[tuple[type, str]]] = {
     _PATH: [(Simulation, "run")],
     _ERRORS: [(Refinement, "run")],
     _NEWTON: [(Iteration, "run")],
+    _LAYER: [(SkinLayer, "balance")],
     "set-up": [(Finger, "__init__")],
     "residual": [(Equations, "residual")],
     "tangent": [(Equations, "assemble_tangent")],
@@ -58,6 +61,12 @@ _WATCHED: dict[str, list[tuple[type, str]]] = {
     "output": [(Report, "step"), (Report, "load_reached"), (Report, "final"), (Drawing, "write"), (Writer, "dataset")],
 }
 _EVENTS = {"MatLUFactorSym": "factorisation", "MatLUFactorNum": "factorisation", "MatSolve": "back-substitution"}
+
+
+def _logged() -> NDArray[np.float64]:
+    """Return seconds and number of each event in PETSc's log so far, shape (events, 2)."""
+    found = [PETSc.Log.Event(event).getPerfInfo() for event in _EVENTS]
+    return np.array([[each["time"], each["count"]] for each in found])
 
 
 class Parts:
@@ -70,13 +79,14 @@ class Parts:
         """Watch the parts of the program from now on."""
         self.seconds, self.calls = defaultdict[_Key, float](float), defaultdict[_Key, float](float)
         self._stack, self._last = ["rest of the run"], time.process_time()
+        self._aside = np.zeros((len(_EVENTS), 2))  # what PETSc's log has of the layer's solves
         PETSc.Log.begin()
         for name, methods in _WATCHED.items():
             for owner, method in methods:
                 setattr(owner, method, self._watched(getattr(owner, method), name))
 
     def _watched(self, inner: Callable[..., Any], name: str) -> Callable[..., Any]:
-        charged = self._newton if name == _NEWTON else self._part
+        charged = {_NEWTON: self._newton, _LAYER: self._layer}.get(name, self._part)
 
         @functools.wraps(inner)
         def timed(*args: Any, **more: Any) -> Any:
@@ -107,17 +117,26 @@ class Parts:
 
     @contextmanager
     def _newton(self, name: str) -> Iterator[None]:
-        before = [PETSc.Log.Event(event).getPerfInfo() for event in _EVENTS]
+        before = _logged() - self._aside
         wall, processor = time.perf_counter(), time.process_time()
         with self._part(name):
             yield
         scale = (time.process_time() - processor) / (time.perf_counter() - wall)
-        for (event, part), old in zip(_EVENTS.items(), before, strict=True):
-            now = PETSc.Log.Event(event).getPerfInfo()
-            seconds = scale * (now["time"] - old["time"])
+        own = _logged() - self._aside - before
+        for k, (event, part) in enumerate(_EVENTS.items()):
+            seconds, count = scale * float(own[k, 0]), float(own[k, 1])
             self.seconds[self._key(part)] += seconds
             self.seconds[self._key(name)] -= seconds
-            self.calls[self._key(part)] += (event != "MatLUFactorSym") * (now["count"] - old["count"])
+            self.calls[self._key(part)] += (event != "MatLUFactorSym") * count
+
+    @contextmanager
+    def _layer(self, name: str) -> Iterator[None]:
+        before = _logged()
+        with self._part(name):
+            yield
+        own = _logged() - before
+        self._aside += own
+        self.calls[self._key(name)] += own[list(_EVENTS).index("MatLUFactorNum"), 1] - 1  # factorisations, not calls
 
     def of(self, phase: str, counted: dict[_Key, float]) -> dict[str, float]:
         """Return the seconds or calls of a phase by part."""

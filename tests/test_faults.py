@@ -139,8 +139,8 @@ def test_bone_and_screen_disagree(scene, tmp_path, monkeypatch):
     """A reaction that is wrong by 1e-5 of f_ext is not passed over."""
     kept = Equations.residual
 
-    def wrong(self, x, f):
-        kept(self, x, f)
+    def wrong(self, x, f, *part):
+        kept(self, x, f, *part)
         self.reaction[1] += 1e-5
 
     monkeypatch.setattr(Equations, "residual", wrong)

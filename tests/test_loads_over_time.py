@@ -64,8 +64,12 @@ def same(a: list[ContactState], b: list[ContactState], but: tuple[str, ...] = ()
 # -- what it is ----------------------------------------------------------------------------------------
 @pytest.mark.mpi
 def test_waveform_is_the_loads_by_hand():
-    """One load at each sample, as the paper's Fig. 9B was done before: full slip does not depend on the steps."""
-    found = follow(PRESS, SLIDE, BY | {"voltage": WAVE})
+    """One load at each sample, as the paper's Fig. 9B was done before: full slip does not depend on the steps.
+
+    The air gaps are found to 1e-8: at 97 V a contact length changes 150 times as much as the friction, in parts.
+    """
+    exact = {"numerics": {"coupling_tolerance": 1e-8}}
+    found = follow(PRESS, SLIDE, BY | {"voltage": WAVE}, **exact)
     wave = [state for state in found if state.load == "wave"]
     samples = Load(**BY, voltage=WAVE).wave.samples(1 / 60, 1.0)
     assert len(wave) == pytest.approx(len(samples), abs=2)  # the first is a jump of 20 V
@@ -73,7 +77,7 @@ def test_waveform_is_the_loads_by_hand():
         {"name": f"sample {k}", "voltage": abs(round(u, 9)), "bone_x": 256e-6 + 128e-6 * t * 60}
         for k, (t, u) in enumerate(samples)
     ]
-    ends = {state.load: state for state in follow(PRESS, SLIDE, *hand)}
+    ends = {state.load: state for state in follow(PRESS, SLIDE, *hand, **exact)}
     for k, (time, voltage) in enumerate(samples):
         mine = next(state for state in reversed(wave) if state.time == pytest.approx(time, abs=1e-12))
         assert mine.voltage == pytest.approx(voltage, abs=1e-9)

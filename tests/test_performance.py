@@ -28,6 +28,7 @@ def test_parts_are_all_of_the_processor_time(tmp_path):
     assert whole == pytest.approx(found["processor"], rel=0.02)
     assert found["calls"]["back-substitution"] == found["newton"]
     assert found["calls"]["tangent"] == found["calls"]["factorisation"] < found["factorisations"]
+    assert found["calls"]["layer at the screen"] > found["calls"]["factorisation"]
     assert performance.unit(found) > 0
 
 

@@ -1,5 +1,7 @@
 """Newtons from runs: at the end of a run for nothing, from traces of the full model, and full slip by two paths."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ import fingerpad as fp
 from fingerpad.report import run_page
 from fingerpad.runs import solve
 from fingerpad.scene import SceneError
+from fingerpad.slices.estimate import with_newtons
 from fingerpad.slices.traces import history, points
 from tests.runs import no_pictures
 from tests.small_finger import small
@@ -76,6 +79,9 @@ def test_run_has_newtons_for_nothing():
     assert slip.centre <= result.full_slip.f_ext * (1 + 1e-9)
     assert slip.mu_app > result.full_slip.mu_app
     assert "Whole finger" in str(result)
+    turned = [replace(state, f_t=-1e-15) if state.load == "press" else state for state in result.steps]
+    again = with_newtons(replace(result, steps=tuple(turned))).finger
+    assert again.states["full_slip"].totals == slip.totals, "sideways roundoff leaves no state of the press out"
 
 
 def test_newtons_of_the_closed_form():

@@ -91,7 +91,8 @@ class Problem:
         opening: length (m) that is negative in contact.
         laws, pressures, densities: each group of layers' material with its numbers as fields, volumetric pressure (Pa),
             positive in tension, and strain energy density (J/m^3), UFL.
-        residual, jacobian: compiled forms in w and its test function.
+        weak: residual and Jacobian in w and its test function, UFL.
+        residual, jacobian: the same, compiled.
         skin_mass: compiled mass of the touching skin per unit density.
         pressure_residual: the equation of the pressure; with one only.
         pressure_jacobian: compiled blocks of the Jacobian in (v, dp), (q, du), (q, dp); with a pressure only.
@@ -189,8 +190,8 @@ class Problem:
         jacobian = ufl.derivative(residual, w, du) + self.eta * skin_mass
         self.skin_mass = fem.form(skin_mass, jit_options=jit.OPTIONS)
         self.energy = fem.form(energy, jit_options=jit.OPTIONS)
-        self.residual = fem.form(residual, jit_options=jit.OPTIONS)
-        self.jacobian = fem.form(jacobian, jit_options=jit.OPTIONS)
+        self.weak = residual, jacobian
+        self.residual, self.jacobian = (fem.form(form, jit_options=jit.OPTIONS) for form in self.weak)
         if self.pressure:
             unknown = self.pressure.unknown
             q, dp = ufl.TestFunction(unknown.function_space), ufl.TrialFunction(unknown.function_space)

@@ -22,6 +22,7 @@ class Surface:
     Attributes:
         ridge: position of each facet's ridge in ``ridge_numbers``, shape (facets,).
         ridge_numbers: the ridges' numbers.
+        tags: facet tag of each ridge.
         facets: number of each facet in the mesh.
         length: reference length of each facet (m).
         weights: Gauss weights on [0, 1], shape (points,).
@@ -48,7 +49,7 @@ class Surface:
         self.mesh = mesh
         self.ridge_numbers = list(ridges)
         self.degree = 2 * points - 1
-        tag_list = list(ridges.values())
+        self.tags = tag_list = list(ridges.values())
         degree = {"quadrature_degree": self.degree}
         self.measure = ufl.Measure("ds", mesh, subdomain_data=facet_tags, subdomain_id=tuple(tag_list), metadata=degree)
         gauss, weights = basix.make_quadrature(basix.CellType.interval, self.degree)

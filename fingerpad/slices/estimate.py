@@ -34,7 +34,7 @@ def with_newtons(result: Result) -> Result:
     if result.scene.history is not None or result.scene.laws.mesh is not None or not result.named:
         return result
     try:
-        states = [state for state in result.steps if state.load == "press" and state.f_t >= 0]
+        states = [state for state in result.steps if state.load == "press"]
         return replace(result, finger=estimate(result.scene, states, result.named))
     except (SceneError, TraceError) as error:
         return replace(result, notes=(*result.notes, f"no newtons of the whole finger: {error}"))

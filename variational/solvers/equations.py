@@ -90,6 +90,7 @@ class Equations:
             self._side_rows = self._own_rows(2 * fem.locate_dofs_topological(problem.V, 1, moving_sides))
         nodes = fem.locate_dofs_topological(problem.V, 1, problem.surface.facets)
         self.skin = 2 * nodes, 2 * nodes + 1
+        self.holds_skin = False
         self._held_skin: tuple[Rows, Array] = np.empty(0, PETSc.IntType), np.empty(0)
         self.stiffness = 1e5
         self.reaction: Array = np.zeros(2)
@@ -145,12 +146,18 @@ class Equations:
         if self.problem.pressure:
             self.layout.to_pressure(x, self.problem.pressure.unknown.x.array)
 
-    def residual(self, x: PETSc.Vec, f: PETSc.Vec) -> None:
-        """Write the out-of-balance forces (N/m) of an iterate into a vector; collective."""
+    def residual(self, x: PETSc.Vec, f: PETSc.Vec, part: fem.Form | None = None) -> None:
+        """Write the out-of-balance forces (N/m) of an iterate into a vector; collective.
+
+        Args:
+            x: unknowns.
+            f: the forces.
+            part: the problem's residual over some of the cells; the forces are those of nodes that have no other cell.
+        """
         with self.timings.phase("assembly"):
             self.to_fields(x)
             self._nodal[:] = 0.0
-            fem.assemble_vector(self._nodal, self.problem.residual)
+            fem.assemble_vector(self._nodal, part or self.problem.residual)
             f.set(0.0)
             self.layout.add_to_unknowns(self._nodal, f)
             if self.problem.pressure:
@@ -212,7 +219,9 @@ class Equations:
             self.layout.translate(self._moved, self.layout.rigid_part(x))
             rows = self.skin_rows()
             self._held_skin = rows, self._moved.array_r[self.local(rows)].copy()
+            self.holds_skin = True
 
     def release(self) -> None:
         """Take away what :meth:`hold` added."""
         self.load_part, self._held_skin = 0.0, (np.empty(0, PETSc.IntType), np.empty(0))
+        self.holds_skin = False

@@ -3,16 +3,18 @@ r"""One solve by PETSc SNES: which steps of Newton's method are shortened or ref
 Full steps: with a stiff penalty the iteration is an active-set method, whose residual rises before the right points
 are in contact, and backtracking on the residual only slows it. But the first steps of a solve are shortened where
 they would drive open skin deep through the screen, which the tangent of open skin does not resist, and any step is
-halved that would turn elements inside out or send the residual up tenfold. A factorisation serves as long as the
-residual falls to half an iteration, accelerated by :mod:`~variational.solvers.anderson`; a step it proposes is refused
-when the residual would rise, and made anew with the tangent of the present iterate. Where the right points are not yet
-in contact, a kept factorisation may lower the residual and bring the wrong points into contact, the more so the stiffer
-the penalty: without voltage an iteration that cycles starts again, with a tangent of its own for each step. (With one
-it mostly cycles because the skin jumps, where no tangent helps.) A residual that stalls within some units of roundoff
-of the forces that cancel in it is at its floor, and the solve ends as converged there;
-:attr:`Iteration.floor` is that residual.
+halved that would turn elements inside out or send the residual up tenfold. After each step the elements next to the
+screen are brought into balance by themselves (:mod:`~variational.solvers.skin_layer`), which finds the points in
+contact at a fraction of the cost. A factorisation serves as long as the residual falls to two fifths an iteration,
+accelerated by :mod:`~variational.solvers.anderson`; a step it proposes is refused when the residual would rise, and
+made anew with the tangent of the present iterate. Where the right points are not yet in contact, a kept factorisation
+or a layer in balance may lower the residual and bring the wrong points into contact, the more so the stiffer the
+penalty: without voltage an iteration that cycles starts again without both. (With one it mostly cycles because the skin
+jumps, where no tangent helps.) A residual that stalls within some units of roundoff of the forces that cancel in it is
+at its floor, and the solve ends as converged there; :attr:`Iteration.floor` is that residual.
 
-In pseudo-transient continuation (:mod:`~variational.solvers.transient`) every iteration has a tangent of its own.
+In pseudo-transient continuation (:mod:`~variational.solvers.transient`) every iteration has a tangent of its own, and
+the layer stays as it is.
 """
 
 from dataclasses import dataclass
@@ -23,6 +25,7 @@ from petsc4py import PETSc
 
 from variational.solvers.anderson import Anderson
 from variational.solvers.equations import OUTSIDE, Equations
+from variational.solvers.skin_layer import SkinLayer
 from variational.solvers.tangent import Tangent
 from variational.solvers.timing import Counts
 from variational.solvers.transient import EulerShift
@@ -40,11 +43,13 @@ DEFAULTS = {
     "pc_factor_mat_solver_type": "mumps",
     "mat_mumps_icntl_8": "0",  # no scaling, which takes a sixth of a factorisation: all rows are forces over lengths
 }
-_CONTRACTS = 0.5  # reduction of the residual an iteration below which a factorisation is kept
+_CONTRACTS = 0.4  # reduction of the residual an iteration below which a factorisation is kept
 _DEEPEST = 1e-6  # m, how deep open skin may be driven by one of the first steps
 _LIMITED_STEPS = 6
 _HALVINGS = 5  # of a step that would turn elements inside out or
 _GROWS = 10.0  # make the residual grow more than this
+_REST = 0.005  # of the last residual: that of the layer at the screen when the layer is in balance,
+_END = 0.3  # or of the residual at convergence
 _ROUNDINGS = 4.0  # units of roundoff of the sum of each node's absolute forces, within which a residual may stall,
 _FLOOR = 1e-6  # if that is less than this part of the force scale
 _SHIFTED_LONGER = 3  # times as many iterations as others: facets of many ridges come down one after the other
@@ -87,7 +92,9 @@ class Iteration:
         self._stop, self._atol = EXACT, 0.0
         self._shifted = False  # whether the tangent has the shift of pseudo-transient continuation
         self._shift = EulerShift(equations)
+        self._layer = SkinLayer(equations, counts) if equations.problem.pressure is None else None
         self._keeps = _CONTRACTS  # as the constant, or zero where each iteration has a tangent of its own
+        self._balances = False  # whether the layer at the screen is brought into balance after each step
         self._refused = False  # whether the present iteration stayed where it was
         self._ahead = False  # whether the residual of the next iterate is known
         self._skin = equations.skin[1]  # vertical displacements of the skin that can touch
@@ -133,13 +140,15 @@ class Iteration:
         assembly = seconds["assembly"]
         start, made = x.array_r.copy(), self.counts.factorisations
         self._keeps = 0.0 if shifted else _CONTRACTS
+        self._balances = not (shifted or self._layer is None or self.equations.holds_skin)
         with self.equations.timings.phase("factorisation"):
             self.snes.solve(None, x)
             iterations = self.snes.getIterationNumber()
             cycles = self.snes.getConvergedReason() == PETSc.SNES.ConvergedReason.DIVERGED_LOCAL_MIN
             uncharged = float(self.equations.problem.voltage.value) == 0.0
-            if cycles and uncharged and self.counts.factorisations - made < iterations:
-                self._keeps, self._ahead, self.tangent.stale = 0.0, False, True
+            kept = self.counts.factorisations - made < iterations
+            if cycles and uncharged and (kept or self._balances):
+                self._keeps, self._balances, self._ahead, self.tangent.stale = 0.0, False, False, True
                 x.array_w[:] = start
                 self.snes.solve(None, x)
                 iterations += self.snes.getIterationNumber()
@@ -154,10 +163,18 @@ class Iteration:
             self.equations.residual(x, self.f)
         return reason
 
+    def forget(self) -> None:
+        """Leave nothing of earlier solves to the next one: neither a factorisation nor a layer; collective."""
+        self.tangent.stale = True
+        if self._layer:
+            self._layer.forget()
+
     def free(self) -> None:
         """Free the tangent and its factorisation, the larger part of all memory; nothing can be solved any more."""
         self.snes.destroy()
         self.tangent.matrix.destroy()
+        if self._layer:
+            self._layer.free()
 
     # -- callbacks -------------------------------------------------------------------------------------
     def _residual(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
@@ -228,7 +245,7 @@ class Iteration:
         return float(_ROUNDINGS * np.finfo(float).eps * np.sqrt(total))
 
     def _limit(self, x: PETSc.Vec, step: PETSc.Vec) -> bool:
-        """Accelerate a step, shorten it to where its tangent still holds, or refuse it."""
+        """Accelerate a step, shorten it to where its tangent still holds, bring the skin into balance, or refuse it."""
         if not self.tangent.kept:
             self._anderson.forget()
         if not self._shifted:
@@ -248,15 +265,29 @@ class Iteration:
         if self._refused:
             self._anderson.interrupt()
             step.set(0.0)
-            self._look_ahead(x, step)
+            self.equations.residual(x, self._next_f)
+        else:
+            step.waxpy(-1.0, self._next_x, x)
         self._ahead = True
         return True
 
     def _look_ahead(self, x: PETSc.Vec, step: PETSc.Vec) -> float:
-        """Evaluate the residual where a step leads, and return its norm."""
+        """Evaluate the residual where a step leads, with the layer at the screen in balance; return its norm."""
         self._next_x.waxpy(-1.0, step, x)
+        if self._layer and self._balances:
+            enough = max(_REST * self._norms[-1], _END * self._atol)
+            self._layer.balance(self._next_x, self._next_f, enough, self._most_before_balance())
         self.equations.residual(self._next_x, self._next_f)
         return float(self._next_f.norm())
+
+    def _most_before_balance(self) -> float:
+        """Return the residual of the layer (N/m) above which a step is halved instead.
+
+        Without a voltage the layer finds its way back from wherever a step leads. With one, another equilibrium may be
+        nearer.
+        """
+        uncharged = float(self.equations.problem.voltage.value) == 0.0
+        return np.inf if uncharged else _GROWS * max(self._norms)
 
     def _until_deep(self, x: PETSc.Vec, step: PETSc.Vec) -> float:
         """Return the part of a step that drives open skin at most a little through the screen."""

@@ -135,7 +135,7 @@ class Taken:
 
     def forget(self) -> None:
         """Drop what the next solve would use of the last one's and another process does not have."""
-        self._coupling.solver.iteration.tangent.stale = True
+        self._coupling.solver.iteration.forget()
 
 
 def _unknowns(coupling: Coupling) -> Array:

@@ -42,13 +42,13 @@ class Tangent:
             self.matrix.getSizes(), _Relative(equations.layout, self.matrix), comm=equations.layout.comm
         )
         self.stale, self.kept = True, False
-        self._bone_rows = 0  # number of the bone's rows that are prescribed
+        self._prescribed = 0, False  # number of the bone's rows that are prescribed, and whether the skin is
 
     def start(self) -> None:
-        """Begin a solve: a factorisation with another control of the bone is stale."""
-        rows = len(self.equations.control.translation)
-        self.stale |= rows != self._bone_rows
-        self._bone_rows = rows
+        """Begin a solve: a factorisation with another control of the bone, or other skin held, is stale."""
+        prescribed = len(self.equations.control.translation), self.equations.holds_skin
+        self.stale |= prescribed != self._prescribed
+        self._prescribed = prescribed
 
     def update(self, snes: PETSc.SNES | None, x: PETSc.Vec, A: PETSc.Mat, K: PETSc.Mat) -> None:
         """Make the tangent of the present fields, if the last one is stale; called by SNES."""

@@ -1,0 +1,228 @@
+r"""The layer of elements next to the screen, brought into balance by itself with the rest of the body held.
+
+What is not smooth in the equations is at the skin: a point touches or not, sticks or slips. After a step of Newton's
+method for the whole body other points do than before the step, and the residual is largest there. Newton's method for
+the layer alone finds them: a nonlinear elimination of the layer (Lanzkron, Rose and Wilkes 1996,
+doi 10.1137/S106482759325154X; Cai and Li 2011, doi 10.1137/080736272),
+
+.. math:: x_L \leftarrow x_L - K_{LL}^{-1} r_L(x), \qquad \text{until} \quad \| r_L \| \ll \| r \setminus r_L \|
+
+with the rows and columns L of all nodes of the elements that share a node with skin near the screen. The layer is one
+element deep, and has few of the unknowns, so that its factorisation is cheap (``docs/performance.md`` has the figures).
+Its forms are the problem's, integrated over fewer cells. An equilibrium of the body is one of the layer, so that the
+method changes the way to an equilibrium and not the equilibrium.
+
+The elements behind the skin belong to it: the skin's nodes alone, with all others held, are so stiff that they hardly
+move. A second row of elements saves no factorisation.
+"""
+
+import numpy as np
+import ufl
+from dolfinx import fem, la
+from dolfinx.fem import petsc as fem_petsc
+from mpi4py import MPI
+from numpy.typing import NDArray
+from petsc4py import PETSc
+
+from variational import jit
+from variational.solvers.equations import OUTSIDE, Equations
+from variational.solvers.timing import Counts
+
+Array = NDArray[np.float64]
+Nodes = NDArray[np.bool_]
+_MOST = 12  # iterations
+_HALVINGS = 5  # of a step which makes the layer's residual
+_GROWS = 10.0  # more than so many times as large
+_NEAR, _MARGIN = 1.0, 2.0  # finest facets: skin that is nearer to the screen belongs to the layer; when it is made anew
+
+
+class SkinLayer:
+    """The skin near the screen and the elements behind it.
+
+    Attributes:
+        counts: the work is added to ``counts.layer``.
+    """
+
+    def __init__(self, equations: Equations, counts: Counts) -> None:
+        """Start without a layer; collective.
+
+        Args:
+            equations: of a problem without pressure, whose unknowns are displacements alone.
+            counts: where work is counted.
+        """
+        self._equations, self._problem, self._layout = equations, equations.problem, equations.layout
+        self.counts = counts
+        V, surface = self._problem.V, self._problem.surface
+        self._comm, self._map = V.mesh.comm, V.dofmap.index_map
+        self._dofs = V.dofmap.list
+        self._skin = equations.skin[0] // 2
+        self._height = V.tabulate_dof_coordinates()[self._skin, 1]
+        finest = float(surface.length.min(initial=np.inf))
+        self._finest = self._comm.allreduce(finest, op=MPI.MIN)
+        self._nodal = np.zeros_like(self._problem.w.x.array)
+        first = int(self._layout.create_vector().getOwnershipRange()[0])
+        self._at = self._layout.rows.reshape(-1, 2)[: self._map.size_local] - first  # of own nodes, in a rank's vector
+        self._nodes: Nodes = np.zeros(self._map.size_local + self._map.num_ghosts, dtype=bool)
+        self._rows: NDArray[np.int64] = np.empty(0, dtype=np.int64)
+        self._ksp: PETSc.KSP | None = None
+
+    # -- which elements --------------------------------------------------------------------------------
+    def _follow(self, x: PETSc.Vec) -> None:
+        """Make the layer anew if skin has come near the screen that is not in it; collective."""
+        self._layout.to_nodes(x, self._nodal)
+        height = self._height + self._nodal[2 * self._skin + 1] + self._layout.rigid_part(x)[1]
+        near = self._skin[height < _NEAR * self._finest]
+        if not self._comm.allreduce(bool((~self._nodes[near]).any()), op=MPI.LOR):
+            return
+        self.free()
+        seeds = np.zeros_like(self._nodes)
+        seeds[self._skin[height < _MARGIN * self._finest]] = True
+        self._make(self._with_neighbours(seeds))
+
+    def _with_neighbours(self, nodes: Nodes) -> Nodes:
+        """Return the nodes of all cells that have one of these nodes, the bone's left out; on all ranks."""
+        found = la.vector(self._map, 1, np.int64)
+        owned = self._dofs[: self._problem.mesh.topology.index_map(2).size_local]
+        found.array[:] = nodes
+        self._agree(found)
+        cells = found.array[owned].any(axis=1)
+        found.array[np.unique(owned[cells])] = 1
+        self._agree(found)
+        found.array[self._layout.rim] = 0
+        return np.asarray(found.array > 0)
+
+    @staticmethod
+    def _agree(flags: la.Vector) -> None:
+        """Raise a flag on all ranks where it is raised on one."""
+        flags.scatter_reverse(la.InsertMode.add)
+        flags.scatter_forward()
+
+    def _make(self, nodes: Nodes) -> None:
+        """Number the unknowns of nodes, and set the forms and the solver up."""
+        self._nodes = nodes
+        owned = nodes[: self._map.size_local]
+        size = int(owned.sum())
+        numbers = la.vector(self._map, 1, np.int64)
+        numbers.array[:] = -1  # entries that PETSc leaves out
+        numbers.array[: len(owned)][owned] = self._comm.scan(size) - size + np.arange(size)
+        numbers.scatter_forward()
+        self._rows = self._at[owned].ravel()
+        self._residual, self._jacobian = (self._over(form) for form in self._problem.weak)
+        K = self._K = PETSc.Mat().create(self._comm)
+        K.setSizes(((2 * size, PETSc.DETERMINE), (2 * size, PETSc.DETERMINE)), bsize=2)
+        K.setType(PETSc.Mat.Type.BAIJ)
+        lgmap = PETSc.LGMap().create(numbers.array.astype(PETSc.IntType), bsize=2, comm=self._comm)
+        K.setLGMap(lgmap, lgmap)
+        K.setUp()
+        K.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
+        self._step, self._force = K.createVecs()
+        ksp = self._ksp = PETSc.KSP().create(self._comm)
+        ksp.setOperators(K)
+        ksp.setType(PETSc.KSP.Type.PREONLY)
+        pc = ksp.getPC()
+        pc.setType(PETSc.PC.Type.LU)
+        pc.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
+
+    def _over(self, form: ufl.Form) -> fem.Form:
+        """Return a form of the problem over the cells that have a node of the layer."""
+        mesh, tags, surface = self._problem.mesh, self._problem.cell_tags, self._problem.surface
+        mine = np.zeros(len(self._dofs), dtype=bool)
+        own = mesh.topology.index_map(2).size_local
+        mine[:own] = self._nodes[self._dofs[:own]].any(axis=1)
+        domains: dict[str, list[tuple[int, NDArray[np.int32]]]] = {"cell": [], "exterior_facet": []}
+        for tag in self._ids(form, "cell"):
+            cells = tags.find(tag)
+            domains["cell"].append((tag, cells[mine[cells]].astype(np.int32)))
+        pairs = surface.pairs[mine[surface.pairs[:, 0]]]
+        ridge = surface.ridge[mine[surface.pairs[:, 0]]]
+        for k, tag in sorted(enumerate(surface.tags), key=lambda each: each[1]):
+            domains["exterior_facet"].append((tag, pairs[ridge == k].ravel()))
+        parts = [part.reconstruct(subdomain_data=domains[part.integral_type()]) for part in form.integrals()]
+        return fem.form(ufl.Form(parts), jit_options=jit.OPTIONS)
+
+    @staticmethod
+    def _ids(form: ufl.Form, kind: str) -> list[int]:
+        """Return the tags over which a form integrates."""
+        found: set[int] = set()
+        for part in form.integrals():
+            if part.integral_type() == kind:
+                found.update(int(tag) for tag in np.atleast_1d(part.subdomain_id()))
+        return sorted(found)
+
+    # -- balance ---------------------------------------------------------------------------------------
+    def balance(self, x: PETSc.Vec, f: PETSc.Vec, enough: float, most: float) -> None:
+        """Bring the layer into balance with the rest held; collective.
+
+        Where that does not help, the unknowns stay as they are.
+
+        Args:
+            x: unknowns, of which the layer's are changed.
+            f: for the layer's residual (N/m); what the rest of it then holds means nothing.
+            enough: norm of the layer's residual (N/m) with which it is in balance.
+            most: norm from which the unknowns stay as they are.
+        """
+        self._follow(x)
+        ksp = self._ksp
+        if ksp is None:
+            return
+        self._equations.residual(x, f, self._residual)
+        first = size = self._norm(f)
+        if first >= min(most, OUTSIDE / 2):
+            return
+        start = x.array_r[self._rows].copy()
+        for _ in range(_MOST):
+            if size <= enough:
+                return
+            size = self._iterate(ksp, x, f, max(first, size))
+            if size >= OUTSIDE / 2:
+                break
+        if size >= first:
+            x.array_w[self._rows] = start
+
+    def _iterate(self, ksp: PETSc.KSP, x: PETSc.Vec, f: PETSc.Vec, largest: float) -> float:
+        """Take a step of Newton's method for the layer; return the norm of its residual then, ``OUTSIDE`` in vain."""
+        equations, K = self._equations, self._K
+        with equations.timings.phase("assembly"):
+            K.zeroEntries()
+            fem_petsc.assemble_matrix(K, self._jacobian)
+            K.assemble()
+            K.zeroRows(self._prescribed(), diag=equations.stiffness)
+        self._force.array_w[:] = f.array_r[self._rows]
+        ksp.solve(self._force, self._step)
+        self.counts.layer += 1
+        if ksp.getConvergedReason() <= 0:  # as of a singular tangent, after which MUMPS would fail for ever
+            ksp.getPC().reset()
+            ksp.setOperators(K)
+            return OUTSIDE
+        start, step = x.array_r[self._rows].copy(), self._step.array_r.copy()
+        for _ in range(_HALVINGS + 1):
+            x.array_w[self._rows] = start - step
+            equations.residual(x, f, self._residual)
+            norm = self._norm(f)
+            if norm < _GROWS * largest:
+                break
+            step /= 2
+        return norm
+
+    def _prescribed(self) -> NDArray[np.int64]:
+        """Return the layer's rows of this rank whose displacement is prescribed, by their global numbers."""
+        rows = self._equations.local(self._equations.prescribed_rows())
+        first = int(self._K.getOwnershipRange()[0])
+        return (first + np.flatnonzero(np.isin(self._rows, rows))).astype(PETSc.IntType)
+
+    def _norm(self, f: PETSc.Vec) -> float:
+        """Return the norm of the layer's part of a residual."""
+        mine = f.array_r[self._rows]
+        return float(np.sqrt(self._comm.allreduce(float(mine @ mine))))
+
+    def forget(self) -> None:
+        """Have the next iterate alone say which elements are in the layer; collective."""
+        self.free()
+        self._nodes[:] = False
+
+    def free(self) -> None:
+        """Free matrix and factorisation; collective."""
+        if self._ksp is not None:
+            self._ksp.destroy()
+            self._K.destroy()
+            self._ksp = None
