@@ -26,7 +26,9 @@ FACTORS = (2.0, 1.4, 1.0, 0.7, 0.5, 0.31)  # on the element sizes of the default
 ON_RANKS = (1.0, 0.5)
 IDLE = 0.5  # load average above which a ratio of wall times is not measured
 BEFORE = {"commit": "8e60a12", "factorisations": 348, "newton": 1119, "path": 230.0}
+WITHOUT = {"commit": "706e0c0", "factorisations": 205, "newton": 483}  # of the kept numbers before the layer's solves
 OPERATIONS = {"tangent": "tangent", "factorisation": "LU", "solution": "back-substitution", "residual": "residual"}
+LAYER = "layer at the screen"
 _LINK, _LATENCY = 10e9, 2e-6  # bytes/s and s, of a cluster's network
 _MASSES = ("explicit, one density", "explicit, scaled mass")
 Numbers = dict[str, Any]
@@ -124,6 +126,7 @@ def _work(run: Mapping[str, Any]) -> str:
     rows = [
         ["LU factorisations, those of stability checks included", BEFORE["factorisations"], run["factorisations"]],
         ["of these with half of the finger, before the bone moves sideways", 0, run["led"]],
+        ["factorisations of the layer at the screen", 0, run["calls"][LAYER]],
         ["Newton iterations", BEFORE["newton"], run["newton"]],
         ["accepted steps", None, run["steps"]],
         ["path, in units of one factorisation with its tangent", None, path / unit(run)],
@@ -240,6 +243,7 @@ def draw(docs: Path) -> Path:
     body = [
         f"## Counts and ratios\n\n{_work(run)}",
         f"## Where the time goes\n\n{_parts(run)}",
+        text["layer"].format(calls=run["calls"][LAYER], share=100 * run["path"][LAYER] / path, without=WITHOUT),
         text["compile"].format(files=of["compile"]["files"], ratio=cold["seconds"] / unit(run), cold=cold, warm=warm),
         f"## How the cost grows\n\n{text['growth'].format(saved=saved)}\n\n{_growth(sizes)}",
         f"## Two ranks\n\n{two}",

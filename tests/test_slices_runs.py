@@ -80,7 +80,7 @@ def test_run_has_newtons_for_nothing():
     assert slip.mu_app > result.full_slip.mu_app
     assert "Whole finger" in str(result)
     turned = [replace(state, f_t=-1e-15) if state.load == "press" else state for state in result.steps]
-    again = with_newtons(replace(result, steps=tuple(turned))).finger
+    again = with_newtons(replace(result, steps=tuple(turned), finger=None)).finger
     assert again.states["full_slip"].totals == slip.totals, "sideways roundoff leaves no state of the press out"
 
 

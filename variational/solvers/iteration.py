@@ -92,7 +92,7 @@ class Iteration:
         self._stop, self._atol = EXACT, 0.0
         self._shifted = False  # whether the tangent has the shift of pseudo-transient continuation
         self._shift = EulerShift(equations)
-        self._layer = SkinLayer(equations, counts) if equations.problem.pressure is None else None
+        self._layer = SkinLayer(equations) if equations.problem.pressure is None else None
         self._keeps = _CONTRACTS  # as the constant, or zero where each iteration has a tangent of its own
         self._balances = False  # whether the layer at the screen is brought into balance after each step
         self._refused = False  # whether the present iteration stayed where it was

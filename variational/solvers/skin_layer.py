@@ -26,7 +26,6 @@ from petsc4py import PETSc
 
 from variational import jit
 from variational.solvers.equations import OUTSIDE, Equations
-from variational.solvers.timing import Counts
 
 Array = NDArray[np.float64]
 Nodes = NDArray[np.bool_]
@@ -37,21 +36,15 @@ _NEAR, _MARGIN = 1.0, 2.0  # finest facets: skin that is nearer to the screen be
 
 
 class SkinLayer:
-    """The skin near the screen and the elements behind it.
+    """The skin near the screen and the elements behind it."""
 
-    Attributes:
-        counts: the work is added to ``counts.layer``.
-    """
-
-    def __init__(self, equations: Equations, counts: Counts) -> None:
+    def __init__(self, equations: Equations) -> None:
         """Start without a layer; collective.
 
         Args:
             equations: of a problem without pressure, whose unknowns are displacements alone.
-            counts: where work is counted.
         """
         self._equations, self._problem, self._layout = equations, equations.problem, equations.layout
-        self.counts = counts
         V, surface = self._problem.V, self._problem.surface
         self._comm, self._map = V.mesh.comm, V.dofmap.index_map
         self._dofs = V.dofmap.list
@@ -60,8 +53,8 @@ class SkinLayer:
         finest = float(surface.length.min(initial=np.inf))
         self._finest = self._comm.allreduce(finest, op=MPI.MIN)
         self._nodal = np.zeros_like(self._problem.w.x.array)
-        first = int(self._layout.create_vector().getOwnershipRange()[0])
-        self._at = self._layout.rows.reshape(-1, 2)[: self._map.size_local] - first  # of own nodes, in a rank's vector
+        own = self._layout.rows.reshape(-1, 2)[: self._map.size_local]
+        self._at = equations.local(own)  # of this rank's nodes, in its part of a vector
         self._nodes: Nodes = np.zeros(self._map.size_local + self._map.num_ghosts, dtype=bool)
         self._rows: NDArray[np.int64] = np.empty(0, dtype=np.int64)
         self._ksp: PETSc.KSP | None = None
@@ -130,24 +123,15 @@ class SkinLayer:
         own = mesh.topology.index_map(2).size_local
         mine[:own] = self._nodes[self._dofs[:own]].any(axis=1)
         domains: dict[str, list[tuple[int, NDArray[np.int32]]]] = {"cell": [], "exterior_facet": []}
-        for tag in self._ids(form, "cell"):
+        for tag in np.unique(tags.values):
             cells = tags.find(tag)
-            domains["cell"].append((tag, cells[mine[cells]].astype(np.int32)))
+            domains["cell"].append((int(tag), cells[mine[cells]].astype(np.int32)))
         pairs = surface.pairs[mine[surface.pairs[:, 0]]]
         ridge = surface.ridge[mine[surface.pairs[:, 0]]]
         for k, tag in sorted(enumerate(surface.tags), key=lambda each: each[1]):
             domains["exterior_facet"].append((tag, pairs[ridge == k].ravel()))
         parts = [part.reconstruct(subdomain_data=domains[part.integral_type()]) for part in form.integrals()]
         return fem.form(ufl.Form(parts), jit_options=jit.OPTIONS)
-
-    @staticmethod
-    def _ids(form: ufl.Form, kind: str) -> list[int]:
-        """Return the tags over which a form integrates."""
-        found: set[int] = set()
-        for part in form.integrals():
-            if part.integral_type() == kind:
-                found.update(int(tag) for tag in np.atleast_1d(part.subdomain_id()))
-        return sorted(found)
 
     # -- balance ---------------------------------------------------------------------------------------
     def balance(self, x: PETSc.Vec, f: PETSc.Vec, enough: float, most: float) -> None:
@@ -189,7 +173,6 @@ class SkinLayer:
             K.zeroRows(self._prescribed(), diag=equations.stiffness)
         self._force.array_w[:] = f.array_r[self._rows]
         ksp.solve(self._force, self._step)
-        self.counts.layer += 1
         if ksp.getConvergedReason() <= 0:  # as of a singular tangent, after which MUMPS would fail for ever
             ksp.getPC().reset()
             ksp.setOperators(K)

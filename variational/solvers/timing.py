@@ -35,8 +35,6 @@ class Counts:
 
     newton: int = 0
     factorisations: int = 0
-    layer: int = 0
-    """Factorisations of the layer at the screen alone, see :mod:`variational.solvers.skin_layer`."""
     pseudo_transient: int = 0
     """Solves that full Newton steps did not manage."""
 
@@ -44,7 +42,6 @@ class Counts:
         """Add another's."""
         self.newton += other.newton
         self.factorisations += other.factorisations
-        self.layer += other.layer
         self.pseudo_transient += other.pseudo_transient
 
 
