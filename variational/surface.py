@@ -8,7 +8,6 @@ import dolfinx
 import numpy as np
 import ufl
 from dolfinx import fem
-from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from variational import compat, jit
@@ -182,19 +181,19 @@ class Surface:
         gauss, weights = np.polynomial.legendre.leggauss(6)
         slopes = [z[closed] @ self._to_powers.T @ _derivative(len(self.weights), (1 + gauss) / 2) for z in (x, y)]
         lengths[closed] = np.hypot(*slopes) @ weights / 2
-        for k in np.flatnonzero(near & ~closed):
-            opening = Polynomial(self._to_powers @ gap[k])
-            slope_x, slope_y = (Polynomial(self._to_powers @ z[k]).deriv() for z in (x, y))
-            roots = opening.roots()
-            inside = np.sort(roots[np.abs(np.imag(roots)) < 1e-12].real)
-            # Of a gap that is nearly straight the companion matrix loses digits; one step of Newton's finds them.
-            slope = opening.deriv()(inside)
-            inside -= np.divide(opening(inside), slope, out=np.zeros_like(inside), where=slope != 0)
-            cuts = np.concatenate([[0.0], inside[(inside > 0) & (inside < 1)], [1.0]])
-            for a, b in zip(cuts, cuts[1:], strict=False):
-                if opening((a + b) / 2) < 0:
-                    xi = (a + b) / 2 + (b - a) / 2 * gauss
-                    lengths[k] += (b - a) / 2 * float(weights @ np.hypot(slope_x(xi), slope_y(xi)))
+        partly = np.flatnonzero(near & ~closed)
+        opening, *curve = (z[partly] @ self._to_powers.T for z in (gap, x, y))
+        inside = _roots(opening)
+        slope = _values(opening, inside, 1)
+        # Of a gap that is nearly straight the companion matrix loses digits; one step of Newton's finds them.
+        inside -= np.divide(_values(opening, inside), slope, out=np.zeros_like(inside), where=slope != 0)
+        cuts = np.pad(np.sort(np.where((inside > 0) & (inside < 1), inside, 1.0)), [(0, 0), (1, 0)])
+        cuts = np.pad(cuts, [(0, 0), (0, 1)], constant_values=1.0)
+        start, size = cuts[:, :-1], np.diff(cuts)
+        middle = start + size / 2
+        xi = middle[:, :, None] + size[:, :, None] / 2 * gauss
+        speed = np.hypot(*(_values(z, xi, 1) for z in curve))
+        lengths[partly] = ((size / 2) * (speed @ weights) * (_values(opening, middle) < 0)).sum(axis=1)
         return lengths
 
     def gather(self, values: Array) -> Array | None:
@@ -207,3 +206,25 @@ def _derivative(powers: int, xi: Array) -> Array:
     """Return the derivatives of 1, x, x^2, ... at places, shape (powers, places)."""
     n = np.arange(powers)[:, None]
     return np.asarray(n * xi ** np.maximum(n - 1, 0))
+
+
+def _values(coefficients: Array, xi: Array, order: int = 0) -> Array:
+    """Return polynomials, or their derivatives, shape (n, powers), at places of their own, shape (n, ...)."""
+    values = np.zeros_like(xi)
+    for k in range(coefficients.shape[1] - 1, order - 1, -1):
+        values = values * xi + (k if order else 1) * np.expand_dims(coefficients[:, k], tuple(range(1, xi.ndim)))
+    return values
+
+
+def _roots(coefficients: Array) -> Array:
+    """Return the real roots of polynomials of shape (n, powers), shape (n, powers - 1), NaN where there are fewer."""
+    roots = np.full((len(coefficients), coefficients.shape[1] - 1), np.nan)
+    degree = np.where(coefficients != 0, np.arange(coefficients.shape[1]), 0).max(axis=1, initial=0)
+    for n in np.unique(degree[degree > 0]):
+        mine = np.flatnonzero(degree == n)
+        companion = np.zeros((len(mine), n, n))
+        companion[:, np.arange(1, n), np.arange(n - 1)] = 1.0
+        companion[:, :, -1] = -coefficients[mine, :n] / coefficients[mine, n, None]
+        found = np.linalg.eigvals(companion[:, ::-1, ::-1])  # turned round, as numpy does, for smaller errors
+        roots[mine, :n] = np.where(np.abs(np.imag(found)) < 1e-12, np.real(found), np.nan)
+    return roots

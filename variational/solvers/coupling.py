@@ -40,7 +40,7 @@ from variational.solvers.secant import Secants
 
 Array = NDArray[np.float64]
 # Solves at air gaps that change again are not exact: what the first leaves out of balance over the force scale, and the
-_FIRST, _LATER = StopRule(floor=1e-5), StopRule(part=0.03)  # later ones, over what the air gaps' change brought,
+_FIRST, _LATER = StopRule(floor=1e-3), StopRule(part=0.03)  # later ones, over what the air gaps' change brought,
 _NEARLY = 1e-3  # until the air gaps' relative error is below this;
 _ON_ITS_WAY = StopRule(part=0.5)  # where a ridge comes down, whose next air gap is known already.
 _HASTE = 2  # iterations in which the residual must fall where a ridge lets go, as there is a remedy then

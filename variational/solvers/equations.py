@@ -94,7 +94,7 @@ class Equations:
         self._held_skin: tuple[Rows, Array] = np.empty(0, PETSc.IntType), np.empty(0)
         self.stiffness = 1e5
         self.reaction: Array = np.zeros(2)
-        self.dead_load, self._moved = layout.create_vector(), layout.create_vector()
+        self.dead_load = layout.create_vector()
         self.load_part = 0.0
         self.inverted, self.not_a_number = False, ""
         self._nodal = np.zeros_like(problem.w.x.array)
@@ -175,10 +175,8 @@ class Equations:
             if self.load_part:
                 f.axpy(-self.load_part, self.dead_load)
             rows, values = self.prescribed()
-            x.copy(self._moved)
-            self.layout.translate(self._moved, self.problem.bone.value)
             local = self.local(rows)
-            f.array_w[local] = self.stiffness * (self._moved.array_r[local] - values)
+            f.array_w[local] = self.stiffness * (self.layout.moved(x, local, self.problem.bone.value) - values)
 
     def _blame(self, x: PETSc.Vec) -> None:
         """Find out why a residual is not finite; collective."""
@@ -215,10 +213,8 @@ class Equations:
         self.residual(x, self.dead_load)
         self.load_part = 1.0
         if skin:
-            x.copy(self._moved)
-            self.layout.translate(self._moved, self.layout.rigid_part(x))
             rows = self.skin_rows()
-            self._held_skin = rows, self._moved.array_r[self.local(rows)].copy()
+            self._held_skin = rows, self.layout.moved(x, self.local(rows), self.problem.bone.value)
             self.holds_skin = True
 
     def release(self) -> None:

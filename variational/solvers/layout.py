@@ -143,6 +143,17 @@ class RigidRimLayout:
         free = x.array_w[self._pressures : self._pressures + int(self._free.sum())]
         free.reshape(-1, 2)[:] += translation
 
+    def moved(self, x: PETSc.Vec, at: NDArray[np.int64], translation: Array) -> Array:
+        """Return some of this rank's entries of a vector of unknowns as :meth:`translate` would leave them.
+
+        Args:
+            x: vector of unknowns.
+            at: places in this rank's part of it.
+            translation: of shape (2,).
+        """
+        nodes = (at >= self._pressures) & (at < self._pressures + int(self._free.sum()))
+        return np.asarray(x.array_r[at] + np.where(nodes, translation[(at - self._pressures) % 2], 0.0))
+
     def rigid_part(self, x: PETSc.Vec) -> Array:
         """Return the rigid body's two entries of a vector of unknowns, on every rank."""
         mine = x.array_r[-2:].copy() if self.owns_rigid else None

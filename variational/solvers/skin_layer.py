@@ -20,6 +20,7 @@ import numpy as np
 import ufl
 from dolfinx import fem, la
 from dolfinx.fem import petsc as fem_petsc
+from dolfinx.fem.forms import CompiledForm
 from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
@@ -57,6 +58,7 @@ class SkinLayer:
         self._at = equations.local(own)  # of this rank's nodes, in its part of a vector
         self._nodes: Nodes = np.zeros(self._map.size_local + self._map.num_ghosts, dtype=bool)
         self._rows: NDArray[np.int64] = np.empty(0, dtype=np.int64)
+        self._compiled: list[CompiledForm] = []  # residual and tangent, without the cells
         self._ksp: PETSc.KSP | None = None
 
     # -- which elements --------------------------------------------------------------------------------
@@ -100,7 +102,11 @@ class SkinLayer:
         numbers.array[: len(owned)][owned] = self._comm.scan(size) - size + np.arange(size)
         numbers.scatter_forward()
         self._rows = self._at[owned].ravel()
-        self._residual, self._jacobian = (self._over(form) for form in self._problem.weak)
+        if not self._compiled:
+            self._compiled = [
+                fem.compile_form(self._comm, form, jit_options=jit.OPTIONS) for form in self._problem.weak
+            ]
+        self._residual, self._jacobian = (self._over(form) for form in self._compiled)
         K = self._K = PETSc.Mat().create(self._comm)
         K.setSizes(((2 * size, PETSc.DETERMINE), (2 * size, PETSc.DETERMINE)), bsize=2)
         K.setType(PETSc.Mat.Type.BAIJ)
@@ -116,22 +122,23 @@ class SkinLayer:
         pc.setType(PETSc.PC.Type.LU)
         pc.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
 
-    def _over(self, form: ufl.Form) -> fem.Form:
+    def _over(self, compiled: CompiledForm) -> fem.Form:
         """Return a form of the problem over the cells that have a node of the layer."""
         mesh, tags, surface = self._problem.mesh, self._problem.cell_tags, self._problem.surface
         mine = np.zeros(len(self._dofs), dtype=bool)
         own = mesh.topology.index_map(2).size_local
         mine[:own] = self._nodes[self._dofs[:own]].any(axis=1)
-        domains: dict[str, list[tuple[int, NDArray[np.int32]]]] = {"cell": [], "exterior_facet": []}
-        for tag in np.unique(tags.values):
-            cells = tags.find(tag)
-            domains["cell"].append((int(tag), cells[mine[cells]].astype(np.int32)))
-        pairs = surface.pairs[mine[surface.pairs[:, 0]]]
-        ridge = surface.ridge[mine[surface.pairs[:, 0]]]
-        for k, tag in sorted(enumerate(surface.tags), key=lambda each: each[1]):
-            domains["exterior_facet"].append((tag, pairs[ridge == k].ravel()))
-        parts = [part.reconstruct(subdomain_data=domains[part.integral_type()]) for part in form.integrals()]
-        return fem.form(ufl.Form(parts), jit_options=jit.OPTIONS)
+        cells = {int(tag): tags.find(tag) for tag in np.unique(tags.values)}
+        pairs, ridge = (each[mine[surface.pairs[:, 0]]] for each in (surface.pairs, surface.ridge))
+        domains = {
+            fem.IntegralType.cell: [(tag, each[mine[each]].astype(np.int32)) for tag, each in cells.items()],
+            fem.IntegralType.exterior_facet: [(tag, pairs[ridge == k].ravel()) for k, tag in enumerate(surface.tags)],
+        }
+        form = compiled.ufl_form
+        spaces = [self._problem.V] * len(form.arguments())
+        fields = {each: each for each in ufl.algorithms.extract_coefficients(form)}
+        constants = {each: each for each in ufl.algorithms.analysis.extract_constants(form)}
+        return fem.create_form(compiled, spaces, mesh, domains, fields, constants)
 
     # -- balance ---------------------------------------------------------------------------------------
     def balance(self, x: PETSc.Vec, f: PETSc.Vec, enough: float, most: float) -> None:

@@ -61,9 +61,13 @@ class StabilityCheck:
     def __init__(self, solver: Solver) -> None:
         """Examine a solver's states."""
         self.solver = solver
-        self._K = solver.layout.create_matrix()  # kept from check to check, since its pattern is
+        # Kept from check to check with the analysis of the pattern, which is always the same.
+        self._K: PETSc.Mat | None = None
+        self._ksp: PETSc.KSP | None = None
 
     def _tangent(self, eta: float, rows: Rows) -> PETSc.Mat:
+        if self._K is None:
+            self._K = self.solver.iteration.tangent.empty()
         problem, A = self.solver.problem, self._K
         A.zeroEntries()
         guess = float(problem.guess.value)
@@ -94,31 +98,38 @@ class StabilityCheck:
         if not K.isSymmetric(1e-9 * K.norm(PETSc.NormType.INFINITY)):
             raise ValueError("the tangent is not symmetric: its inertia does not decide stability")
         K.setOption(PETSc.Mat.Option.SYMMETRIC, True)
-        ksp = self._factorise(K, PETSc.PC.Type.CHOLESKY)
+        ksp = self._solver(K, PETSc.PC.Type.CHOLESKY)
+        self._factorise(ksp)
         negative, _, _ = ksp.getPC().getFactorMatrix().getInertia()
         for used in (ksp, K):
             used.destroy()
         return int(negative)
 
-    def _factorise(self, A: PETSc.Mat, kind: str) -> PETSc.KSP:
+    def _solver(self, A: PETSc.Mat, kind: str) -> PETSc.KSP:
+        """Return a direct solver that is not factorised yet."""
         ksp = PETSc.KSP().create(self.solver.layout.comm)
         ksp.setOperators(A)
         ksp.setType(PETSc.KSP.Type.PREONLY)
         pc = ksp.getPC()
         pc.setType(kind)
         pc.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
+        return ksp
+
+    def _factorise(self, ksp: PETSc.KSP) -> None:
+        pc = ksp.getPC()
+        if pc.getFailedReason():  # after which MUMPS would fail for ever
+            pc.reset()
         pc.setFactorSetUpSolverType()
-        pc.getFactorMatrix().setMumpsIcntl(7, 2)  # AMF, an ordering that takes a fifth of the default's time; for one
-        pc.getFactorMatrix().setMumpsIcntl(8, 0)  # factorisation; no scaling, as in the solves
-        if kind == PETSc.PC.Type.CHOLESKY:  # for the count of pivots: all on one rank in the last front, no null ones
-            pc.getFactorMatrix().setMumpsIcntl(13, 1)
+        pc.getFactorMatrix().setMumpsIcntl(8, 0)  # no scaling, as in the solves
+        if pc.getType() == PETSc.PC.Type.CHOLESKY:  # for the count of pivots: all on one rank in the last front, no
+            pc.getFactorMatrix().setMumpsIcntl(13, 1)  # null ones
             pc.getFactorMatrix().setMumpsIcntl(24, 1)
+        ksp.setOperators(ksp.getOperators()[0])  # whose values are others
         ksp.setUp()
         self.solver.counts.factorisations += 1
         if pc.getFailedReason():
             reason, irrecoverable = linear_failure(pc)
             raise NotConverged(reason, False, irrecoverable)
-        return ksp
 
     def check(self, eta: float = _ETA) -> Stability:
         """Find the eigenvalue with the least real part; collective.
@@ -137,10 +148,11 @@ class StabilityCheck:
     def _least(self, rows: Rows, eta: float) -> Stability:
         """Examine the disturbances that are zero in the rows given."""
         K, M = self._tangent(eta, rows), self._mass_matrix(rows)
-        ksp = self._factorise(K, PETSc.PC.Type.LU)
-        result = self._arnoldi(ksp, M, rows, eta)
-        for used in (ksp, M):
-            used.destroy()
+        if self._ksp is None:
+            self._ksp = self._solver(K, PETSc.PC.Type.LU)
+        self._factorise(self._ksp)
+        result = self._arnoldi(self._ksp, M, rows, eta)
+        M.destroy()
         return result
 
     def _start(self, rows: Rows) -> PETSc.Vec:

@@ -59,9 +59,15 @@ class Tangent:
         self.counts.factorisations += 1
         self.stale = False
 
+    def empty(self) -> PETSc.Mat:
+        """Return an empty matrix of the tangent's pattern, to find which takes as long as ten tangents; collective."""
+        if not self.matrix.assembled:
+            self._assemble(self.matrix)
+        return self.matrix.duplicate()
+
     def unshifted(self) -> PETSc.Mat:
         """Return K of the present fields without the shift of pseudo-transient continuation, in a matrix of its own."""
-        eta, found = self.equations.problem.eta, self.matrix.duplicate()
+        eta, found = self.equations.problem.eta, self.empty()
         shift, eta.value = float(eta.value), 0.0
         self._assemble(found)
         eta.value = shift
