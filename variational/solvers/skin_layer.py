@@ -20,7 +20,6 @@ import numpy as np
 import ufl
 from dolfinx import fem, la
 from dolfinx.fem import petsc as fem_petsc
-from dolfinx.fem.forms import CompiledForm
 from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
@@ -30,10 +29,25 @@ from variational.solvers.equations import OUTSIDE, Equations
 
 Array = NDArray[np.float64]
 Nodes = NDArray[np.bool_]
+Domains = dict[fem.IntegralType, list[tuple[int, NDArray[np.int32]]]]
 _MOST = 12  # iterations
 _HALVINGS = 5  # of a step which makes the layer's residual
 _GROWS = 10.0  # more than so many times as large
 _NEAR, _MARGIN = 1.0, 2.0  # finest facets: skin that is nearer to the screen belongs to the layer; when it is made anew
+
+
+class _Weak:
+    """A form of the problem, compiled and searched for its fields once, for all layers."""
+
+    def __init__(self, V: fem.FunctionSpace, form: ufl.Form) -> None:
+        self._compiled = fem.compile_form(V.mesh.comm, form, jit_options=jit.OPTIONS)
+        self._mesh, self._spaces = V.mesh, [V] * len(form.arguments())
+        self._fields = {each: each for each in ufl.algorithms.extract_coefficients(form)}
+        self._constants = {each: each for each in ufl.algorithms.analysis.extract_constants(form)}
+
+    def over(self, domains: Domains) -> fem.Form:
+        """Return the form over some of the cells and facets."""
+        return fem.create_form(self._compiled, self._spaces, self._mesh, domains, self._fields, self._constants)
 
 
 class SkinLayer:
@@ -58,7 +72,7 @@ class SkinLayer:
         self._at = equations.local(own)  # of this rank's nodes, in its part of a vector
         self._nodes: Nodes = np.zeros(self._map.size_local + self._map.num_ghosts, dtype=bool)
         self._rows: NDArray[np.int64] = np.empty(0, dtype=np.int64)
-        self._compiled: list[CompiledForm] = []  # residual and tangent, without the cells
+        self._weak: list[_Weak] = []  # residual and tangent
         self._ksp: PETSc.KSP | None = None
 
     # -- which elements --------------------------------------------------------------------------------
@@ -102,11 +116,10 @@ class SkinLayer:
         numbers.array[: len(owned)][owned] = self._comm.scan(size) - size + np.arange(size)
         numbers.scatter_forward()
         self._rows = self._at[owned].ravel()
-        if not self._compiled:
-            self._compiled = [
-                fem.compile_form(self._comm, form, jit_options=jit.OPTIONS) for form in self._problem.weak
-            ]
-        self._residual, self._jacobian = (self._over(form) for form in self._compiled)
+        if not self._weak:
+            self._weak = [_Weak(self._problem.V, form) for form in self._problem.weak]
+        domains = self._domains()
+        self._residual, self._jacobian = (form.over(domains) for form in self._weak)
         K = self._K = PETSc.Mat().create(self._comm)
         K.setSizes(((2 * size, PETSc.DETERMINE), (2 * size, PETSc.DETERMINE)), bsize=2)
         K.setType(PETSc.Mat.Type.BAIJ)
@@ -120,25 +133,24 @@ class SkinLayer:
         ksp.setType(PETSc.KSP.Type.PREONLY)
         pc = ksp.getPC()
         pc.setType(PETSc.PC.Type.LU)
-        pc.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
+        if self._comm.size == 1:  # what MUMPS does beside the elimination takes longer than the elimination
+            pc.setFactorSolverType(PETSc.Mat.SolverType.PETSC)
+            pc.setFactorOrdering(PETSc.Mat.OrderingType.ND)
+        else:
+            pc.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
 
-    def _over(self, compiled: CompiledForm) -> fem.Form:
-        """Return a form of the problem over the cells that have a node of the layer."""
+    def _domains(self) -> Domains:
+        """Return the cells that have a node of the layer, and their facets, by kind and tag."""
         mesh, tags, surface = self._problem.mesh, self._problem.cell_tags, self._problem.surface
         mine = np.zeros(len(self._dofs), dtype=bool)
         own = mesh.topology.index_map(2).size_local
         mine[:own] = self._nodes[self._dofs[:own]].any(axis=1)
         cells = {int(tag): tags.find(tag) for tag in np.unique(tags.values)}
         pairs, ridge = (each[mine[surface.pairs[:, 0]]] for each in (surface.pairs, surface.ridge))
-        domains = {
+        return {
             fem.IntegralType.cell: [(tag, each[mine[each]].astype(np.int32)) for tag, each in cells.items()],
             fem.IntegralType.exterior_facet: [(tag, pairs[ridge == k].ravel()) for k, tag in enumerate(surface.tags)],
         }
-        form = compiled.ufl_form
-        spaces = [self._problem.V] * len(form.arguments())
-        fields = {each: each for each in ufl.algorithms.extract_coefficients(form)}
-        constants = {each: each for each in ufl.algorithms.analysis.extract_constants(form)}
-        return fem.create_form(compiled, spaces, mesh, domains, fields, constants)
 
     # -- balance ---------------------------------------------------------------------------------------
     def balance(self, x: PETSc.Vec, f: PETSc.Vec, enough: float, most: float) -> None:

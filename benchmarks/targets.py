@@ -1,0 +1,74 @@
+"""What speed was asked for, beside what was measured: the table at the head of docs/performance.md.
+
+Most numbers are of the page itself; those of runs over the paper's loads and of other programs are of their own pages.
+"""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from benchmarks.harness import kept, table
+
+
+class Target(NamedTuple):
+    """A number that was asked for."""
+
+    what: str
+    sign: str
+    """``≤`` or ``≥``."""
+    asked: float
+    measured: float | None
+    """None where it was not measured."""
+
+    @property
+    def reached(self) -> bool:
+        """Whether the number was measured, and is on the right side."""
+        return self.measured is not None and (self.measured <= self.asked) == (self.sign == "≤")
+
+
+def targets(of: Mapping[str, Any], path: Mapping[str, float], docs: Path) -> list[Target]:
+    """Return all targets.
+
+    Args:
+        of: parts of docs/performance.json by name.
+        path: of the default scene's path: ``seconds``, ``units``, and the exponents ``time`` and ``memory``.
+        docs: folder of the kept numbers.
+    """
+    run, paper = of["run"], kept("paper", docs).numbers.get("minutes") or {}
+    models = kept("models", docs).numbers["scenes"].values()
+    speed = kept("peers", docs).numbers["speed"]["meshes"]
+    found = [
+        Target("LU factorisations of the default path", "≤", 120, run["factorisations"]),
+        Target("Newton iterations of it", "≤", 400, run["newton"]),
+        Target("the path, in factorisations with their tangents", "≤", 150, path["units"]),
+        Target("the path (processor s)", "≤", 60, path["seconds"]),
+        Target("whole run with errors and pictures (processor s)", "≤", 90, run["processor"]),
+        Target("compile of all forms (processor s)", "≤", 30, of["compile"]["cold"]["seconds"]),
+        Target("the paper's 40 runs on facets of 5 µm, two at a time (min)", "≤", 30, paper.get("grid")),
+    ]
+    for asked, size in zip((1.5, 1.6), of.get("ranks", ()), strict=False):
+        one, two = (sum(size[ranks]["wall"].values()) for ranks in "12")
+        unknowns = size["1"]["unknowns"]
+        found.append(Target(f"a Newton step on two ranks, {unknowns} unknowns: times as fast", "≥", asked, one / two))
+    found += [
+        Target("exponent of a Newton step's time over the unknowns", "≤", 1.15, path["time"]),
+        Target("exponent of its memory", "≤", 1.1, path["memory"]),
+    ]
+    for words, model in (("10 µm of the whole finger", "full"), ("the smooth finger's ridge", "smooth")):
+        reached = sum(bool(scene[model].get("summary", {}).get("full_slip")) for scene in models)
+        found.append(Target(f"of the paper's 40 runs, on facets of {words}, at full slip", "≥", 40, reached))
+    for mesh in speed:
+        seconds = {row["program"]: row["seconds"] for row in mesh["rows"]}
+        ratio = seconds["plain dolfinx"] / seconds["fingerpad"]
+        found.append(Target(f"one ridge, {mesh['size']:g} µm: a plain script's time over fingerpad's", "≥", 2, ratio))
+    return found
+
+
+def rows(found: Sequence[Target]) -> str:
+    """Return the table."""
+    lines = [[t.what, f"{t.sign} {t.asked:g}", _number(t.measured), "yes" if t.reached else "no"] for t in found]
+    return table(["what", "asked for", "measured", "reached"], lines)
+
+
+def _number(value: float | None) -> str:
+    return "not measured" if value is None else str(value) if isinstance(value, int) else f"{value:.3g}"
