@@ -53,6 +53,21 @@ def test_shift_does_not_matter(solver, eta):
     assert found.lambda_min == pytest.approx(spring.net_stiffness(y), abs=1e-12 * max(eta, 1e10))
 
 
+def test_kept_analysis_changes_nothing(solver):
+    """Checks with matrix and analysis of another state's, with new ones after these were freed, and by another object.
+
+    All factorise the same values by the same analysis, so that they agree to the last bit.
+    """
+    kept = StabilityCheck(solver)
+    spring.place(solver, HEIGHTS[0])
+    kept.check()
+    spring.place(solver, HEIGHTS[4])
+    found = [kept.check(), kept.check()]
+    kept.free()
+    assert {*found, kept.check(), StabilityCheck(solver).check()} == {found[0]}
+    assert not found[0].stable
+
+
 def test_fold_is_at_two_thirds():
     """A linear spring is pulled in where the skin has come down a third of h_0 + gap (parallel plates), to roundoff."""
     pull = spring.HALF / (spring.H_0 + spring.FOLD) ** 2

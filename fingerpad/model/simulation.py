@@ -105,6 +105,7 @@ class Simulation:
         finally:
             if half is not None:
                 half.count()
+        self.checks.free()
         return None
 
     def _follow(self, load: Load) -> None:

@@ -61,3 +61,7 @@ class StabilityChecks(dict[int, Checked]):
             except NotConverged as failure:
                 raise StepFailed(f"step {step} ({load}): its stability cannot be examined: {failure}") from failure
         return self[step]
+
+    def free(self) -> None:
+        """Free the memory that the checks take; further ones may follow; collective."""
+        self._check.free()

@@ -65,6 +65,13 @@ class StabilityCheck:
         self._K: PETSc.Mat | None = None
         self._ksp: PETSc.KSP | None = None
 
+    def free(self) -> None:
+        """Free matrix and factorisation, which the next check makes anew; collective."""
+        for kept in (self._ksp, self._K):
+            if kept is not None:
+                kept.destroy()
+        self._ksp = self._K = None
+
     def _tangent(self, eta: float, rows: Rows) -> PETSc.Mat:
         if self._K is None:
             self._K = self.solver.iteration.tangent.empty()
@@ -124,7 +131,7 @@ class StabilityCheck:
         if pc.getType() == PETSc.PC.Type.CHOLESKY:  # for the count of pivots: all on one rank in the last front, no
             pc.getFactorMatrix().setMumpsIcntl(13, 1)  # null ones
             pc.getFactorMatrix().setMumpsIcntl(24, 1)
-        ksp.setOperators(ksp.getOperators()[0])  # whose values are others
+        ksp.setOperators(ksp.getOperators()[0])  # of other values, else it is factorised only in the first solve
         ksp.setUp()
         self.solver.counts.factorisations += 1
         if pc.getFailedReason():
