@@ -9,7 +9,7 @@
 # make stale  the pages older than the code that they rest on; needs git
 # make docs   the documentation site, in build/docs/index.html; a minute
 # make verify every number with a known answer, some minutes; docs/verification.md
-# make paper  the statements of the paper beside this model's numbers; docs/paper.md, an hour or two
+# make paper  the statements of the paper beside this model's numbers; docs/paper.md, a quarter of an hour or more
 # make measured  measured fingers beside this model's numbers; docs/measured.md, two minutes
 # make performance  counts, ratios and seconds, part by part, on an idle machine; docs/performance.md, half an hour
 # make chart  error over work, one numerical setting after the other; docs/chart.md, hours

@@ -1,9 +1,10 @@
 """One measurement of benchmarks/performance.py in a process of its own; rank 0 prints JSON.
 
-python3 -m benchmarks.measure run [SCENE.toml] | operations FACTOR | compile | explicit
+python3 -m benchmarks.measure run [SCENE.toml] | tried [CONSTANT=VALUE ...] | operations FACTOR | compile | explicit
 """
 
 import functools
+import importlib
 import json
 import os
 import sys
@@ -12,6 +13,7 @@ import time
 from collections import defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -161,6 +163,34 @@ def run(scene: str = "") -> Numbers:
     }
 
 
+def tried(*constants: str) -> Numbers:
+    """Return counts and answers of the default scene with other constants of the solver.
+
+    Args:
+        constants: as ``coupling._HASTE=1`` or, a field of one, ``coupling._FIRST.floor=1e-2``.
+    """
+    for constant in constants:
+        place, value = constant.split("=")
+        module, name, *fields = place.split(".")
+        owner = importlib.import_module(f"variational.solvers.{module}")
+        old = getattr(owner, name)
+        setattr(owner, name, replace(old, **{fields[0]: float(value)}) if fields else type(old)(value))
+    with tempfile.TemporaryDirectory() as folder:
+        scene = load().replace(output={"errors": False})
+        result = full.run(scene, Path(folder), MPI.COMM_WORLD, lines=False)
+    assert result.charged and result.full_slip
+    return {
+        "factorisations": result.cost.factorisations,
+        "newton": result.cost.newton_iterations,
+        "rounds": sum(state.record.coupling_iterations for state in result.steps if state.record),
+        "steps": len(result.steps),
+        "answers": {
+            "charged contact length": result.charged.contact_length,
+            "friction force at full slip": result.full_slip.f_t,
+        },
+    }
+
+
 def operations(factor: str) -> Numbers:
     """Return the cost of single operations on the default finger with its element sizes times a factor.
 
@@ -236,6 +266,7 @@ def forms() -> Numbers:
 if __name__ == "__main__":
     jobs: dict[str, Callable[..., Numbers]] = {
         "run": run,
+        "tried": tried,
         "operations": operations,
         "compile": forms,
         "explicit": explicit.measure,

@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from benchmarks.harness import kept, table
 
 
@@ -23,7 +25,9 @@ class Target(NamedTuple):
     @property
     def reached(self) -> bool:
         """Whether the number was measured, and is on the right side."""
-        return self.measured is not None and (self.measured <= self.asked) == (self.sign == "≤")
+        if self.measured is None:
+            return False
+        return self.measured <= self.asked if self.sign == "≤" else self.measured >= self.asked
 
 
 def targets(of: Mapping[str, Any], path: Mapping[str, float], docs: Path) -> list[Target]:
@@ -47,16 +51,15 @@ def targets(of: Mapping[str, Any], path: Mapping[str, float], docs: Path) -> lis
         Target("the paper's 40 runs on facets of 5 µm, two at a time (min)", "≤", 30, paper.get("grid")),
     ]
     for asked, size in zip((1.5, 1.6), of.get("ranks", ()), strict=False):
-        one, two = (sum(size[ranks]["wall"].values()) for ranks in "12")
-        unknowns = size["1"]["unknowns"]
-        found.append(Target(f"a Newton step on two ranks, {unknowns} unknowns: times as fast", "≥", asked, one / two))
+        what = f"a Newton step on two ranks, {size['1']['unknowns']} unknowns: times as fast"
+        found.append(Target(what, "≥", asked, float(np.median(size["ratios"]))))
     found += [
         Target("exponent of a Newton step's time over the unknowns", "≤", 1.15, path["time"]),
         Target("exponent of its memory", "≤", 1.1, path["memory"]),
     ]
-    for words, model in (("10 µm of the whole finger", "full"), ("the smooth finger's ridge", "smooth")):
+    for words, model in (("with facets of 10 µm", "full"), ("by the smooth finger's model", "smooth")):
         reached = sum(bool(scene[model].get("summary", {}).get("full_slip")) for scene in models)
-        found.append(Target(f"of the paper's 40 runs, on facets of {words}, at full slip", "≥", 40, reached))
+        found.append(Target(f"runs of the paper's 40 that reach full slip {words}", "≥", 40, reached))
     for mesh in speed:
         seconds = {row["program"]: row["seconds"] for row in mesh["rows"]}
         ratio = seconds["plain dolfinx"] / seconds["fingerpad"]

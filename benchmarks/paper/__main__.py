@@ -8,16 +8,18 @@ docs/paper.json, and from it docs/paper.md and its picture. Ends with 1 if a run
 """
 
 import sys
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from benchmarks.errors import known
-from benchmarks.harness import keep, made, parser, run
+from benchmarks.harness import keep, kept, made, parser, run
 from benchmarks.paper import energy, fields, friction, page, scenes
 from benchmarks.paper.statement import Statement
 from benchmarks.runs import Run
+from fingerpad.runs.batch import result
 
 _LIMIT = 3600.0  # s of processor time for one run; the sine takes longest
 
@@ -62,7 +64,11 @@ def main(given: Sequence[str] | None = None) -> int:
     args, missing = parser(__doc__).parse_args(given), list[str]()
     if not args.draw:
         named = {f"{f:g} N/m, {u:g} V": scene for (f, u), scene in scenes.grid().items()}
-        summaries = run({"sine": scenes.sine(), "stiffer": scenes.stiffer()} | named, args, _LIMIT)
+        anew = all(result(scene, args.out) is None for scene in named.values())
+        clock = [time.monotonic()]
+        summaries = run(named, args, _LIMIT)
+        clock.append(time.monotonic())
+        summaries |= run({"sine": scenes.sine(), "stiffer": scenes.stiffer()}, args, _LIMIT)
         try:
             high = Run(scenes.grid()[scenes.MAP, 200.0], args.out)
             summaries |= run({"friction": scenes.rougher(high)}, args, _LIMIT)
@@ -70,6 +76,12 @@ def main(given: Sequence[str] | None = None) -> int:
             print(f"the run without voltage but with more friction cannot be made: {lost}")
         numbers = collect(args.out)
         missing = numbers["missing"]
+        clock.append(time.monotonic())
+        minutes = {"grid": (clock[1] - clock[0]) / 60, "all": (clock[2] - clock[0]) / 60, "at a time": args.jobs}
+        if anew:  # else those of the last time when all runs were made
+            numbers["minutes"] = minutes
+        elif (args.docs / "paper.json").exists():
+            numbers["minutes"] = kept("paper", args.docs).numbers.get("minutes")
         keep("paper", numbers, made(summaries.values()), args.docs)
     print(page.draw(args.docs))
     return 1 if missing else 0

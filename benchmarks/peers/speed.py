@@ -84,5 +84,7 @@ def section(told: dict[str, Any]) -> str:
     how = text["how"].format(repeats=told["repeats"], low=told["load"][0], high=told["load"][1], finest=told["finest"])
     if largest > UNSTEADY:
         how += f" The largest spread is {100 * largest:.0f} %, so that ratios hold to about that."
+    rows = told["meshes"][-1]["rows"]
+    why = text["why"].format(size=told["meshes"][-1]["size"], own=rows[0], script=rows[1])
     origin = f"Times by {told['made']}; computed by `benchmarks/peers/run timed`."
-    return "\n\n".join(["## Speed", filled, how, *parts, text["why"], origin])
+    return "\n\n".join(["## Speed", filled, how, *parts, why, origin])
