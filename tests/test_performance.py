@@ -86,6 +86,13 @@ def test_targets_are_judged_by_the_kept_numbers():
     assert [t.what for t, o in zip(found, more, strict=True) if t != o] == [found[0].what]
 
 
+def test_pair_of_the_median_ratio_is_shown():
+    pairs = [{"1": {"wall": {"LU": 3.0}}, "2": {"wall": {"LU": two}}} for two in (1.5, 3.0, 2.0)]
+    found = performance._middle(pairs)
+    assert found["2"] == pairs[2]["2"]
+    assert found["ratios"] == [1.0, 1.5, 2.0]
+
+
 def test_explicit_dynamics_end_in_the_equilibrium():
     """A ridge of facets of 40 um, led along the loads over eight periods: forces and contact lengths within 3 %.
 

@@ -133,7 +133,7 @@ class SkinLayer:
         ksp.setType(PETSc.KSP.Type.PREONLY)
         pc = ksp.getPC()
         pc.setType(PETSc.PC.Type.LU)
-        if self._comm.size == 1:  # what MUMPS does beside the elimination takes longer than the elimination
+        if self._comm.size == 1:  # faster than MUMPS for so small a matrix
             pc.setFactorSolverType(PETSc.Mat.SolverType.PETSC)
             pc.setFactorOrdering(PETSc.Mat.OrderingType.ND)
         else:
