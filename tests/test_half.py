@@ -90,6 +90,19 @@ def test_work_of_the_half_is_counted(monkeypatch):
     assert counted >= sum(state.record.newton_iterations for state in path.states)
 
 
+def test_record_is_that_of_the_state_and_not_of_a_probe(monkeypatch):
+    """Sliding on, which is not accepted, may end at another floor of roundoff than the state itself."""
+    placed, path = simulation.FullSlip.placed, Simulation(model(HISTORY[:3]), MPI.COMM_SELF)
+
+    def and_probed(self, *args):
+        path.finger.solver.iteration.floor = 1.0
+        return placed(self, *args)
+
+    monkeypatch.setattr(simulation.FullSlip, "placed", and_probed)
+    path.run()
+    assert all(state.record.floor < 1e-6 for state in path.states)
+
+
 @dataclass(frozen=True)
 class Fibres(NeoHooke):
     """Fibres at an angle, which the mirror turns round."""

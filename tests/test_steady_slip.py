@@ -8,7 +8,9 @@ from fingerpad.accuracy.recompute import StateRecorder
 from fingerpad.model import full_slip
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
+from fingerpad.model.touching import by_rule
 from fingerpad.scene import from_data
+from tests.small_finger import small
 
 SCENE = {
     "f_ext": 1.0,
@@ -49,6 +51,22 @@ def test_slip_that_is_never_steady_ends_with_the_slide(monkeypatch):
     assert not any(state.slip_held for state in simulation.states)
     assert places == sorted(places)
     assert 0.9e-3 <= places[-1] <= 1.11e-3
+
+
+@pytest.mark.parametrize("end", [-20e-6, -30e-6, 20e-6])
+def test_slide_goes_on_the_way_it_came(end):
+    """Full slip is first found at the slide's end or before it; the bone moves on by 0.2 mm and does not turn round."""
+    press, slide = {"name": "press", "f_ext": 1.0}, {"name": "slide", "bone_x": end, "until_full_slip": True}
+    scene = small().replace(history=[press, slide])
+    simulation = Simulation(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_WORLD)
+    simulation.run()
+    slid = [state for state in simulation.states if state.load == "slide"]
+    first = next(state.bone_x for state in slid if state.all_slip)
+    assert abs(first) <= abs(end)
+    places = np.array([0.0, *(state.bone_x for state in slid)]) * np.sign(end)
+    assert (np.diff(places) > 0).all()
+    assert places[-1] == pytest.approx(abs(first) + 0.2e-3, rel=1e-9)
+    assert slid[-1].f_t == pytest.approx(np.sign(end) * 0.25, rel=1e-6)
 
 
 class Slid:

@@ -110,16 +110,17 @@ class Simulation:
 
     def _follow(self, load: Load) -> None:
         """Reach a load, and slide on where it ends at full slip."""
-        path = self.finger.continuation
-        *before, target = self._course.targets(load, float(self.finger.solver.control.x))
+        path, x = self.finger.continuation, float(self.finger.solver.control.x)
+        *before, target = self._course.targets(load, x)
+        end = x if target.bone_x is None else target.bone_x
+        direction = float(np.sign(end - x)) or 1.0
         for piece in before:
             if self._restart is None:
                 (self._half or path).run(piece)
         self._reach(target)
         while target.until_full_slip and path.slip[1] and self._restart is None:
-            ahead = self._ahead(target)
-            steady = self._slip.slides_on(load.name, np.sign(ahead) or 1.0)
-            if steady or ahead * self._ahead(target) <= 0:  # or at the end of the slide
+            steady = self._slip.slides_on(load.name, direction)
+            if steady or direction * (end - float(self.finger.solver.control.x)) <= 0:  # or at the end of the slide
                 break
             self._reach(target)
 
@@ -128,9 +129,6 @@ class Simulation:
             (self._half or self.finger.continuation).run(target)
         if self._restart is None:
             self._restart = self._symmetry_lost()
-
-    def _ahead(self, target: Target) -> float:
-        return (target.bone_x or 0.0) - float(self.finger.solver.control.x)
 
     def re_equilibrate(self, snapshot: StateSnapshot, name: str, direction: int = 0) -> None:
         """Solve again for a state that was reached on another mesh of the same finger; collective.
@@ -196,10 +194,10 @@ class Simulation:
             if self._restart is not None:
                 return True
         step = self.present(loads, attempt, touches)
-        probe = part >= 1 and not target.until_full_slip and not self._course.over_time
-        state = self._slip.placed(self.states, step.state, probe)
         energy = self.energy.step(*finger.surface_and_bone())
         record = step_record(finger.continuation, energy, imbalance, attempt)
+        probe = part >= 1 and not target.until_full_slip and not self._course.over_time
+        state = self._slip.placed(self.states, step.state, probe)
         state = replace(state, record=record, time=self._course.time(target, part, state.bone_x))
         self.states.append(state)
         part = 0.0 if touches else self._course.done(target, part)
