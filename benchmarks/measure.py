@@ -167,7 +167,7 @@ def tried(*constants: str) -> Numbers:
     """Return counts and answers of the default scene with other constants of the solver.
 
     Args:
-        constants: as ``coupling._HASTE=1`` or, a field of one, ``coupling._FIRST.floor=1e-2``.
+        constants: as ``coupling._HASTE=1`` or, a field of one, ``coupling._FIRST.most=1e-2``.
     """
     for constant in constants:
         place, value = constant.split("=")

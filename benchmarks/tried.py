@@ -13,8 +13,8 @@ Numbers = dict[str, Any]
 NOW = "as it is"
 VARIANTS: dict[str, Sequence[str]] = {
     NOW: [],
-    "end the first solve of a load at 1e-5 of the force scale out of balance, not 1e-3": ["coupling._FIRST.floor=1e-5"],
-    "at 1e-2": ["coupling._FIRST.floor=1e-2"],
+    "end the first solve of a load at 1e-5 of the force scale out of balance, not 1e-3": ["coupling._FIRST.most=1e-5"],
+    "at 1e-2": ["coupling._FIRST.most=1e-2"],
     "end the later ones at 0.1 of what the air gaps' change brought, not 0.03": ["coupling._LATER.part=0.1"],
     "at 0.25": ["coupling._LATER.part=0.25"],
     "give up after 1 iteration without progress where a ridge lets go, not 2": ["coupling._HASTE=1"],

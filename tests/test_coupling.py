@@ -13,12 +13,16 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.simulation import Simulation
+from fingerpad.model.touching import by_rule
 from fingerpad.reduced import ridge_cell
 from fingerpad.runs import full
 from fingerpad.scene import Scene, from_data
 from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import load
+from tests.small_finger import small
 from variational.body import Body
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
@@ -205,6 +209,42 @@ def test_ridge_that_lets_go_is_given_the_free_air_gap(also_free):
     assert stub.coupling.d_eq[0] == free
     assert stub.coupling.history.jumped == {0}
     assert ("pseudo-transient" in stub.stops) == also_free
+
+
+def test_last_solve_is_exact_where_a_ridge_lets_go_late():
+    """The exact solve finds no equilibrium, and that at the air gap of a ridge without contact is exact in its place.
+
+    Nothing touches any more, so that the loop ends there.
+    """
+    free = float(BearingArea(H_0)(0.0).d_eq)
+    stub = flat(float(BearingArea(H_0).external_pressure(BearingArea(H_0).pull_off_fold(FOLD_VOLTAGE), FOLD_VOLTAGE)))
+    touches, stub.coupling.closure = stub.pressure, BearingArea(H_0)
+    stub.pressure = lambda d: np.where(d < 0.99 * free, touches(d) + 50.0, 0.0)
+    attempt = stub.attempt
+    stub.attempt = lambda stop: attempt(stop) and (stop.part > 0 or float(stub.d[0]) >= free)
+    start = float(BearingArea(H_0).air_gap(np.array([0.9 * BearingArea(H_0).pull_off_fold(FOLD_VOLTAGE)]))[0])
+    stub.coupling.set_air_gaps(np.array([start]))
+    stub.coupling.solve()
+    assert stub.coupling.d_eq[0] == free
+    assert [stop.part for stop in stub.stops[-2:]] == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-3])
+def test_small_loads_are_as_exact_as_asked_for(tolerance):
+    """Volt by volt: each load leaves the forces nearly in balance, and yet moves the air gaps by a thousand tolerances.
+
+    The loads end with a force that sets a large force scale. The attraction goes with the inverse square of d_eq.
+    """
+    volts = [{"name": f"{volt} V", "voltage": float(volt)} for volt in (100, 101, 102, 103)]
+    loads = [{"name": "press", "f_ext": 0.2}, *volts, {"name": "more", "f_ext": 4.0}]
+    pulls = []
+    for each in (tolerance, 1e-6):
+        scene = small().replace(history=loads, numerics={"coupling_tolerance": each})
+        path = Simulation(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_SELF)
+        path.run()
+        pulls.append([state.f_electrostatic for state in path.states if state.load.endswith("V")])
+    assert pulls[0] == pytest.approx(pulls[1], rel=3 * tolerance)
+    assert pulls[1][-1] > 1.05 * pulls[1][0]
 
 
 @pytest.mark.parametrize("beyond", [1.0, 10.0, 100.0])  # Pa

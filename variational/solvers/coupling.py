@@ -39,10 +39,10 @@ from variational.solvers.newton import Solver
 from variational.solvers.secant import Secants
 
 Array = NDArray[np.float64]
-# Solves at air gaps that change again are not exact: what the first leaves out of balance over the force scale, and the
-_FIRST, _LATER = StopRule(floor=1e-3), StopRule(part=0.03)  # later ones, over what the air gaps' change brought,
+# Solves at air gaps that change again are not exact. They leave a part of what the load brought out of balance, at most
+_FIRST, _LATER = StopRule(0.1, most=1e-3), StopRule(0.03)  # so much of the force scale; or of what air gaps brought,
 _NEARLY = 1e-3  # until the air gaps' relative error is below this;
-_ON_ITS_WAY = StopRule(part=0.5)  # where a ridge comes down, whose next air gap is known already.
+_ON_ITS_WAY = StopRule(0.5)  # where a ridge comes down, whose next air gap is known already.
 _HASTE = 2  # iterations in which the residual must fall where a ridge lets go, as there is a remedy then
 
 
@@ -135,7 +135,7 @@ class Coupling:
             return
         if leaving:
             self.set_air_gaps(secants.without_leaving(self.d_eq))
-            if self.solver.attempt(_LATER):
+            if self.solver.attempt(stop):
                 return
         self.solver.solve(pseudo_transient=True, tried=True)
 

@@ -59,10 +59,10 @@ _SHIFTED_LONGER = 3  # times as many iterations as others: facets of many ridges
 class StopRule:
     """When an iteration by full Newton steps ends: as converged within the solver's tolerance or this, or in vain."""
 
-    floor: float = 0.0
-    """Norm of the nodal forces' imbalance over the force scale that is small enough."""
     part: float = 0.0
-    """The same over that of the first iterate."""
+    """Norm of the nodal forces' imbalance over that of the first iterate that is small enough,"""
+    most: float = np.inf
+    """if it is no more than this part of the force scale."""
     patience: int = 4
     """Iterations in which the least residual must fall."""
 
@@ -190,7 +190,7 @@ class Iteration:
         _, atol, _, most = snes.getTolerances()
         if iteration == 0:
             self._norms, self._refused = [], False
-            self._atol = max(atol, self._stop.part * norms[2], self._stop.floor * self.force_scale)
+            self._atol = max(atol, min(self._stop.part * norms[2], self._stop.most * self.force_scale))
             if self._shifted:
                 self._shift.begin(snes.getSolution())
         elif self._shifted:
