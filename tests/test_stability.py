@@ -10,6 +10,7 @@ from tests import spring
 from tests.test_contact import HEIGHT, MU_F, VOLTAGE, WIDTH, make
 from variational.quantities import Observer
 from variational.solvers.equations import Control
+from variational.solvers.failure import NotConverged
 from variational.solvers.stability import StabilityCheck
 
 pytestmark = pytest.mark.mpi
@@ -66,6 +67,24 @@ def test_kept_analysis_changes_nothing(solver):
     kept.free()
     assert {*found, kept.check(), StabilityCheck(solver).check()} == {found[0]}
     assert not found[0].stable
+
+
+def test_check_after_one_that_failed(solver, monkeypatch):
+    """A tangent that is no number ends in a failure; the next check begins anew and agrees to the last bit."""
+    spring.place(solver, HEIGHTS[4])
+    kept, assemble = StabilityCheck(solver), solver.equations.assemble_tangent
+    expected = kept.check()
+
+    def without_numbers(A):
+        assemble(A)
+        A.scale(np.nan)
+
+    with monkeypatch.context() as broken:
+        broken.setattr(solver.equations, "assemble_tangent", without_numbers)
+        for _ in range(2):
+            with pytest.raises(NotConverged):
+                kept.check()
+    assert kept.check() == expected
 
 
 def test_fold_is_at_two_thirds():

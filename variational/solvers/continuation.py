@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from petsc4py import PETSc
 
 from variational.contact.formulation import History
 from variational.solvers.accepted import AcceptedState
@@ -172,6 +173,7 @@ class Continuation:
         self.problem.set_history(History(s.anchor, s.p_n, s.x))
         self._now = AcceptedState.of(self.coupling)
         self.steps += 1
+        PETSc.garbage_cleanup(self.problem.mesh.comm)  # objects that several ranks have dropped wait for this
 
     # -- targets ---------------------------------------------------------------------------------------
     def run(self, target: Target) -> None:

@@ -124,8 +124,6 @@ class StabilityCheck:
 
     def _factorise(self, ksp: PETSc.KSP) -> None:
         pc = ksp.getPC()
-        if pc.getFailedReason():  # after which MUMPS would fail for ever
-            pc.reset()
         pc.setFactorSetUpSolverType()
         pc.getFactorMatrix().setMumpsIcntl(8, 0)  # no scaling, as in the solves
         if pc.getType() == PETSc.PC.Type.CHOLESKY:  # for the count of pivots: all on one rank in the last front, no
@@ -157,7 +155,12 @@ class StabilityCheck:
         K, M = self._tangent(eta, rows), self._mass_matrix(rows)
         if self._ksp is None:
             self._ksp = self._solver(K, PETSc.PC.Type.LU)
-        self._factorise(self._ksp)
+        try:
+            self._factorise(self._ksp)
+        except NotConverged:  # after which MUMPS would fail for ever
+            M.destroy()
+            self.free()
+            raise
         result = self._arnoldi(self._ksp, M, rows, eta)
         M.destroy()
         return result
