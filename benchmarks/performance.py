@@ -264,11 +264,12 @@ def draw(docs: Path) -> Path:
         **run, before=BEFORE, units=costs["units"], largest=largest, share=100 * run["path"][largest] / path,
         power=power, reached=sum(target.reached for target in asked), asked=len(asked),
     )  # fmt: skip
+    missed = "\n\n".join(text[why].format(kept=1 / saved, alone=120 + 400 / saved) for why in targets.reasons(asked))
     cold, warm = (of["compile"][state] for state in ("cold", "warm"))
     two = f"{text['ranks']}\n\n{_two(of['ranks'])}" if "ranks" in of else "Not measured: the machine was busy."
     body = [
         f"{text['asked']}\n\n{targets.rows(asked)}",
-        f"### What was missed\n\n{text['missed'].format(kept=1 / saved, alone=120 + 400 / saved)}",
+        f"### What was missed\n\n{missed}" if missed else "",
         f"## Counts and ratios\n\n{_work(run)}",
         f"## Where the time goes\n\n{_parts(run)}",
         text["layer"].format(calls=run["calls"][LAYER], share=100 * run["path"][LAYER] / path, without=WITHOUT),

@@ -10,7 +10,7 @@ import pytest
 
 from benchmarks import explicit, performance, tried
 from benchmarks.harness import DOCS
-from benchmarks.targets import Target, rows, targets
+from benchmarks.targets import Target, reasons, rows, targets
 
 ROOT = Path(__file__).resolve().parents[1]
 SMALL = ROOT / "demos" / "scenes" / "small_finger.toml"
@@ -84,6 +84,14 @@ def test_targets_are_judged_by_the_kept_numbers():
     more = targets(of | {"run": of["run"] | {"factorisations": 241}}, path, DOCS)
     assert found[0].reached
     assert [t.what for t, o in zip(found, more, strict=True) if t != o] == [found[0].what]
+    unmeasured = targets({name: part for name, part in of.items() if name != "ranks"}, path, DOCS)
+    assert [t.what for t in unmeasured] == [t.what for t in found]
+    assert [t.what for t in unmeasured if t.measured is None] == [t.what for t in found if t.why == "missed-ranks"]
+
+
+def test_a_missed_target_is_explained_and_a_reached_one_is_not():
+    missed, reached = (Target("what", "≤", 1, measured, why) for measured, why in ((2, "missed-a"), (1, "missed-b")))
+    assert reasons([missed, reached, missed, Target("what", "≤", 1, 2)]) == ["missed-a"]
 
 
 def test_pair_of_the_median_ratio_is_shown():

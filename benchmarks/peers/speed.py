@@ -85,6 +85,7 @@ def section(told: dict[str, Any]) -> str:
     if largest > UNSTEADY:
         how += f" The largest spread is {100 * largest:.0f} %, so that ratios hold to about that."
     rows = told["meshes"][-1]["rows"]
-    why = text["why"].format(size=told["meshes"][-1]["size"], own=rows[0], script=rows[1])
+    each = [1e3 * row["seconds"] / row["iterations"] for row in rows[:2]]
+    why = text["why"].format(size=told["meshes"][-1]["size"], own=rows[0], script=rows[1], each=each)
     origin = f"Times by {told['made']}; computed by `benchmarks/peers/run timed`."
     return "\n\n".join(["## Speed", filled, how, *parts, why, origin])
