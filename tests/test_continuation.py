@@ -7,9 +7,11 @@ from mpi4py import MPI
 
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
+from fingerpad.model.touching import by_rule
 from fingerpad.scene import from_data
 from geometry.bodies import block
 from geometry.mesh import load
+from tests.small_finger import small
 from tests.test_contact import HEIGHT, MU_F, WIDTH, over
 from tests.test_translation import FINGER
 from variational.solvers import continuation
@@ -52,6 +54,29 @@ def test_range_without_equilibrium_is_stepped_over(sliding):
     crossed = [(x, attempt) for x, attempt in reached if attempt.stepped_over_fold]
     assert [x for x, _ in crossed] == [pytest.approx(0.27e-3)]
     assert [len(attempt.cutbacks) for _, attempt in reached if attempt.cutbacks] == [1]
+
+
+@pytest.mark.parametrize("voltage", [0.0, 100.0])
+def test_finger_that_was_lifted_comes_down_at_once(voltage):
+    """From 1 mm above the screen in the steps of the bone's height, not in those of the first touch.
+
+    Force control begins where skin bears the bone; the residual of a bone in the air has either sign.
+    """
+    press = {"name": "press", "f_ext": 1.0}
+    charge = [{"name": "charge", "voltage": voltage}] if voltage else []
+    loads = [press, *charge, {"name": "lift", "bone_height": 1e-3}, {"name": "again", "f_ext": 1.0}]
+    scene = small().replace(history=loads)
+    path = Simulation(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_WORLD)
+    path.run()
+    down = [state for state in path.states if state.load_number == len(loads)]
+    touching = [state.load == "touch" for state in down]
+    assert touching == sorted(touching, reverse=True)
+    assert sum(touching) <= 30
+    last = down[sum(touching) - 1]
+    assert last.ridges_in_contact > 0 and -1e-5 < last.bone_height < 0
+    first = next(state for state in reversed(path.states) if state.load == "press")
+    if not voltage:
+        assert down[-1].contact_length == pytest.approx(first.contact_length, rel=1e-3)
 
 
 def test_load_of_ever_smaller_steps_is_given_up(sliding, monkeypatch):

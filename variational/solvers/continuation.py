@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
@@ -193,16 +194,25 @@ class Continuation:
         Returns:
             Whether the screen bears it; False where ``on_accept`` stopped the path.
         """
-        start = self._now.control.y or 0.0
-        depth = self.touch_depth
-        while self.solver.reaction[1] <= 0 or self.steps == 0:
+        start, depth = self._now.control.y or 0.0, 0.0
+        while not self._bears():
+            depth += max(self.touch_depth, self._clearance())
             if not self._reach(Target("touch", bone_height=start - depth)):
                 return False
-            depth += self.touch_depth
         self.solver.control.y = None
         self.solver.control.force = float(self.solver.reaction[1])
         self._now = AcceptedState.of(self.coupling)
         return True
+
+    def _bears(self) -> bool:
+        """Return whether the screen bears the body, which the roundoff of a body in the air does not; collective."""
+        touches = bool((self.surface_state.p_n > 0).any())
+        return self.problem.mesh.comm.allreduce(touches, op=MPI.LOR) and float(self.solver.reaction[1]) > 0
+
+    def _clearance(self) -> float:
+        """Return how far the lowest point of the skin is above the screen (m); collective."""
+        lowest = float(self.surface_state.y.min(initial=np.inf))
+        return float(self.problem.mesh.comm.allreduce(lowest, op=MPI.MIN))
 
     def _reach(self, target: Target) -> bool:
         """Reach a target; return False where ``on_accept`` stopped the path before."""
