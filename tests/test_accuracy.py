@@ -68,6 +68,24 @@ def search(monkeypatch, asked, solve=known, pause=lambda: None) -> Refinement:
     return found
 
 
+def test_interrupted_search_reached_nothing(monkeypatch):
+    """Neither before its first solve nor between two; what goes on to its end did."""
+    model, lines = model_of({"accuracy": {"mu_app": 0.01}, "numerics": {"memory": 1e15}}), []
+    monkeypatch.setattr(solves, "solve_again", known)
+    for solves_before in (0, 2):
+        to_come = iter(range(solves_before))
+
+        def pause(to_come=to_come):
+            if next(to_come, None) is None:
+                raise Interrupted(signal.SIGINT, 3)
+
+        found = Refinement(model, known(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, lines.append, pause)
+        with pytest.raises(Interrupted):
+            found.run()
+        assert not found.failure and not found.summary()["reached"]
+    assert search(monkeypatch, {"mu_app": 0.01}).summary()["reached"]
+
+
 @pytest.mark.parametrize("asked", [{"mu_app": 0.01}, {"contact_length": 0.02}])
 def test_no_more_solves_are_announced_than_come(monkeypatch, asked):
     """At least so many; in the last round all of them."""
@@ -332,11 +350,19 @@ def test_run_without_errors_says_none(tmp_path: Path):
 
 @pytest.mark.parametrize(
     ("places", "kept"),
-    [((None, None, 1e-3), 2), ((2e-3, None, 3e-3), 2), ((2e-3, 2e-3, 1e-3), 2), ((2e-3, 3e-3, 4e-3), 1)],
+    [
+        ((None, None, 1e-3), 2),
+        ((2e-3, None, 3e-3), 2),
+        ((2e-3, 2e-3, 1e-3), 2),
+        ((2e-3, 3e-3, 4e-3), 1),
+        ((None, None, None, 2e-3, None, 3e-3), 5),
+    ],
 )
 def test_loads_to_normal_contact(places, kept):
     """A way through the air is none; a bone that is pressed and moved in one load slides in that load."""
     loads = [{"name": "away", "bone_height": 1e-5}, {"name": "press", "f_ext": 1.0}, {"name": "slide"}]
+    if len(places) > 3:
+        loads[2:] = [{"name": "lift", "bone_height": 1e-5}, {"name": "over"}, {"name": "again", "f_ext": 1.0}, loads[2]]
     moves = [{} if place is None else {"bone_x": place} for place in places]
     scene = from_data({"history": [load | move for load, move in zip(loads, moves, strict=True)]})
     assert solves.loads_to_normal_contact(scene.loads()) == scene.history[:kept]

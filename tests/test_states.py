@@ -99,6 +99,20 @@ def test_press_charge_slide(pressed):
     assert states.partial_slip(pressed.rows).bone_x < 0.1e-3 + 1e-12
 
 
+def test_way_through_the_air_is_no_slide(pressed):
+    """Pressed, lifted, moved over by 1 mm, pressed and charged: normal contact is that of the second place."""
+    pressed.still("lift", f_ext=0.0)
+    pressed.slide("over", 1e-3)
+    pressed.still("again", f_ext=2.0)
+    pressed.still("charge", voltage=80.0)
+    pressed.slide("slide", 1.4e-3)
+    assert pressed.names() == {
+        "uncharged": ("again", 0.0, 1.0),
+        "charged": ("charge", 80.0, 1.0),
+        "full_slip": ("slide", 80.0, 1.1),
+    }
+
+
 @pytest.mark.parametrize(("end", "held"), [(0.25e-3, False), (0.3e-3, True)])
 def test_full_slip_counts_once_it_was_held(pressed, end, held):
     """0.15 mm of further sliding are too little, 0.2 mm are enough."""

@@ -69,6 +69,34 @@ def test_slide_goes_on_the_way_it_came(end):
     assert slid[-1].f_t == pytest.approx(np.sign(end) * 0.25, rel=1e-6)
 
 
+def test_slide_of_no_length_is_none():
+    """A move by nothing until full slip, where full slip is: the bone stays, whichever way it came."""
+    press, back = {"name": "press", "f_ext": 1.0}, {"name": "back", "bone_x": -5e-3, "until_full_slip": True}
+    stay = {"name": "stay", "bone_x_by": 0.0, "until_full_slip": True}
+    scene = small().replace(history=[press, back, stay])
+    simulation = Simulation(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_WORLD)
+    simulation.run()
+    last = [state for state in simulation.states if state.load == "back"][-1]
+    assert all(state.bone_x == last.bone_x for state in simulation.states if state.load == "stay")
+    assert last.slip_held and last.f_t < 0
+
+
+def test_time_goes_on_where_full_slip_is_not_steady_at_once(monkeypatch):
+    """The slide goes on from where it is, and so does its time, at the speed of the bone."""
+    steady = iter([False])
+    slides_on = full_slip.FullSlip.slides_on
+    monkeypatch.setattr(
+        full_slip.FullSlip, "slides_on", lambda self, *args: slides_on(self, *args) and next(steady, True)
+    )
+    slide = {"name": "slide", "bone_x": 1e-3, "speed": 0.02, "until_full_slip": True}
+    scene = small().replace(history=[{"name": "press", "f_ext": 1.0}, slide])
+    simulation = Simulation(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_WORLD)
+    simulation.run()
+    slid = [state for state in simulation.states if state.load == "slide"]
+    assert [state.time for state in slid] == pytest.approx([state.bone_x / 0.02 for state in slid], rel=1e-9)
+    assert next(steady, None) is None
+
+
 class Slid:
     """In place of a continuation: each load changes f_t by a given part."""
 

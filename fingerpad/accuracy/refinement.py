@@ -90,6 +90,7 @@ class Refinement:
         self.solves = Solves(model, path, comm, show, pause)
         self.base = self._stepped = path
         self.failure, self.notes = "", list[str]()
+        self._met = not self.asked
         self.penalty: dict[str, float] = {}
         self.to_come = 0
         receptors = "sed" in self.asked or (not self.asked and model.options.receptors)
@@ -155,6 +156,7 @@ class Refinement:
             self._report()
             todo = to_refine(self.parameters, self.allowed())
             if not todo:
+                self._met = True
                 return
         self.failure = f"the estimate is not within the accuracy asked for after {_ROUNDS} refinements"
 
@@ -234,7 +236,7 @@ class Refinement:
             for name, error in found.items()
         }
         return {
-            "reached": not self.failure,
+            "reached": self._met and not self.failure,
             "mesh": self.base.mesh.model_dump(),
             "step_scale": self._step_scale(self.refinements.get("steps", 0)),
             "quantities": quantities_,

@@ -135,7 +135,8 @@ def loads_to_normal_contact(loads: tuple[Load, ...]) -> tuple[Load, ...]:
     for k, load in enumerate(loads):
         to = load.place(place)
         x = place if to is None else to
-        pressed |= (load.f_ext or 0.0) > 0 or (load.bone_height or 0.0) < 0
+        if load.f_ext is not None or load.bone_height is not None:
+            pressed = (load.f_ext or 0.0) > 0 or (load.bone_height or 0.0) < 0
         if pressed and x != place:
             return loads[:k]
         place = x

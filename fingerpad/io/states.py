@@ -32,10 +32,13 @@ _ROUNDOFF = 1e-9  # relative, of a displacement or a voltage
 
 def before_sliding(rows: Sequence[ContactState]) -> Sequence[ContactState]:
     """Return the states before the bone first moves sideways with skin on the screen."""
-    touch = next((k for k, row in enumerate(rows) if row.ridges_in_contact > 0), len(rows))
-    place = rows[touch - 1].bone_x if touch else 0.0
-    moving = (k for k in range(touch, len(rows)) if abs(rows[k].bone_x - place) >= STILL)
-    return rows[: next(moving, len(rows))]
+    place = 0.0
+    for k, row in enumerate(rows):
+        if row.ridges_in_contact == 0:
+            place = row.bone_x
+        elif abs(row.bone_x - place) >= STILL:
+            return rows[:k]
+    return rows
 
 
 def full_slip(rows: Sequence[ContactState], row: ContactState, steady: float, least: float) -> tuple[int, bool]:

@@ -113,16 +113,16 @@ class Simulation:
         path, x = self.finger.continuation, float(self.finger.solver.control.x)
         *before, target = self._course.targets(load, x)
         end = x if target.bone_x is None else target.bone_x
-        direction = float(np.sign(end - x)) or 1.0
+        direction = float(np.sign(end - x))
         for piece in before:
             if self._restart is None:
                 (self._half or path).run(piece)
         self._reach(target)
-        while target.until_full_slip and path.slip[1] and self._restart is None:
+        while direction and target.until_full_slip and path.slip[1] and self._restart is None:
             steady = self._slip.slides_on(load.name, direction)
             if steady or direction * (end - float(self.finger.solver.control.x)) <= 0:  # or at the end of the slide
                 break
-            self._reach(target)
+            self._reach(replace(target))  # another one for the course, whose time goes on from here
 
     def _reach(self, target: Target) -> None:
         if self._restart is None:
