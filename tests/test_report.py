@@ -122,6 +122,13 @@ def test_numbers_stand_there_without_scripts(page, folder, tmp_path):
     assert found["wide"] <= 390
 
 
+@pytest.mark.parametrize("way", [1, -1])
+def test_friction_over_that_without_attraction_has_no_sign(folder, way):
+    result = Result.load(folder)
+    slip = replace(result.full_slip, mu_app=way * 0.5)
+    assert ", 2.00 times the 0.25 without attraction" in run_page.page(replace(result, full_slip=slip))
+
+
 def test_contact_lengths_of_the_ridges_add_up(page, folder):
     """In every saved state; each length is rounded to 0.05 µm."""
     frames = data(page)["finger"]["frames"]

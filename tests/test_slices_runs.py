@@ -9,6 +9,7 @@ import fingerpad as fp
 from fingerpad.report import run_page
 from fingerpad.runs import solve
 from fingerpad.scene import SceneError
+from fingerpad.slices import traces
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.slices.traces import history, points
 from tests.runs import no_pictures
@@ -59,6 +60,20 @@ def test_full_slip_by_two_paths(traced):
     assert direct.ridges_in_contact == end.ridges_in_contact
     for name in ("f_t", "contact_length", "f_electrostatic", "bone_height"):
         assert getattr(direct, name) == pytest.approx(getattr(end, name), rel=1e-5)
+
+
+def test_trace_that_was_too_short_is_made_again(tmp_path, monkeypatch):
+    """Its folder has a number; the same command once more takes the same folders.
+
+    The first guess of the largest force is too low.
+    """
+    monkeypatch.setattr(traces, "_POINT", 2 * traces._POINT)
+    found = []
+    with no_pictures():
+        for _ in range(2):
+            found.append(fp.run(small(**SMALL), force=FORCE, out=tmp_path / "out"))
+    assert {"uncharged", "uncharged_2", "charged"} <= {path.name for path in (tmp_path / "out").iterdir()}
+    assert [each.finger.states["full_slip"].totals["f_ext"] for each in found] == pytest.approx(2 * [FORCE], rel=1e-9)
 
 
 def test_points_of_the_traces_are_of_one_kind():

@@ -1,6 +1,7 @@
 """Sweeps: what names a run, what is run again, and what a run that is stopped costs."""
 
 import contextlib
+import fcntl
 import json
 import threading
 from concurrent.futures import ThreadPoolExecutor
@@ -13,6 +14,7 @@ from fingerpad.runs.batch import key, result, sweep
 from fingerpad.runs.processes import End, Pool
 from fingerpad.runs.processes import run as run_module
 from fingerpad.scene import from_data
+from tests.small_finger import small
 
 
 @pytest.fixture
@@ -53,6 +55,18 @@ def test_crash_is_told_and_tried_again(started, tmp_path):
     for _ in range(2):
         assert sweep(scenes(666), tmp_path)["666 N/m"] == {"failure": "CRASH_-11: segmentation fault"}
     assert len(started) == 2
+
+
+def test_run_that_was_refused_its_folder_is_tried_again(tmp_path):
+    """A run of a killed sweep may still be at it; when that is gone the scene is run."""
+    scene = small().replace(mesh={"contact": 40e-6}, output={"receptors": False, "errors": False})
+    place = tmp_path / key(scene)
+    place.mkdir()
+    with (place / ".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        assert "another run is writing to" in sweep({"one": scene}, tmp_path, quiet=True)["one"]["failure"]
+    assert result(scene, tmp_path) is None
+    assert sweep({"one": scene}, tmp_path, quiet=True)["one"]["full_slip"]
 
 
 def test_summary_cut_short_is_no_result(started, tmp_path):

@@ -145,6 +145,12 @@ class Place:
         self._comm.barrier()
 
 
+def forget(folder: Path) -> None:
+    """Let a folder be that of another scene: what is in it stays until the next run there, which takes its place."""
+    for name in ("scene.json", "summary.json", "steps.csv"):
+        (folder / name).unlink(missing_ok=True)
+
+
 def full_scene(folder: Path) -> Scene:
     """Return the scene whose full run is in a folder.
 

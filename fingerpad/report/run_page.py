@@ -71,7 +71,7 @@ def _head(result: Result) -> str:
         value = cell("mu_app", slip.mu_app, slip.error.mu_app)
         number = f"µ<sub>app</sub> = {html.text(value)}"
         friction = result.scene.friction if "laws" not in _parameters(result) else None
-        factor = f", {slip.mu_app / friction:.2f} times the {friction:.3g} without attraction" if friction else ""
+        factor = f", {abs(slip.mu_app) / friction:.2f} times the {friction:.3g} without attraction" if friction else ""
         said = f"apparent friction coefficient at full slip{factor}; {_conditions(result)}"
     elif charged is not None:
         value = cell("contact_length", charged.contact_length, charged.error.contact_length)

@@ -132,6 +132,7 @@ def _one(scene: Path, folder: Path, model: str) -> None:
 
     start()
     from fingerpad.io.checkpoint import CheckpointError
+    from fingerpad.io.place import PlaceError
     from fingerpad.runs.solve import kept, solved, tables_in
     from fingerpad.scene import SceneError, from_kept
 
@@ -146,6 +147,8 @@ def _one(scene: Path, folder: Path, model: str) -> None:
             from fingerpad.reduced import smooth
 
             kept(smooth.solve(asked, tables_in(folder.parent), MPI.COMM_WORLD), folder, MPI.COMM_WORLD)
+    except PlaceError as error:  # another run is at it, or the disk is full: it may be gone the next time
+        sys.exit(str(error))
     except SceneError as error:  # it would be the same the next time
         replace_json(folder / "summary.json", {"failure": str(error)})
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from fingerpad.installed import needed_by
 from fingerpad.io import dataset, terminal
 from fingerpad.io.files import replace_json
-from fingerpad.io.place import Place, Serial
+from fingerpad.io.place import Place, Serial, forget
 from fingerpad.io.result import Result
 from fingerpad.model.check import check
 from fingerpad.scene import Scene, SceneError
@@ -149,13 +149,18 @@ def _whole(
     from fingerpad.slices import traces
 
     value, own = traces.newtons(force), out if model == "full" else None
+    rank, made = terminal.rank() if comm is None else comm.rank, set[str]()
 
     def solve(each: Scene, name: str) -> Result:
         shown = model == "full"  # the others have many scenes of seconds
-        return _solved(each, model, traces.folder_of(own, name), comm, lines and shown, bar and shown, resume=False)
+        folder = traces.folder_of(own, name)
+        if folder is not None and name in made and rank == 0:  # a trace that was too short makes way for a longer one
+            forget(folder)
+        made.add(name)
+        return _solved(each, model, folder, comm, lines and shown, bar and shown, resume=False)
 
     found = traces.whole(scene, value, model, solve)
-    if out is None or (terminal.rank() if comm is None else comm.rank) != 0:
+    if out is None or rank != 0:
         return found
     if model != "full":
         return kept(found, out, Serial())

@@ -129,7 +129,7 @@ class _Reach:
         """
         for tries in range(_TRIES):
             top = min(self._top, _LARGEST)
-            made = self._made(name, top)
+            made = self._made(name, top, tries)
             try:
                 total = at_force(self._finger, made.trace, self._force, self._scene.slices.count)
             except BeyondTrace as error:
@@ -142,11 +142,12 @@ class _Reach:
             return made
         raise AssertionError("every try returns or raises")
 
-    def _made(self, name: str, top: float) -> Traced:
+    def _made(self, name: str, top: float, tries: int) -> Traced:
         scene = self._scene
         if self._model != "full":
             return self._points(name, top)
-        result = self._solve(history(scene, name, top), name if name != list(_wanted(scene))[-1] else "")
+        folder = "" if name == list(_wanted(scene))[-1] else f"{name}_{tries + 1}" if tries else name
+        result = self._solve(history(scene, name, top), folder)
         if result.interrupted:
             raise SceneError(f"the trace was interrupted: {result.failure}")
         try:
