@@ -2,8 +2,9 @@
 
 environment/run python3 -m benchmarks.models [--jobs 2] [--draw]     some hours, mostly full runs
 
-The full runs have a contact size of 10 um. Writes docs/models.json, from which the command ``estimate`` has its known
-error and ``check`` its rule of the cost, and docs/models.md.
+The full runs have a contact size of 10 um; some of scenes beyond these forces and voltages are on the page by
+themselves. Writes docs/models.json, from which the command ``estimate`` has its known error and ``check`` its rule of
+the cost, and docs/models.md.
 """
 
 import argparse
@@ -19,9 +20,11 @@ from benchmarks.runs import FORCES, VOLTAGES, trace
 from fingerpad.io.states import PREFIXES, WORDS
 from fingerpad.reduced import cylinders
 from fingerpad.runs.batch import Summary, sweep
-from fingerpad.scene import Scene
+from fingerpad.scene import Scene, load
+from fingerpad.scene.reading import override
 from variational.state import RESULTS
 
+_SOFT = ("subcutis", "dermis", "viable_epidermis")
 _LIMIT = 3600.0  # s of processor time for one run
 SIZE = 10e-6  # m, contact size
 MODELS = {"cylinders": "charged cylinders", "smooth": "smooth finger"}
@@ -32,6 +35,16 @@ QUANTITIES = {
     "normal_f_electrostatic": f"attraction, {WORDS['charged']}",
 }
 _COST = ("seconds", "factorisations", "unknowns")
+_MESH = ("mesh.contact=10e-6", "mesh.receptor=20e-6")  # as the scenes over forces and voltages have it
+HALF_STEPS = "half the steps"
+BEYOND = {  # words: changes of the default scene, beside the mesh's
+    "little force": ("f_ext=2",),
+    "much friction": ("friction=1",),
+    "hardly compressible": tuple(f"materials.{layer}.poisson=0.499" for layer in _SOFT),
+    "twice the voltage": ("f_ext=10", "voltage=400", "mesh.touching_half_arc=3.9e-3"),
+    HALF_STEPS: ("f_ext=120", "voltage=150", "numerics.step_scale=0.5"),
+}
+_KEPT = ("slip_mu_app", "slip_ridges_in_contact", "factorisations", "newton_iterations")
 
 
 # -- numbers -------------------------------------------------------------------------------------------------
@@ -43,6 +56,11 @@ def name(f_ext: float, voltage: float) -> str:
 def scenes() -> dict[str, Scene]:
     """Return the scenes by name."""
     return {name(f, u): trace(f, u, SIZE) for f in FORCES for u in VOLTAGES}
+
+
+def beyond() -> dict[str, Scene]:
+    """Return the scenes beyond these forces and voltages by their words."""
+    return {words: load(None, dict(map(override, (*changes, *_MESH)))) for words, changes in BEYOND.items()}
 
 
 def answer(summary: Summary) -> dict[str, Any]:
@@ -58,12 +76,15 @@ def answer(summary: Summary) -> dict[str, Any]:
 def compute(args: argparse.Namespace) -> None:
     """Run what is missing and keep the numbers."""
     wanted, found = scenes(), {}
-    full = harness.run(wanted, args, _LIMIT)
+    full, others = (harness.run(some, args, _LIMIT) for some in (wanted, beyond()))
     smooth = sweep(wanted, args.out.parent / "smooth", args.jobs, _LIMIT, "smooth")
     for key, scene in wanted.items():
         summaries = {"cylinders": cylinders.solve(scene).to_dict(), "smooth": smooth[key], "full": full[key]}
         found[key] = {model: answer(summary) for model, summary in summaries.items()}
-    harness.keep("models", {"scenes": found}, harness.made(full.values()), args.docs)
+    keys = (*_KEPT, "full_slip", "failure")
+    kept = {words: {key: summary.get(key) for key in keys} for words, summary in others.items()}
+    by = harness.made([*full.values(), *others.values()])
+    harness.keep("models", {"scenes": found, "beyond": kept}, by, args.docs)
 
 
 def value(found: Mapping[str, Any], model: str, key: str) -> float | None:
@@ -130,6 +151,16 @@ def _section(scenes: Mapping[str, Any], model: str) -> list[str]:
     return [*parts, f"**{first[0]}**\n\n{first[1]}", *(harness.folded(words, matrix) for words, matrix in others)]
 
 
+def _beyond(found: Mapping[str, Any]) -> str:
+    """Return the table of the scenes beyond, those that failed by their words."""
+    rows = []
+    for words, each in found.items():
+        cells = (" ".join(f"`{change}`" for change in BEYOND[words]), *map(each.get, _KEPT))
+        rows.append([*cells, each["failure"] or ("yes" if each["full_slip"] else "no")])
+    head = ["options `--set`", "µ_app", "ridges in contact", "factorisations", "Newton iterations", "full slip"]
+    return harness.table(head, rows)
+
+
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
     kept, text = harness.kept("models", docs), harness.prose("models")
@@ -143,7 +174,7 @@ def draw(docs: Path) -> Path:
     body += [
         "## Full runs",
         f"**{QUANTITIES['slip_mu_app']}**\n\n{_matrix(scenes, 'full', 'slip_mu_app')}",
-        text["beyond"],
+        text["beyond"].format(half=kept.numbers["beyond"][HALF_STEPS], table=_beyond(kept.numbers["beyond"])),
     ]
     path, command = docs / "models.md", "python3 -m benchmarks.models"
     how = text["how"].format(forces=forces, voltages=voltages)

@@ -37,6 +37,14 @@ def test_scenes_differ_and_their_mesh_is_given():
     assert all(scene.mesh.touching_half_arc is not None for scene in scenes.values())
 
 
+def test_scenes_beyond_have_the_mesh_of_the_others():
+    """Their changes are understood, and the contact size is that of the forty."""
+    found = models.beyond()
+    assert {scene.mesh.contact for scene in found.values()} == {models.SIZE}
+    assert found["twice the voltage"].voltage == 400.0 and found[models.HALF_STEPS].numerics.step_scale == 0.5
+    assert found["hardly compressible"].materials.dermis.poisson == 0.499
+
+
 def answer(**values):
     return {
         "summary": {"full_slip": True} | values,
@@ -70,10 +78,16 @@ def test_page(tmp_path):
         },
         models.name(5.0, 0.0): {"cylinders": answer(**values), "smooth": smooth, "full": answer(**values)},
     }
-    harness.keep("models", {"scenes": scenes}, BY, tmp_path)
+    lost = dict.fromkeys((*models._KEPT, "full_slip")) | {"failure": "TIME_LIMIT: not done"}
+    half = lost | {"slip_mu_app": 0.25, "slip_ridges_in_contact": 7, "full_slip": True, "failure": None}
+    beyond = {"twice the voltage": lost, models.HALF_STEPS: half}
+    harness.keep("models", {"scenes": scenes, "beyond": beyond}, BY, tmp_path)
     text = models.draw(tmp_path).read_text(encoding="utf-8")
     assert "give µ_app within 10.0 %" in text
     assert "full slip in 2 of 3 scenes" in text
     assert "No answer at 75 N/m, 200 V." in text
     assert "1 of the answers are by an older law of one ridge" in text
     assert "| 75 | +0.0 | – | – | – | +10.0 |" in text
+    assert "has 7 ridges, and µ_app is\n0.2500" in text
+    assert "| 0.25 | 7 | – | – | yes |" in text
+    assert "| – | – | – | – | TIME_LIMIT: not done |" in text
