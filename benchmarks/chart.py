@@ -221,14 +221,22 @@ def _other_models(points: Sequence[Point]) -> str:
     return harness.table(["formulation or penalty", "work", *map(_words, names)], rows)
 
 
+def fronts(points: Sequence[Point]) -> str:
+    """Return a table of the runs on any front and their places there, from cheap to expensive."""
+    names = (*QUANTITIES, ALL)
+    places = {name: {p.label: k for k, p in enumerate(front(points, name), start=1)} for name in names}
+    labels = [p.label for p in sorted(points, key=lambda p: p.cost(ALL))]
+    some = [label for label in labels if any(label in each for each in places.values())]
+    rows = [[label, *(places[name].get(label, "") for name in names)] for label in some]
+    return harness.table(["run", *map(_words, names)], rows)
+
+
 def draw(docs: Path) -> Path:
     """Draw page and picture from the kept numbers."""
     kept, text = harness.kept("chart", docs), harness.prose("chart")
     points, lost = [Point(**each) for each in kept.numbers["points"]], kept.numbers["lost"]
     reference = {name: Limit(**each) for name, each in kept.numbers["reference"].items()}
     reference[ALL] = Limit(1.0, max(end.relative for end in reference.values()), None)
-    fronts = {quantity: "; ".join(p.label for p in front(points, quantity)) for quantity in (*QUANTITIES, ALL)}
-    listed = harness.table(["quantity", "runs"], [[_words(quantity), labels] for quantity, labels in fronts.items()])
     work, time = (_costs(points, reference, measure) for measure in MEASURES)
     body = [
         harness.picture(docs / "chart.png", (9, 7), lambda figure: _paint(figure, points, reference), text["caption"]),
@@ -237,7 +245,7 @@ def draw(docs: Path) -> Path:
         harness.folded("The same by processor time", time),
         "## Other formulations and penalties\n\nDifferences from the limit over the default's penalty.",
         _other_models(points),
-        harness.folded("Fronts over work, from cheap to expensive", listed),
+        harness.folded("Places on the fronts over work, from cheap to expensive", fronts(points)),
         f"## Runs\n\n{len(points)} of {len(points) + len(lost)} runs reached full slip.",
         *(f"Not reached: {words}" for words in lost),
     ]

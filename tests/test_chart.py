@@ -35,6 +35,13 @@ def test_front_has_no_run_that_another_one_beats():
     assert [p.label for p in chart.front(POINTS, ALL)] == ["cheap", "default", "expensive"]
 
 
+def test_places_on_the_fronts():
+    """A run that is on none has no row; others have their places, from cheap to expensive."""
+    lines = chart.fronts(POINTS).splitlines()
+    assert [line.split(" | ")[0].lstrip("| ") for line in lines[2:]] == ["cheap", "default", "expensive"]
+    assert [line.split(" | ")[1] for line in lines[2:]] == ["1", "2", "3"]
+
+
 def test_front_over_time_is_another():
     """The run that takes least time comes first, however many factorisations it needs."""
     assert [p.label for p in chart.front(POINTS, "slip_f_t", "seconds")] == ["worse", "default", "expensive"]
