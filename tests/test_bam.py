@@ -48,6 +48,16 @@ def test_ends_are_held_and_named(bam):
     ]  # fmt: skip
 
 
+def test_thick_insulators_are_named_where_the_air_gap_rises_with_pressure():
+    """From the least d_eq on, at a mean separation of half of h_0; a thin insulator's is next to zero separation."""
+    thick = BearingArea(10 * 1e-6)
+    turn = float(thick.contact_pressure(5e-6))
+    assert thick.state(0.99 * turn, 0.0) == ""
+    assert "rises with pressure" in thick.state(1.01 * turn, 0.0)
+    gaps = thick(turn * np.array([0.9, 1.0, 1.1])).d_eq
+    assert gaps[1] < gaps[0] and gaps[1] < gaps[2]
+
+
 @pytest.mark.parametrize("h_rms", [1e-6, 1e-4, 1e-3])
 def test_threshold_of_any_roughness(h_rms):
     """The least p_ext is zero at it, to roundoff of p_c from below and, sampled a thousandth of h_rms beside, above."""

@@ -103,7 +103,9 @@ const closedForm = (function () {
       if (p_c < this.p_floor) return "below p_floor";
       if (p_c > this.full_pressure) return "beyond zero separation";
       const fold = this.pull_off_fold(voltage);
-      return fold !== null && p_c < this.contact_pressure(fold) ? "past the fold" : "";
+      if (fold !== null && p_c < this.contact_pressure(fold)) return "past the fold";
+      const widens = this.separation(p_c) < this.h_0 / 2;
+      return widens ? "where d_eq rises with pressure, since the insulators are thick for this roughness" : "";
     }
     pull_off_fold(voltage) {
       const u = Array.from({ length: 4001 }, (_, k) => (k * 8 * this.h_rms) / 4000);

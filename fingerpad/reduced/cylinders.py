@@ -131,7 +131,7 @@ def from_run(scene: Scene, folder: Path) -> Footprint:
     except (OSError, ValueError) as error:
         raise SceneError(f"run {folder} cannot be read: {error}") from None
     for name, unit in (("f_ext", "N/m"), ("voltage", "V")):
-        if not np.isclose(summary[name], getattr(scene, name), rtol=1e-6, atol=1e-9):
+        if not np.isclose(abs(summary[name]), abs(getattr(scene, name)), rtol=1e-6, atol=1e-9):
             raise SceneError(
                 f"run {folder} is one at {name} {summary[name]:g} {unit}, and the scene's is {getattr(scene, name):g}; "
                 "give a run of this scene"

@@ -212,7 +212,7 @@ class _Cell:
                 break
             if self.rows["lift"][-1][3] == 0:
                 break
-        return [row for row in self.rows["lift"] if row[3] > 0]
+        return [row for row in self.rows.get("lift", []) if row[3] > 0]
 
     def _table(self, rows: list[tuple[float, ...]]) -> dict[str, list[float]]:
         """Return columns over the height, a ridge that has let go at the end."""

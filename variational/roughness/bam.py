@@ -97,7 +97,11 @@ class BearingArea(Closure):
         return AirGap(d_eq, np.where(held == p_c, gradient, 0.0))
 
     def state(self, p_c: float, voltage: float) -> str:
-        """Return where a ridge is on the closure, at one of its ends or past its pull-off fold; empty elsewhere."""
+        """Return where a ridge is on the closure; empty where the air gap closes as the pressure rises.
+
+        At one of the ends, past the pull-off fold, or nearer than half of the insulators' effective thickness. There
+        A_att of Eq. 11 falls, and d_eq rises with pressure.
+        """
         if p_c <= 0:
             return ""
         if p_c < self.p_floor:
@@ -105,7 +109,10 @@ class BearingArea(Closure):
         if p_c > self.full_pressure:
             return "beyond zero separation"
         fold = self.pull_off_fold(voltage)
-        return "past the fold" if fold is not None and p_c < self.contact_pressure(fold) else ""
+        if fold is not None and p_c < self.contact_pressure(fold):
+            return "past the fold"
+        widens = self.separation(p_c) < self.h_0 / 2
+        return "where d_eq rises with pressure, since the insulators are thick for this roughness" if widens else ""
 
     def pull_off_fold(self, voltage: float) -> float | None:
         """Return u_bar (m) of the least p_ext on the branch that starts at u_bar = 0, None if there is none."""
