@@ -2,7 +2,6 @@
 
 import csv
 import itertools
-import signal
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +13,6 @@ from fingerpad.accuracy import solves
 from fingerpad.accuracy.recompute import Solve, State
 from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.accuracy.rigid_screen import ORDER
-from fingerpad.io.interrupt import Interrupted
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.touching import by_rule
 from fingerpad.richardson import MORE, ONCE
@@ -66,24 +64,6 @@ def search(monkeypatch, asked, solve=known, pause=lambda: None) -> Refinement:
     found = Refinement(model, known(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, lambda text: None, pause)
     found.run()
     return found
-
-
-def test_interrupted_search_reached_nothing(monkeypatch):
-    """Neither before its first solve nor between two; what goes on to its end did."""
-    model, lines = model_of({"accuracy": {"mu_app": 0.01}, "numerics": {"memory": 1e15}}), []
-    monkeypatch.setattr(solves, "solve_again", known)
-    for solves_before in (0, 2):
-        to_come = iter(range(solves_before))
-
-        def pause(to_come=to_come):
-            if next(to_come, None) is None:
-                raise Interrupted(signal.SIGINT, 3)
-
-        found = Refinement(model, known(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, lines.append, pause)
-        with pytest.raises(Interrupted):
-            found.run()
-        assert not found.failure and not found.summary()["reached"]
-    assert search(monkeypatch, {"mu_app": 0.01}).summary()["reached"]
 
 
 @pytest.mark.parametrize("asked", [{"mu_app": 0.01}, {"contact_length": 0.02}])
@@ -278,16 +258,6 @@ def test_says_when_a_state_is_lost(monkeypatch):
     found = search(monkeypatch, {"mu_app": 0.01}, lost)
     assert found.failure == "the accuracy asked for could not be established: full slip found no equilibrium"
     assert found.summary()["quantities"] == {}
-
-
-def test_stops_when_it_is_asked_to(monkeypatch):
-    """Asked to stop is no accuracy out of reach."""
-
-    def pause():
-        raise Interrupted(signal.SIGTERM, 3)
-
-    with pytest.raises(Interrupted):
-        search(monkeypatch, {"mu_app": 0.01}, pause=pause)
 
 
 def test_says_where_a_ridge_comes_or_goes(monkeypatch):

@@ -3,13 +3,16 @@
 import signal
 
 import pytest
+from mpi4py import MPI
 
+from fingerpad.accuracy import solves
+from fingerpad.accuracy.refinement import Refinement
 from fingerpad.io.interrupt import Interrupted
 from fingerpad.richardson import plus_minus
 from fingerpad.runs import attempt
 from fingerpad.runs.batch import key
 from fingerpad.scene import SceneError, from_data
-from tests.test_accuracy import model_of
+from tests.test_accuracy import known, model_of, search
 from variational.solvers.continuation import StepFailed
 from variational.solvers.failure import NotConverged
 
@@ -72,3 +75,21 @@ def test_starts_again_finer_where_the_path_is_lost(asked, start, helps, finer):
         lost = Interrupted(signal.SIGTERM, 3)
     restart = attempt._finer(model, lost)
     assert (restart and restart.model.mesh.contact) == finer
+
+
+def test_interrupted_search_reached_nothing(monkeypatch):
+    """Neither before its first solve nor between two, and that is no accuracy out of reach; what ends by itself did."""
+    model, lines = model_of({"accuracy": {"mu_app": 0.01}, "numerics": {"memory": 1e15}}), []
+    monkeypatch.setattr(solves, "solve_again", known)
+    for solves_before in (0, 2):
+        to_come = iter(range(solves_before))
+
+        def pause(to_come=to_come):
+            if next(to_come, None) is None:
+                raise Interrupted(signal.SIGINT, 3)
+
+        found = Refinement(model, known(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, lines.append, pause)
+        with pytest.raises(Interrupted):
+            found.run()
+        assert not found.failure and not found.summary()["reached"]
+    assert search(monkeypatch, {"mu_app": 0.01}).summary()["reached"]

@@ -109,8 +109,10 @@ def keep(folder, **values):
     return summary
 
 
-def test_length_of_a_run(tmp_path):
-    keep(tmp_path)
+@pytest.mark.parametrize("sign", [1, -1])
+def test_length_of_a_run(tmp_path, sign):
+    """Of either sign of the voltage, which changes no force."""
+    keep(tmp_path, voltage=200.0 * sign)
     found = cylinders.solve(scene(), cylinders.from_run(scene(), tmp_path))
     assert found.charged.contact_length == pytest.approx(1.7e-3, rel=1e-12)
     assert found.full_slip.contact_length == pytest.approx(1.6e-3, rel=1e-12)

@@ -14,7 +14,7 @@ from variational.contact.ridge_law import RidgeLaw, RidgeTable, ramps
 from variational.materials.saint_venant import SaintVenant
 from variational.problem import Interface
 from variational.roughness.bam import BearingArea
-from variational.solvers.continuation import Target
+from variational.solvers.continuation import StepFailed, Target
 
 COARSE = {"mesh": {"contact": 30e-6}, "f_ext": 10.0, "voltage": 0.0}
 PERIOD = 0.5e-3
@@ -113,6 +113,17 @@ def test_fine_facets_are_on_the_part_of_the_ridge_that_the_scene_gives():
     counts = [ridge_cell._Cell(scene, 5.0).solver.layout.global_size for scene in (narrow, wide)]
     assert counts[0] < 0.9 * counts[1]
     assert ridge_cell._made_of(narrow) != ridge_cell._made_of(wide)
+
+
+def test_ridge_that_lets_go_at_the_first_lift_has_no_lifted_states(monkeypatch):
+    """Its table then ends with the state that slides."""
+    found = ridge_cell._Cell(from_data(COARSE), 2.5)
+
+    def lost(target):
+        raise StepFailed("jumps off")
+
+    monkeypatch.setattr(found.walk, "run", lost)
+    assert found._lift() == []
 
 
 def test_table_does_not_know_of_the_layers_below(cell, tmp_path, monkeypatch):

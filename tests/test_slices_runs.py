@@ -76,6 +76,15 @@ def test_trace_that_was_too_short_is_made_again(tmp_path, monkeypatch):
     assert [each.finger.states["full_slip"].totals["f_ext"] for each in found] == pytest.approx(2 * [FORCE], rel=1e-9)
 
 
+def test_last_trace_that_was_too_short_makes_way(tmp_path, monkeypatch):
+    """It has the folder of the result itself, where the longer one takes its place."""
+    monkeypatch.setattr(traces, "_MARGIN", 0.6)
+    with no_pictures():
+        found = fp.run(small(**SMALL), force=FORCE, out=tmp_path / "out")
+    assert found.finger.states["full_slip"].totals["f_ext"] == pytest.approx(FORCE, rel=1e-9)
+    assert fp.Result.load(tmp_path / "out").scene == found.scene
+
+
 def test_points_of_the_traces_are_of_one_kind():
     """Each state of a trace is uncharged, charged at rest, or at full slip at the scene's voltage."""
     scene = small(**SMALL)

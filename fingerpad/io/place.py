@@ -146,7 +146,7 @@ class Place:
 
 
 def forget(folder: Path) -> None:
-    """Let a folder be that of another scene: what is in it stays until the next run there, which takes its place."""
+    """Let a folder be that of another scene; the next run there deletes what this leaves of the last one."""
     for name in ("scene.json", "summary.json", "steps.csv"):
         (folder / name).unlink(missing_ok=True)
 
