@@ -1,10 +1,10 @@
 """Which model when: the two reduced models beside full runs, over forces and voltages.
 
-environment/run python3 -m benchmarks.models [--jobs 2] [--draw]     some hours, mostly full runs
+environment/run python3 -m benchmarks.models [--jobs 2] [--draw]     twenty minutes, mostly full runs
 
-The full runs have a contact size of 10 um; some of scenes beyond these forces and voltages are on the page by
-themselves. Writes docs/models.json, from which the command ``estimate`` has its known error and ``check`` its rule of
-the cost, and docs/models.md.
+The full runs have a contact size of 10 um. A few more of them, of scenes beyond these forces and voltages, have a table
+of their own on the page. Writes docs/models.json, from which the command ``estimate`` has its known error and ``check``
+its rule of the cost, and docs/models.md.
 """
 
 import argparse
