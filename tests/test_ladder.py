@@ -121,7 +121,14 @@ def test_length_of_a_run(tmp_path, sign):
 
 @pytest.mark.parametrize(
     ("values", "sentence"),
-    [({"voltage": 50.0}, "is one at voltage 50 V"), ({"slip_contact_length": None}, "did not reach full slip")],
+    [
+        ({"voltage": 50.0}, "is one at voltage 50 V"),
+        ({"slip_contact_length": None}, "did not reach full slip"),
+        (
+            {"parameters": scene(geometry={"ridge_amplitude": 50e-6}).parameters()},
+            r"is one of another finger \(its geometry.ridge_amplitude was 5e-05, and is 0.0001 now\)",
+        ),
+    ],
 )
 def test_run_of_no_use_is_refused(tmp_path, values, sentence):
     keep(tmp_path, **values)
@@ -130,6 +137,10 @@ def test_run_of_no_use_is_refused(tmp_path, values, sentence):
 
 
 def test_missing_run_is_refused(tmp_path):
+    (tmp_path / "refused").mkdir()
+    (tmp_path / "refused" / "summary.json").write_text('{"failure": "mesh.contact is too large"}', encoding="utf-8")
+    with pytest.raises(SceneError, match="refused has no results: mesh.contact is too large"):
+        cylinders.from_run(scene(), tmp_path / "refused")
     with pytest.raises(SceneError, match="cannot be read"):
         cylinders.from_run(scene(), tmp_path)
 

@@ -122,7 +122,7 @@ class Place:
         kept = self._kept()
         if kept is not None and kept != self._parameters:
             raise PlaceError(
-                f"{_short(self.folder)} holds the results of another scene ({_difference(kept, self._parameters)}); "
+                f"{_short(self.folder)} holds the results of another scene ({difference(kept, self._parameters)}); "
                 "choose another folder, or delete the folder"
             )
 
@@ -172,12 +172,12 @@ def full_scene(folder: Path) -> Scene:
     return from_kept(kept)
 
 
-def _difference(old: dict[str, Any], new: dict[str, Any], table: str = "") -> str:
-    """Return the first key in which two scenes differ."""
+def difference(old: Mapping[str, Any], new: Mapping[str, Any], table: str = "") -> str:
+    """Return the first key in which two scenes differ, with both values; empty if there is none."""
     for key in sorted(old.keys() | new.keys()):
         a, b = old.get(key), new.get(key)
         if isinstance(a, dict) and isinstance(b, dict):
-            found = _difference(a, b, f"{table}{key}.")
+            found = difference(a, b, f"{table}{key}.")
             if found:
                 return found
         elif a != b:

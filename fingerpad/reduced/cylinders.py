@@ -17,12 +17,14 @@ voltage. ``docs/models.md`` has its errors.
 """
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from fingerpad.io.place import difference
 from fingerpad.io.result import Cost, Result
 from fingerpad.io.states import PREFIXES, WORDS
 from fingerpad.reduced.answer import STATES, Stopwatch, at_rest, at_slip, refuse_others
@@ -124,23 +126,35 @@ def from_run(scene: Scene, folder: Path) -> Footprint:
     """Return the contact of a full run of the scene, perhaps with another mesh, friction or roughness.
 
     Raises:
-        SceneError: there is no run, it did not reach full slip, or it is one at another force or voltage.
+        SceneError: there is no run, it did not reach full slip, or it is one of another finger, force or voltage.
     """
     try:
         summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise SceneError(f"run {folder} cannot be read: {error}") from None
+    if "parameters" not in summary:  # a point of a sweep that was refused
+        raise SceneError(f"run {folder} has no results: {summary.get('failure', 'summary.json is of another kind')}")
     for name, unit in (("f_ext", "N/m"), ("voltage", "V")):
         if not np.isclose(abs(summary[name]), abs(getattr(scene, name)), rtol=1e-6, atol=1e-9):
             raise SceneError(
                 f"run {folder} is one at {name} {summary[name]:g} {unit}, and the scene's is {getattr(scene, name):g}; "
                 "give a run of this scene"
             )
+    other = difference(_finger(summary["parameters"]), _finger(scene.parameters()))
+    if other:
+        raise SceneError(f"run {folder} is one of another finger ({other}); give a run of this scene's finger")
     length = {state: summary.get(f"{PREFIXES[state]}_contact_length") for state in STATES}
     ridges = {state: summary.get(f"{PREFIXES[state]}_ridges_in_contact") for state in STATES}
     if None in (*length.values(), *ridges.values()):
         raise SceneError(f"run {folder} did not reach full slip, so that its contact length there is not known")
     return Footprint(length, ridges, True, f"contact length of the run in {folder}")  # type: ignore[arg-type]
+
+
+def _finger(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the parameters of a scene that make its finger, as a file holds them."""
+    own = {name: law for name, law in parameters.get("laws", {}).items() if name in ("mesh", "materials")}
+    shape = {name: parameters[name] for name in ("geometry", "materials")}
+    return dict(json.loads(json.dumps(shape | {"laws": own})))
 
 
 def solve(scene: Scene, footprint: Footprint | None = None) -> Result:

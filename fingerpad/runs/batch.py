@@ -10,6 +10,7 @@ mechanics the folder must be deleted.
 import fcntl
 import hashlib
 import json
+import os
 import sys
 import time
 from collections.abc import Mapping, Sequence
@@ -111,7 +112,8 @@ def sweep(
     def done(name: str, end: End, left: int) -> None:
         summary = result(scenes[name], folder)
         if summary is None:
-            broken[name] = {"failure": f"{end.reason}: {end.message}" if end.reason else "INTERRUPTED"}
+            crashed = f"{end.reason}: {end.message}" if end.reason else "INTERRUPTED"
+            broken[name] = {"failure": end.message if end.code == os.EX_TEMPFAIL else crashed}
         if quiet:
             return
         words = (summary or broken[name]).get("failure") or _said(summary or {})
@@ -148,7 +150,8 @@ def _one(scene: Path, folder: Path, model: str) -> None:
 
             kept(smooth.solve(asked, tables_in(folder.parent), MPI.COMM_WORLD), folder, MPI.COMM_WORLD)
     except PlaceError as error:  # another run is at it, or the disk is full: it may be gone the next time
-        sys.exit(str(error))
+        print(error, file=sys.stderr)
+        sys.exit(os.EX_TEMPFAIL)
     except SceneError as error:  # it would be the same the next time
         replace_json(folder / "summary.json", {"failure": str(error)})
 
