@@ -8,10 +8,12 @@ from geometry.bodies import block
 from geometry.mesh import load
 from tests import spring
 from tests.test_contact import HEIGHT, MU_F, VOLTAGE, WIDTH, make
+from tests.test_element import layered
+from variational.element import ELEMENTS
 from variational.quantities import Observer
 from variational.solvers.equations import Control
 from variational.solvers.failure import NotConverged
-from variational.solvers.stability import StabilityCheck
+from variational.solvers.stability import Stability, StabilityCheck
 
 pytestmark = pytest.mark.mpi
 BEFORE, BEYOND = 1.05, 0.95  # of (h_0 + y) at the fold
@@ -52,6 +54,25 @@ def test_shift_does_not_matter(solver, eta):
     spring.place(solver, y)
     found = StabilityCheck(solver).check(eta)
     assert found.lambda_min == pytest.approx(spring.net_stiffness(y), abs=1e-12 * max(eta, 1e10))
+
+
+@pytest.mark.parametrize(("y", "stable"), [(HEIGHTS[0], True), (HEIGHTS[4], False)])
+def test_one_beyond_the_shift_is_not_missed(solver, monkeypatch, y, stable):
+    """Were the eigenvalue of -1.2e9 Pa/m not found, the determinant's sign would tell that one lies below -eta."""
+    spring.place(solver, y)
+    with monkeypatch.context() as blind:
+        blind.setattr(StabilityCheck, "_arnoldi", lambda *_: Stability(1e7, True))
+        found = StabilityCheck(solver).check(eta=2e8)
+    assert found == (Stability(1e7, True) if stable else Stability(-2e8, False))
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_body_at_rest_is_stable(element):
+    """With each element; the mixed one has 45 unknown pressures, each of which turns the determinant's sign round."""
+    at_rest = layered(element, eps_n=0.0)
+    assert at_rest.layout.pressure_count == (45 if element == "P2-P1" else 0)
+    found = StabilityCheck(at_rest).check()
+    assert found.stable and found.settled
 
 
 def test_kept_analysis_changes_nothing(solver):

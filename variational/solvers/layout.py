@@ -34,6 +34,7 @@ class RigidRimLayout:
         rows: global row of each of the space's local unknowns, ghosts included.
         rigid_rows: global rows (2,) of the rigid body's translation in x and y.
         owns_rigid: whether this rank owns those rows.
+        pressure_count: number of the pressure's unknowns on all ranks.
         displacement_rows: this rank's global rows of displacements, the rigid body's included.
         rim: this rank's nodes on the rim, ghosts included.
     """
@@ -57,6 +58,7 @@ class RigidRimLayout:
         self.comm = comm
         self.owns_rigid = comm.rank == comm.size - 1
         pressures = pressure.owned if pressure else 0
+        self.pressure_count = comm.allreduce(pressures)
         self._block_size = 1 if pressure else 2
         self.local_size = pressures + 2 * (int(free.sum()) + int(self.owns_rigid))
         self.global_size = comm.allreduce(self.local_size)

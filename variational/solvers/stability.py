@@ -13,6 +13,10 @@ doi 10.1137/1.9781611970739, ch. 6 to 8). The power iteration would take more of
 :math:`-2 \eta`. Where K is symmetric its negative pivots can be counted instead (Sylvester's law of inertia), which
 needs no iteration and gives no rate.
 
+Growths of eigenvalues far beyond :math:`-\eta` lie next to zero, among those of the stiffest disturbances, where a
+Krylov space may end before it finds them. But each real eigenvalue below :math:`-\eta` turns the sign of
+:math:`\det(K + \eta M)` round, which the factorisation brings: an odd number of them is not missed.
+
 The verdict has three limits. K is the tangent at frozen air gaps; how these react is the gain of the loop over the
 scales (:mod:`~variational.solvers.coupling`), below one where the loop is stable. Points on the friction cone are taken
 to slip on in their direction, the softer choice. And a disturbance is infinitely small.
@@ -47,7 +51,8 @@ class Stability:
     lambda_min: float
     """Least real part of the eigenvalues found (Pa/m): the rate at which the slowest disturbance dies times eta."""
     settled: bool
-    """Whether its residual fell below the tolerance; if not, ``lambda_min`` is an upper bound where K is symmetric."""
+    """Whether its residual fell below the tolerance; if not, ``lambda_min`` is an upper bound where K is symmetric, or
+    where it is minus eta."""
 
     @property
     def stable(self) -> bool:
@@ -129,6 +134,8 @@ class StabilityCheck:
         if pc.getType() == PETSc.PC.Type.CHOLESKY:  # for the count of pivots: all on one rank in the last front, no
             pc.getFactorMatrix().setMumpsIcntl(13, 1)  # null ones
             pc.getFactorMatrix().setMumpsIcntl(24, 1)
+        else:
+            pc.getFactorMatrix().setMumpsIcntl(33, 1)  # the determinant, too
         ksp.setOperators(ksp.getOperators()[0])  # of other values, else it is factorised only in the first solve
         ksp.setUp()
         self.solver.counts.factorisations += 1
@@ -163,7 +170,16 @@ class StabilityCheck:
             raise
         result = self._arnoldi(self._ksp, M, rows, eta)
         M.destroy()
-        return result
+        missed = self._odd_beyond(self._ksp) and result.lambda_min > -eta
+        return Stability(-eta, False) if missed else result
+
+    def _odd_beyond(self, ksp: PETSc.KSP) -> bool:
+        """Return whether an odd number of eigenvalues lies below -eta, by the sign of the determinant of K + eta M.
+
+        Each unknown pressure turns it round: those in equilibrium take away from the energy.
+        """
+        pressures = self.solver.layout.pressure_count
+        return (ksp.getPC().getFactorMatrix().getMumpsRinfog(12) < 0) != (pressures % 2 == 1)
 
     def _start(self, rows: Rows) -> PETSc.Vec:
         """Return a disturbance without symmetry that depends on position alone, not on the partition."""
