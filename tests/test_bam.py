@@ -67,6 +67,37 @@ def test_threshold_of_any_roughness(h_rms):
     assert -1e-12 < least < 1e-5
 
 
+@pytest.mark.parametrize(("h_0", "h_rms", "gamma"), [(30e-6, 3.1e-6, 0.5), (1e-6, 3e-6, 0.1), (5e-6, 0.5e-6, 0.4)])
+def test_threshold_with_thick_insulators_or_a_short_decay(h_0, h_rms, gamma):
+    """Where p_c and attraction both are tiny: the least of their ratio over a million separations, to its spacing's
+    square. The fold at twice the threshold is nearer.
+    """
+    bam = BearingArea(h_0, h_rms=h_rms, gamma=gamma)
+    u_bar = np.linspace(0, h_0 + 30 * h_rms, 1_000_001)[:-1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = bam.contact_pressure(u_bar) / bam.attraction(u_bar, 1.0)
+    assert bam.threshold() == pytest.approx(np.sqrt(np.nanmin(ratio)), rel=1e-6, abs=0)
+    least = float(u_bar[np.nanargmin(ratio)])
+    assert bam.pull_off_fold(bam.threshold() / 2) is None
+    fold = bam.pull_off_fold(1.2 * bam.threshold())
+    assert fold is not None and h_0 / 2 < fold < least
+    p_ext = bam.external_pressure(np.array([0.999, 1.0, 1.001]) * fold, 1.2 * bam.threshold())
+    assert p_ext[1] < p_ext[0] and p_ext[1] < p_ext[2]
+
+
+@pytest.mark.parametrize("h_0", [5e-3, 1.0])
+def test_fold_beyond_the_smallest_numbers(h_0):
+    """Some h_rms within h_0, where the repulsion has left e^-300 or e^-60000 of itself."""
+    fold = BearingArea(h_0).pull_off_fold(100.0)
+    assert fold is not None and 0.9 < fold / h_0 < 1
+    assert BearingArea(h_0).pull_off_fold(0.0) is None
+
+
+def test_threshold_of_the_shortest_decay():
+    """The repulsion ends before the attraction does: what is left of it is smaller than any number."""
+    assert BearingArea(H_0, gamma=0.01).threshold() == 0
+
+
 def test_no_equilibrium_is_an_error(bam):
     with pytest.raises(ValueError, match="p_ext is -4000 Pa; at 200 V"):
         bam.air_gap_at_external(-4e3, 200.0)

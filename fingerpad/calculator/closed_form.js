@@ -85,19 +85,9 @@ const closedForm = (function () {
       const width = Math.SQRT2 * this.h_rms;
       return erfc((u_bar - this.h_0) / width) - erfc(u_bar / width);
     }
-    area_slope(u_bar) {
-      const width = Math.SQRT2 * this.h_rms, near = (u_bar - this.h_0) / width, far = u_bar / width;
-      return (-2 / Math.sqrt(Math.PI) / width) * (Math.exp(-near * near) - Math.exp(-far * far));
-    }
     d_eq(p_c) { // Eq. 13, held below p_floor and above full_pressure
       const held = Math.min(Math.max(p_c, this.p_floor), this.full_pressure);
       return this.h_0 * (Math.sqrt(2 / this.twice_area(this.separation(held))) - 1);
-    }
-    external_pressure(u_bar, voltage) { // Eq. 9
-      return this.contact_pressure(u_bar) - this.sigma_0(voltage) * this.twice_area(u_bar);
-    }
-    sigma_0(voltage) {
-      return (data.eps_0 * voltage ** 2) / (4 * this.h_0 ** 2);
     }
     state(p_c, voltage) {
       if (p_c < this.p_floor) return "below p_floor";
@@ -107,13 +97,24 @@ const closedForm = (function () {
       const widens = this.separation(p_c) < this.h_0 / 2;
       return widens ? "where d_eq rises with pressure, since the insulators are thick for this roughness" : "";
     }
+    /** Return the logarithm of the repulsion's slope over the attraction's beyond h_0 / 2, and its slope (1/m). */
+    steeper(u_bar, voltage) {
+      const width = Math.SQRT2 * this.h_rms, decay = this.gamma * this.h_rms;
+      const near = (u_bar - this.h_0) / width, beyond = ((2 * u_bar - this.h_0) * this.h_0) / width ** 2;
+      const pull = (data.eps_0 * voltage ** 2) / (2 * Math.sqrt(Math.PI) * this.h_0 ** 2 * width);
+      const part = -Math.expm1(-beyond);
+      return [
+        Math.log(this.full_pressure / decay / pull / part) - u_bar / decay + near ** 2,
+        -1 / decay + (2 * near) / width - (((2 * this.h_0) / width ** 2) * Math.exp(-beyond)) / part,
+      ];
+    }
     pull_off_fold(voltage) {
-      const u = Array.from({ length: 4001 }, (_, k) => (k * 8 * this.h_rms) / 4000);
-      const p = u.map((v) => this.external_pressure(v, voltage));
-      const k = p.findIndex((value, j) => j + 1 < p.length && p[j + 1] > value);
-      if (k <= 0) return null;
-      const decay = this.gamma * this.h_rms, sigma = this.sigma_0(voltage);
-      return root((v) => -this.contact_pressure(v) / decay - sigma * this.area_slope(v), u[k - 1], u[k + 1]);
+      if (voltage === 0) return null;
+      const first = (this.h_0 / 2) * (1 + 1e-9), last = this.h_0 + (1 + 1 / this.gamma) * this.h_rms;
+      const least = root((u) => this.steeper(u, voltage)[1], first, last);
+      if (this.steeper(least, voltage)[0] >= 0) return null;
+      if (this.steeper(first, voltage)[0] <= 0) return first;
+      return root((u) => this.steeper(u, voltage)[0], first, least);
     }
   }
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq, minimize_scalar
-from scipy.special import erfc
+from scipy.special import erfc, log_ndtr
 
 from variational.roughness.closure import AirGap, Closure
 
@@ -116,18 +116,29 @@ class BearingArea(Closure):
 
     def pull_off_fold(self, voltage: float) -> float | None:
         """Return u_bar (m) of the least p_ext on the branch that starts at u_bar = 0, None if there is none."""
-        u = np.linspace(0, 8 * self.h_rms, 4001)
-        p = self.external_pressure(u, voltage)
-        rising = np.flatnonzero(np.diff(p) > 0)
-        if not len(rising) or rising[0] == 0:
+        if voltage == 0:
             return None
-        ends = u[rising[0] - 1], u[rising[0] + 1]
-        return float(brentq(lambda v: self._external_slope(v, voltage), *ends, xtol=_SEPARATION * self.h_rms))
+        # p_ext falls up to h_0 / 2, where the attraction is largest. From there on the logarithm of the repulsion's
+        # slope over the attraction's is a convex function of u_bar, which is zero at the fold.
+        first, last = self.h_0 / 2 * (1 + 1e-9), self.h_0 + (1 + 1 / self.gamma) * self.h_rms
+        least = brentq(lambda u: self._steeper(u, voltage)[1], first, last)
+        if self._steeper(least, voltage)[0] >= 0:
+            return None
+        if self._steeper(first, voltage)[0] <= 0:
+            return first
+        error = _SEPARATION * self.h_rms
+        return float(brentq(lambda u: self._steeper(u, voltage)[0], first, least, xtol=error))
 
-    def _external_slope(self, u_bar: float, voltage: float) -> float:
-        _, slope = self._twice_area(u_bar)
-        repulsion = -self.contact_pressure(u_bar) / (self.gamma * self.h_rms)
-        return float(repulsion - _EPS_0 * voltage**2 / (4 * self.h_0**2) * slope)
+    def _steeper(self, u_bar: float, voltage: float) -> tuple[float, float]:
+        """Return the logarithm of the repulsion's slope over the attraction's beyond h_0 / 2, and its slope (1/m)."""
+        width, decay = np.sqrt(2) * self.h_rms, self.gamma * self.h_rms
+        near, beyond = (u_bar - self.h_0) / width, (2 * u_bar - self.h_0) * self.h_0 / width**2
+        pull = _EPS_0 * voltage**2 / (2 * np.sqrt(np.pi) * self.h_0**2 * width)
+        part = -np.expm1(-beyond)
+        return (
+            float(np.log(self.full_pressure / decay / pull / part) - u_bar / decay + near**2),
+            float(-1 / decay + 2 * near / width - 2 * self.h_0 / width**2 * np.exp(-beyond) / part),
+        )
 
     def air_gap_at_external(self, p_ext: float, voltage: float) -> float:
         """Return d_eq (m) on the branch in contact at external pressure ``p_ext`` (Pa).
@@ -152,12 +163,13 @@ class BearingArea(Closure):
         if approximate:
             return 1.8 * self.h_rms * float(np.sqrt(self.h_0 * 4 / 3 * self.young / (_EPS_0 * self.wavelength)))
 
-        # The least p_ext is zero at the voltage whose square is the least ratio of repulsion to attraction at 1 V.
-        def ratio(u_bar: ArrayLike) -> Array:
-            return np.asarray(self.contact_pressure(u_bar) / self.attraction(u_bar, 1.0))
+        # The least p_ext is zero at the voltage whose square is the least ratio of repulsion to attraction at 1 V. Its
+        # logarithm is convex, and where it is least both may be smaller than any number of the computer.
+        def ratio(u_bar: float) -> float:
+            near, far = (log_ndtr((end - u_bar) / self.h_rms) for end in (self.h_0, 0.0))
+            return float(-u_bar / (self.gamma * self.h_rms) - near - np.log1p(-np.exp(far - near)))
 
-        u = np.linspace(0, 8 * self.h_rms, 4001)
-        k = int(np.argmin(ratio(u)))
-        ends, error = (u[max(k - 1, 0)], u[min(k + 1, len(u) - 1)]), {"xatol": 1e-9 * self.h_rms}
-        near = minimize_scalar(ratio, bounds=ends, method="bounded", options=error)
-        return float(np.sqrt(min(near.fun, ratio(u[k]))))
+        ends, error = (0.0, self.h_0 + (1 + 1 / self.gamma) * self.h_rms), {"xatol": 1e-9 * self.h_rms}
+        found = minimize_scalar(ratio, bounds=ends, method="bounded", options=error)
+        constant = self.full_pressure * 2 * self.h_0**2 / _EPS_0
+        return float(np.sqrt(constant * np.exp(min(found.fun, ratio(0.0)))))
