@@ -233,6 +233,10 @@ def test_foreign_configuration_is_not_read(tmp_path):
         ("1e3:1e6:4:log", [1e3, 1e4, 1e5, 1e6]),
         ("0:0.2:3 kV", ["0.0 kV", "0.1 kV", "0.2 kV"]),
         ("50 N/m", ["50.0 N/m"]),
+        ("1e4", [1e4]),
+        ("1e-6,2E-6", [1e-6, 2e-6]),
+        ("2e-6 m", ["2e-06 m"]),
+        ("5eV", ["5.0 eV"]),
     ],
 )
 def test_ranges(text, values):

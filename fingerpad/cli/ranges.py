@@ -25,7 +25,7 @@ def read(name: str, text: str) -> list[float | str]:
     Raises:
         SceneError: a text that is none of the three.
     """
-    found = re.fullmatch(r"([-+0-9.,:\seE]*?(?::log)?)\s*([A-Za-zµ°%][^,:]*)?", text.strip())
+    found = re.fullmatch(r"([-+0-9.,:\seE]*?(?::log)?)\s*((?![eE][-+]?\d)[A-Za-zµ°%][^,:]*)?", text.strip())
     numbers, unit = (found[1].strip(), (found[2] or "").strip()) if found else ("", "")
     values = _range(name, numbers) if ":" in numbers else _list(numbers)
     if not values:
