@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.test_topography import grid, wave
-from variational.roughness.heightfile import read
+from variational.roughness.heightfile import read, scan
 from variational.roughness.heighttext import parse
 from variational.roughness.missing import filled
 
@@ -34,8 +34,67 @@ def test_bad_files(tmp_path):
         read(tmp_path / "words.txt", (1.0, 1.0))
     with pytest.raises(ValueError, match="line.npy: heights have shape"):
         read(tmp_path / "line.npy", (1.0, 1.0))
-    with pytest.raises(ValueError, match="has its own size"):
-        read(tmp_path / "scan.vk4", (1.0, 1.0))
+    np.save(tmp_path / "high.npy", np.eye(9) * 1e200)
+    with pytest.raises(ValueError, match=r"heights over 1e\+200 m, at most 1 m is allowed"):
+        read(tmp_path / "high.npy", (1.0, 1.0))
+
+
+def test_lengths_that_are_exchanged(tmp_path):
+    """Four lines of eight heights in square pixels of 1 um; long pixels are taken if they are given as such."""
+    path = tmp_path / "map.npy"
+    np.save(path, np.zeros((4, 8)))
+    assert read(path, (4e-6, 8e-6)).pixel == (1e-6, 1e-6)
+    assert read(path, (4e-6, 16e-6)).pixel == (1e-6, 2e-6)
+    with pytest.raises(ValueError, match=r"4 lines of 8 heights, and x, .* the pixels are not square; exchange"):
+        read(path, (8e-6, 4e-6))
+    assert scan(path, pixel=(2e-6, 0.5e-6)).map.size == (8e-6, 4e-6)
+
+
+# -- instruments -------------------------------------------------------------------------------------------
+def test_instrument_with_a_size_and_unit_of_its_own(tmp_path):
+    """Heights in um over 3 x 4 um; what the file has is not to be given too."""
+    surface = pytest.importorskip("SurfaceTopography", reason="pip install fingerpad[topography]")
+    path, h = tmp_path / "map.nc", np.random.default_rng(1).normal(size=(6, 8))
+    surface.Topography(h, (3.0, 4.0), unit="um").to_netcdf(path)
+    found = read(path)
+    np.testing.assert_allclose(found.heights, h * 1e-6, rtol=1e-12)
+    assert found.size == pytest.approx((3e-6, 4e-6), rel=1e-12)
+    for given, sentence in (
+        ({"size": (1.0, 1.0)}, "has its own size; give none"),
+        ({"unit": "um"}, "has its own units; give none"),
+        ({"missing": "0"}, "has its own mark of missing pixels; give none"),
+    ):
+        with pytest.raises(ValueError, match=sentence):
+            scan(path, **given)
+
+
+def test_instrument_without_them(tmp_path):
+    """A format in which SurfaceTopography finds neither: both have to be given."""
+    pytest.importorskip("SurfaceTopography", reason="pip install fingerpad[topography]")
+    path, h = tmp_path / "map.npz", np.random.default_rng(1).normal(size=(6, 8))
+    np.savez(path, h=h)
+    found = scan(path, size=(3.0, 4.0), unit="um").map
+    np.testing.assert_allclose(found.heights, h * 1e-6, rtol=1e-12)
+    assert found.size == pytest.approx((3e-6, 4e-6), rel=1e-12)
+    with pytest.raises(ValueError, match="has no unit of its own; give the heights' too"):
+        scan(path, size=(3.0, 4.0))
+    with pytest.raises(ValueError, match="holds heights alone; give the lengths"):
+        scan(path, unit="um")
+
+
+# -- missing pixels ----------------------------------------------------------------------------------------
+def test_numbers_that_mark_missing_pixels(tmp_path):
+    """In NumPy's files as in texts."""
+    h = np.arange(36).reshape(6, 6)
+    h[1, 2] = -32768
+    np.save(tmp_path / "map.npy", h)
+    np.savetxt(tmp_path / "map.csv", h, delimiter=",")
+    found = [scan(tmp_path / name, (1.0, 1.0), "um", missing="-32768") for name in ("map.npy", "map.csv")]
+    assert [each.missing for each in found] == [1, 1]
+    np.testing.assert_allclose(found[0].map.heights * 1e6, np.arange(36).reshape(6, 6), atol=1e-12)
+    np.testing.assert_array_equal(found[0].map.heights, found[1].map.heights)
+    with pytest.raises(ValueError, match="missing is 'void'; .* has numbers alone"):
+        scan(tmp_path / "map.npy", (1.0, 1.0), missing="void")
 
 
 def test_missing_heights_are_those_of_a_plane():
@@ -47,6 +106,19 @@ def test_missing_heights_are_those_of_a_plane():
     holed[8, 6] = np.inf
     np.testing.assert_allclose(filled(holed), plane, rtol=0, atol=1e-12)
     assert np.isnan(holed[4, 4])
+
+
+def test_missing_edge_of_a_curved_map():
+    """Polynomials of degree two go on over a missing strip, to roundoff; measured heights stay to the last bit."""
+    x, y = grid((24, 16), (1.0, 1.0))
+    curved = 5 * x**2 - 3 * x * y + y**2 - 2 * x + 1
+    holed = curved.copy()
+    holed[-3:] = np.nan
+    holed[:4, :4] = np.nan
+    found = filled(holed)
+    np.testing.assert_allclose(found, curved, rtol=0, atol=1e-12)
+    known = np.isfinite(holed)
+    np.testing.assert_array_equal(found[known], curved[known])
 
 
 def test_hole_at_the_edge_is_filled():
@@ -75,6 +147,11 @@ def test_too_much_is_missing():
         ("1,5 2 3 4\n5 6 7 8,25", [[1.5, 2, 3, 4], [5, 6, 7, 8.25]], "separated by spaces, decimal commas"),
         ("1,5;2;3;4;\n5;6;7;8;\n", [[1.5, 2, 3, 4], [5, 6, 7, 8]], "separated by semicolons, decimal commas"),
         ("1\t2\t\t4\n5\t6\tbad\t8", [[1, 2, np.nan, 4], [5, 6, np.nan, 8]], "separated by tabs"),
+        ("nan nan nan nan\n1 2 3 4", [[np.nan] * 4, [1, 2, 3, 4]], "separated by spaces"),
+        ("z in um\n--;bad;2;1\n1;2;3;4", [[np.nan, np.nan, 2, 1], [1, 2, 3, 4]], "separated by semicolons"),
+        ("-99 nan nan nan\n1 2 3 4", [[np.nan] * 4, [1, 2, 3, 4]], "separated by spaces"),
+        ("nan,2,3,nan\nnan,6,7,nan", [[np.nan, 2, 3, np.nan], [np.nan, 6, 7, np.nan]], "separated by commas"),
+        ('"1","2","3","4"\n"5","6","7","8"', [[1, 2, 3, 4], [5, 6, 7, 8]], "separated by commas"),
         ("# made by x\nheight\n1 2 *** 4\n5 6 7 -99", [[1, 2, np.nan, 4], [5, 6, 7, np.nan]], "separated by spaces"),
     ],
 )
@@ -101,6 +178,8 @@ def test_points_in_any_order():
         ("1,5;2.5;3\n1;2;3", "it has points and commas in them"),
         ("1 2 3 4\n1 2 3", "line 2 has 3 of them, the first one 4"),
         ("1 2 3 4\n1 2 x 4", "line 2 has 'x'"),
+        ("void 2 3 4\n1 2 3 4", "line 1 has 'void'; a mark of missing pixels must be given"),
+        ("nan nan nan\nnan nan nan", "no line of numbers"),
         ("0 0 1\n1 0 1\n0 1 1\n1.4 1.3 1\n2 2 2", "not on a regular grid along x"),
     ],
 )

@@ -153,6 +153,16 @@ def test_fit_of_a_surface_without_plateau():
     assert fit.h_rms(plateau=False) == pytest.approx(3.1 * UM, rel=0.1)
 
 
+@pytest.mark.parametrize("wavelength", [3 * UM, 12 * UM])
+def test_roll_off_that_pixels_do_not_show_is_refused(wavelength):
+    """Pixels of 2 um show wavelengths from 16 um on; one of 20 um is found, to 15 %, as above."""
+    shape, size = (256, 256), (512 * UM, 512 * UM)
+    with pytest.raises(ValueError, match="rolls off at a wavelength of 1.6e-05 m or less, which pixels of 2e-06 m"):
+        power_spectrum(SelfAffine(wavelength=wavelength).surface(shape, size, seed=5)).fit()
+    fit = power_spectrum(SelfAffine(wavelength=20 * UM).surface(shape, size, seed=5)).fit()
+    assert fit.wavelength == pytest.approx(20 * UM, rel=0.15)
+
+
 def test_fit_of_the_expected_spectrum_is_exact():
     """Without scatter nothing is left but the search's tolerance, 1e-5 in H and in ln q_0."""
     kind = SelfAffine()

@@ -28,7 +28,13 @@ def main(argv: Sequence[str]) -> int:
     units = ", ".join(unit for unit in UNITS if unit.isascii())
     parser.add_argument("--unit", choices=[*UNITS], metavar="UNIT", help=f"of the heights: {units}")
     sizes = parser.add_mutually_exclusive_group()
-    sizes.add_argument("--size", nargs=2, type=positive(float), metavar=("X", "Y"), help="lengths of the map")
+    sizes.add_argument(
+        "--size",
+        nargs=2,
+        type=positive(float),
+        metavar=("X", "Y"),
+        help="lengths of the map: X from the first line of the file to the last, Y along a line",
+    )
     sizes.add_argument("--pixel", nargs=2, type=positive(float), metavar=("X", "Y"), help="lengths of a pixel instead")
     parser.add_argument(
         "--size-unit", choices=[*UNITS], metavar="UNIT", help="of these lengths (default: that of the heights)"
@@ -65,9 +71,8 @@ def _scan(args: argparse.Namespace) -> Found:
     except OSError as error:
         raise SceneError(f"{clip(str(args.file), 80)} cannot be read: {error.strerror or error}") from None
     except (ValueError, ImportError) as error:
-        raise SceneError(
-            str(error).replace("give the lengths along x and y too", "give --size or --pixel too")
-        ) from None
+        text = str(error).replace("give the lengths along x and y too", "give --size or --pixel too")
+        raise SceneError(text.replace("give the heights' too", "give --unit too")) from None
 
 
 def _report(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iterator[str]:
@@ -76,10 +81,9 @@ def _report(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iter
     heights = distribution(m.detrended("curvature"))
     (lx, ly), missing = m.size, found.missing
     yield f"# {clip(str(file), 80)}: {found.layout}"
-    yield (
-        f"# {lx * um:.4g} µm x {ly * um:.4g} µm; rms height {m.h_rms * um:.3g} µm, "
-        f"without curvature {heights.h_rms * um:.3g} µm"
-    )
+    a, b = m.pixel
+    yield f"# {lx * um:.4g} µm x {ly * um:.4g} µm, in pixels of {a * um:.4g} µm x {b * um:.4g} µm"
+    yield f"# rms height {m.h_rms * um:.3g} µm, without curvature {heights.h_rms * um:.3g} µm"
     if missing:
         share = 100 * missing / m.heights.size
         yield f"# {missing} pixels missing ({share:.2g} %), filled smoothly, which makes h_rms a little smaller"

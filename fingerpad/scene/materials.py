@@ -111,15 +111,16 @@ class Topography(Part):
     file: str
     """File of the height map: text, NumPy or an instrument's format; a relative path starts at the scene file."""
     unit: Literal["m", "cm", "mm", "um", "µm", "nm"] | None = None
-    """Unit of the heights. Text and NumPy files need a unit; files of instruments hold their own."""
+    """Unit of the heights. Text and NumPy files need a unit; most files of instruments hold their own."""
     size: tuple[Length, Length] | None = None
-    """Lengths of the map along x and y. A map without coordinates needs these lengths or those of a pixel."""
+    """Lengths of the map along x, from the first line of a matrix to the last, and y, along a line. A map without
+    coordinates needs these lengths or those of a pixel."""
     pixel: tuple[Length, Length] | None = None
     """Lengths of a pixel along x and y, in place of the map's lengths."""
     size_unit: Literal["m", "cm", "mm", "um", "µm", "nm"] | None = None
     """Unit of these lengths; by default the unit of the heights."""
     missing: str | None = None
-    """Mark of missing pixels, besides nan and empty places."""
+    """Mark of missing pixels in a text, besides nan and empty places, or in a NumPy file, a number there."""
 
     def roughness(self) -> dict[str, float]:
         """Return h_rms and wavelength (m) of the map.

@@ -15,6 +15,7 @@ from variational.roughness.missing import filled
 from variational.roughness.topography import HeightMap
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "micron": 1e-6, "nm": 1e-9, "pm": 1e-12}
+_HIGHEST = 1.0  # m, of what can be roughness
 _TEXT = (".txt", ".csv", ".tsv", ".dat", ".asc", ".xyz", ".prn")
 
 
@@ -27,6 +28,18 @@ class Found(NamedTuple):
     """Number of pixels that were missing."""
     layout: str
     """How the file is laid out, in words."""
+
+
+class _Read(NamedTuple):
+    """Content of a file as it is."""
+
+    heights: NDArray[np.float64]
+    """Shape (nx, ny), NaN where a pixel is missing."""
+    size: tuple[float, float] | None
+    """Lengths along x and y; None if the file has none."""
+    unit: str | None
+    """Of all of these, of :data:`UNITS`; None if the file has none."""
+    layout: str
 
 
 def read(path: str | Path, size: tuple[float, float] | None = None) -> HeightMap:
@@ -46,39 +59,55 @@ def scan(
 
     Args:
         path: ``.npy`` or text (``.txt``, ``.csv``, ``.tsv``, ``.dat``, ``.asc``, ``.xyz``, ``.prn``, see
-            :mod:`variational.roughness.heighttext`) with a matrix of heights, x along its rows' number, or with points
-            x, y, z; any other name is left to SurfaceTopography, and so are heights, lengths and their units.
-        size: lengths along x and y. A matrix needs them, or those of a pixel; another file has its own.
+            :mod:`variational.roughness.heighttext`) with a matrix of heights, of which each line has one x, or with
+            points x, y, z; any other name is left to SurfaceTopography, which mostly finds lengths and units too.
+        size: lengths along x, from the first line of a matrix to its last, and y, along a line. A matrix needs them,
+            or those of a pixel; most other files have their own.
         unit: of heights, of :data:`UNITS`; m if None.
         size_unit: of lengths along x and y; that of the heights if None.
-        missing: how a text marks a missing pixel, beside the usual ways.
+        missing: how a text marks a missing pixel, beside the usual ways; in ``.npy`` a number.
         pixel: lengths of a pixel along x and y, in place of ``size``.
 
     Raises:
-        ValueError: the file is no height map, ``size`` is missing or one too many, or a unit is not known.
+        ValueError: the file is no height map; ``size``, ``unit`` or ``missing`` is missing or one too many; the lengths
+            along x and y seem to be exchanged; or a unit is not known.
         ImportError: SurfaceTopography is needed and not installed.
         OSError: the file cannot be opened.
     """
     path = Path(path)
-    if not is_plain(path):
-        if size is not None or pixel is not None:
-            raise ValueError(f"{path} has its own size; give none")
-        if unit is not None or size_unit is not None:
-            raise ValueError(f"{path} has its own units; give none")
-        return _instrument(path)
-    height_factor = _factor(unit or "m")
-    factor = _factor(size_unit or unit or "m")
-    found = _array(path) if path.suffix.lower() == ".npy" else _text(path, missing)
+    found = _read(path, missing)
+    if found.unit is not None and (unit is not None or size_unit is not None):
+        raise ValueError(f"{path} has its own units; give none")
+    if found.unit is None and unit is None and not is_plain(path):
+        raise ValueError(f"{path} has no unit of its own; give the heights' too")
+    if found.size is not None and (size is not None or pixel is not None):
+        raise ValueError(f"{path} has its own size; give none")
+    if found.size is None and size is None and pixel is None:
+        raise ValueError(f"{path} holds heights alone; give the lengths along x and y too")
     if pixel is not None and size is not None:
         raise ValueError(f"{path}: size and pixel are given; give one of the two")
-    if pixel is not None and found.heights.ndim == 2:
-        size = (pixel[0] * found.heights.shape[0], pixel[1] * found.heights.shape[1])
-    if found.size is None and size is None:
-        raise ValueError(f"{path} holds heights alone; give the lengths along x and y too")
-    if found.size is not None and size is not None:
-        raise ValueError(f"{path} has its own size, by its points; give none")
-    lengths = found.size or size or (0.0, 0.0)
-    return _named(path, found.heights * height_factor, (lengths[0] * factor, lengths[1] * factor), found.layout)
+    shape = found.heights.shape
+    if size is not None and len(shape) == 2:
+        _refuse_exchanged(path, shape, size)
+    if pixel is not None and len(shape) == 2:
+        size = (pixel[0] * shape[0], pixel[1] * shape[1])
+    heights = found.heights * _factor(found.unit or unit or "m")
+    lengths, factor = found.size or size or (0.0, 0.0), _factor(found.unit or size_unit or unit or "m")
+    return _named(path, heights, (lengths[0] * factor, lengths[1] * factor), found.layout)
+
+
+def _refuse_exchanged(path: Path, shape: tuple[int, ...], size: tuple[float, float]) -> None:
+    """Refuse lengths of the two sides that are exchanged, by which square pixels become long ones.
+
+    Raises:
+        ValueError: they seem to be.
+    """
+    (nx, ny), (x, y) = shape, size
+    if not 0.98 < x * ny / (y * nx) < 1.02 and 0.99 < x * nx / (y * ny) < 1.01:
+        raise ValueError(
+            f"{path} has {nx} lines of {ny} heights, and x, along which there are {nx}, is {x:g} long and y {y:g}, so "
+            "that the pixels are not square; exchange the two lengths, or give those of a pixel"
+        )
 
 
 def is_plain(path: Path) -> bool:
@@ -93,6 +122,10 @@ def _factor(unit: str) -> float:
 
 
 def _named(path: Path, heights: NDArray[np.float64], size: tuple[float, float], layout: str) -> Found:
+    known = heights[np.isfinite(heights)]
+    over = float(np.ptp(known)) if known.size else 0.0
+    if over > _HIGHEST:
+        raise ValueError(f"{path} has heights over {over:.3g} m, at most {_HIGHEST:g} m is allowed; check their unit")
     try:
         missing = int(np.count_nonzero(~np.isfinite(heights)))
         return Found(HeightMap(filled(heights) if heights.ndim == 2 else heights, size), missing, layout)
@@ -100,12 +133,28 @@ def _named(path: Path, heights: NDArray[np.float64], size: tuple[float, float], 
         raise ValueError(f"{path}: {error}") from None
 
 
-def _array(path: Path) -> heighttext.Text:
+def _read(path: Path, missing: str | None) -> _Read:
+    """Return what is in a file, missing pixels as NaN."""
+    if not is_plain(path):
+        if missing is not None:
+            raise ValueError(f"{path} has its own mark of missing pixels; give none")
+        return _instrument(path)
+    if path.suffix.lower() == ".npy":
+        return _array(path, missing)
+    text = _text(path, missing)
+    return _Read(text.heights, text.size, None, text.layout)
+
+
+def _array(path: Path, missing: str | None) -> _Read:
     try:
-        heights = np.asarray(np.load(path, allow_pickle=False), dtype=float)
+        heights = np.array(np.load(path, allow_pickle=False), dtype=float)
     except (ValueError, TypeError, EOFError) as error:
         raise ValueError(f"{path} is no matrix of numbers: {error}") from None
-    return heighttext.Text(heights, None, f"matrix of {' x '.join(map(str, heights.shape))} pixels by NumPy")
+    if missing is not None:
+        if not heighttext.is_number(missing):
+            raise ValueError(f"missing is {missing[:30]!r}; {path} has numbers alone, so it must be one")
+        heights[heights == float(missing)] = np.nan
+    return _Read(heights, None, None, f"matrix of {' x '.join(map(str, heights.shape))} pixels by NumPy")
 
 
 def _text(path: Path, missing: str | None) -> heighttext.Text:
@@ -120,9 +169,9 @@ def _text(path: Path, missing: str | None) -> heighttext.Text:
         raise ValueError(f"{path} is {error}" if str(error).startswith("no ") else f"{path}: {error}") from None
 
 
-def _instrument(path: Path) -> Found:
+def _instrument(path: Path) -> _Read:
     try:
-        from SurfaceTopography import read_topography
+        from SurfaceTopography import open_topography
         from SurfaceTopography.Exceptions import ReadFileError
     except ImportError:
         raise ImportError(
@@ -132,11 +181,17 @@ def _instrument(path: Path) -> Found:
     if not path.is_file():
         raise FileNotFoundError(f"{path} is not there")
     try:
-        found = read_topography(str(path))
+        reader = open_topography(str(path))
+        channel = reader.default_channel
+        own = channel.physical_sizes is not None
+        found = reader.topography(**({} if own else {"physical_sizes": (1.0,) * channel.dim}))
     except ReadFileError:
         raise ValueError(f"{path} is no height map of a format that SurfaceTopography reads") from None
-    if found.dim != 2 or found.unit is None:
-        raise ValueError(f"{path} has {found.dim} dimensions and unit {found.unit}; a map has 2 and a unit of length")
-    found = found.to_unit("m")
+    if found.dim != 2:
+        raise ValueError(f"{path} has {found.dim} dimensions; a map has 2")
+    if found.unit is not None:
+        found = found.to_unit("m")
     heights = np.ma.filled(found.heights().astype(float), np.nan)
-    return _named(path, heights, found.physical_sizes, f"map of {' x '.join(map(str, heights.shape))} pixels")
+    size = (float(found.physical_sizes[0]), float(found.physical_sizes[1])) if own else None
+    layout = f"map of {' x '.join(map(str, heights.shape))} pixels"
+    return _Read(heights, size, None if found.unit is None else "m", layout)

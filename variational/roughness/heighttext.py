@@ -2,7 +2,8 @@
 
 Numbers are parted by semicolons, tabs, commas or spaces, with a decimal point or a decimal comma. Lines that start with
 ``#``, ``%`` or ``//`` and lines of words at the top are left out. A pixel is missing where the place is empty, or holds
-``nan``, ``na``, ``-``, ``--``, ``***``, ``bad`` or a mark that is given. Three columns are points of a regular grid.
+``nan``, ``na``, ``-``, ``--``, ``***``, ``bad`` or a mark that is given; a line of marks alone is a line of the map.
+Three columns are points of a regular grid.
 """
 
 import re
@@ -15,6 +16,7 @@ Array = NDArray[np.float64]
 _MISSING = {"", "nan", "na", "n/a", "-", "--", "***", "bad"}
 _COMMENT = ("#", "%", "//")
 _OFF = 0.02  # of a pixel, by which a point may lie beside the grid
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NAMES = {None: "spaces", ";": "semicolons", "\t": "tabs", ",": "commas"}
 
 
@@ -41,20 +43,27 @@ def parse(text: str, missing: str | None = None) -> Text:
     """
     lines = [(k, line) for k, line in enumerate(text.splitlines(), start=1) if line.strip()]
     lines = [(k, line) for k, line in lines if not line.lstrip().startswith(_COMMENT)]
-    first = next((k for k, (_, line) in enumerate(lines) if re.match(r"[\s;,]*[-+]?[.,]?\d", line)), None)
+    marks = _MISSING | ({_plain(missing, False), _plain(missing, True)} if missing is not None else set())
+    first = next((k for k, (_, line) in enumerate(lines) if _has_numbers(line, marks)), None)
     if first is None:
-        raise ValueError("no matrix of numbers: no line starts with one")
-    lines = lines[first:]
-    separator, comma = _separator([line for _, line in lines])
-    marks = _MISSING | ({missing.strip().lower()} if missing is not None else set())
+        raise ValueError("no matrix of numbers: no line of numbers")
+    separator, comma = _separator([line for _, line in lines[first:]])
+    above, lines = lines[:first], lines[first:]
     rows = [_row(k, line, separator, comma, marks) for k, line in lines]
-    if separator is not None and all(np.isnan(row[-1]) for row in rows):
-        rows = [row[:-1] for row in rows]  # a separator at the end of each line
+    for k, line in reversed(above):  # lines of the map in which all is missing, and lines of words
+        words = [_plain(word, comma) for word in line.split(separator)]
+        unknown = [word for word in words if word not in marks and not is_number(word)]
+        if len(words) == len(rows[0]) and not unknown:
+            lines, rows = [(k, line), *lines], [[np.nan] * len(words), *rows]
+        elif len(words) == len(rows[0]) > 3 and 2 * len(unknown) < len(words):
+            raise _unknown(k, unknown[0])
+    if separator is not None and all(line.rstrip(" ").endswith(separator) for _, line in lines):
+        rows = [row[:-1] for row in rows]
     for (k, _), row in zip(lines, rows, strict=True):
         if len(row) != len(rows[0]):
             raise ValueError(f"no matrix of numbers: line {k} has {len(row)} of them, the first one {len(rows[0])}")
     found = np.array(rows)
-    if missing is not None and re.fullmatch(r"[-+.\deE]+", missing.strip()):
+    if missing is not None and is_number(missing):
         found[found == float(missing)] = np.nan
     layout = f"separated by {_NAMES[separator]}{', decimal commas' if comma else ''}"
     if found.shape[1] == 3 and len(found) > 3:
@@ -92,17 +101,41 @@ def _row(number: int, line: str, separator: str | None, comma: bool, marks: set[
     """Return the numbers of a line."""
     values = []
     for word in line.split(separator):
-        text = word.strip().strip('"')
-        if text.lower() in marks:
-            values.append(np.nan)
-            continue
+        text = _plain(word, comma)
         try:
-            values.append(float(text.replace(",", ".") if comma else text))
+            values.append(np.nan if text in marks else float(text))
         except ValueError:
-            raise ValueError(
-                f"no matrix of numbers: line {number} has {text[:30]!r}; a mark of missing pixels must be given"
-            ) from None
+            raise _unknown(number, text) from None
     return values
+
+
+def _plain(word: str, comma: bool) -> str:
+    """Return a word without spaces and quotes around it, in small letters, with a decimal point for a comma."""
+    text = word.strip().strip('"').lower()
+    return text.replace(",", ".") if comma else text
+
+
+def _unknown(number: int, word: str) -> ValueError:
+    """Return the refusal of a word in a line."""
+    return ValueError(f"no matrix of numbers: line {number} has {word[:30]!r}; a mark of missing pixels must be given")
+
+
+def is_number(text: str) -> bool:
+    """Return whether a text is a number with a decimal point."""
+    return re.fullmatch(_NUMBER, text.strip()) is not None
+
+
+def is_mark(text: str) -> bool:
+    """Return whether a text is one of the usual marks of missing pixels."""
+    return text.strip().lower() in _MISSING
+
+
+def _has_numbers(line: str, marks: set[str]) -> bool:
+    """Return whether a line starts with a number, or has numbers and marks of missing pixels alone."""
+    words = [word.strip('"').lower() for word in re.split(r"[;,\s]+", line.strip())]
+    numbers = [bool(re.fullmatch(_NUMBER, word)) for word in words]
+    known = all(number or word in marks for number, word in zip(numbers, words, strict=True))
+    return (known and any(numbers)) or bool(re.match(r"[\s;,]*[-+]?[.,]?\d", line))
 
 
 def _grid(points: Array) -> tuple[Array, tuple[float, float]]:

@@ -1,14 +1,18 @@
 r"""Missing pixels of a height map, filled so that what is around them goes on smoothly.
 
-A missing height is the mean of its neighbours: the discrete Laplace equation, with the measured heights around as
-values on its boundary and no slope across the map's own edge. The filling is smoother than the surface: it takes away
-roughness that is finer than a hole, about in proportion to the part of the map that is missing.
+About the measured heights' mean, tilt and curvature, by least squares, a missing height is the mean of its neighbours:
+the discrete Laplace equation, with the measured heights around as values on its boundary and no slope across the map's
+own edge. Without the curvature a hole at an edge of a curved map would be filled flat, a step of which the spectrum
+makes roughness. The filling is smoother than the surface: it takes away roughness that is finer than a hole, about in
+proportion to the part of the map that is missing.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import spsolve
+
+from variational.roughness.topography import polynomials
 
 Array = NDArray[np.float64]
 MOST = 0.25  # of a map that may be missing
@@ -29,6 +33,8 @@ def filled(heights: Array) -> Array:
         return heights
     if count > MOST * heights.size:
         raise ValueError(f"{count} of {heights.size} heights are missing or infinite; at most a quarter may be")
+    trend = _trend(heights, ~lost)
+    rest = heights - trend
     number = np.full(heights.shape, -1)
     number[lost] = np.arange(count)
     rows, columns, values = [], [], []
@@ -36,7 +42,7 @@ def filled(heights: Array) -> Array:
     for axis in (0, 1):
         for side in (1, -1):
             here, there = (_shifted(heights.shape, axis, side, end) for end in (0, 1))
-            mine, other, z = number[here], number[there], heights[there]
+            mine, other, z = number[here], number[there], rest[there]
             inside = mine >= 0
             np.add.at(degree, mine[inside], 1.0)
             known = inside & (other < 0)
@@ -51,8 +57,15 @@ def filled(heights: Array) -> Array:
         shape=(count, count),
     ).tocsc()
     whole = heights.copy()
-    whole[lost] = spsolve(matrix, right)
+    whole[lost] = spsolve(matrix, right) + trend[lost]
     return whole
+
+
+def _trend(heights: Array, known: NDArray[np.bool_]) -> Array:
+    """Return mean, tilt and curvature of the known heights, everywhere."""
+    basis = polynomials(heights.shape, 2)
+    part = np.linalg.lstsq(basis[known.ravel()], heights[known], rcond=None)[0]
+    return np.asarray((basis @ part).reshape(heights.shape))
 
 
 def _shifted(shape: tuple[int, ...], axis: int, side: int, end: int) -> tuple[slice, slice]:

@@ -28,6 +28,7 @@ from variational.roughness.topography import HeightMap
 Array = NDArray[np.float64]
 Window = Literal["none", "hann"]
 _HURST = (0.01, 2.0)  # searched; above 1 a surface is not self-affine, which the fitted value shows
+_FLAT = 1e-12  # rms height over the largest height, at which what is left of a map is roundoff
 _SIGNIFICANT = 2.0  # gain in log-likelihood, two standard deviations, that tells a roll-off from none
 
 
@@ -114,7 +115,8 @@ class PowerSpectrum:
             q_range: least and greatest wavevector (1/m) of the modes that count.
 
         Raises:
-            ValueError: that range is narrower than a factor of 3, or the spectrum is zero there.
+            ValueError: that range is narrower than a factor of 3, the spectrum is zero there, or it rolls off at
+                shorter wavelengths than that range can show.
         """
         low, high = self.q_range if q_range is None else q_range
         if not 0 < 3 * low <= high:
@@ -146,6 +148,11 @@ class PowerSpectrum:
         ln_q_0 = float(minimize_scalar(lambda v: best(v)[0], bounds=ends, method="bounded").x)
         # q and -q are one mode.
         resolved = (best(0.0)[0] - best(ln_q_0)[0]) * modes.sum() / 2 > _SIGNIFICANT
+        if resolved and lowest == len(scan) - 1:
+            raise ValueError(
+                f"the spectrum rolls off at a wavelength of {4 * np.pi / high:.3g} m or less, which pixels of "
+                f"{np.pi / high / 2:.3g} m do not resolve; measure with smaller pixels, or smooth the map"
+            )
         if not resolved:
             ln_q_0 = 0.0
         _, hurst = best(ln_q_0)
@@ -187,9 +194,14 @@ def roughness_table(*spots: HeightMap) -> dict[str, float]:
 
     Args:
         spots: height maps of the same shape and size, 100 um x 100 um in the paper.
+
+    Raises:
+        ValueError: flat maps, or pixels too large for the roughness.
     """
     flat = [spot.detrended("curvature") for spot in spots]
     spectrum = power_spectrum(*flat, window="hann")
     h_rms = float(np.sqrt(np.mean([m.h_rms**2 for m in flat])))
+    if h_rms <= _FLAT * max(float(np.abs(spot.heights).max()) for spot in spots):
+        raise ValueError("without its curvature the map is flat; there is no roughness to describe")
     fit = spectrum.fit()
     return {"h_rms": h_rms, "wavelength": fit.wavelength if fit.resolved else min(spectrum.size)}
