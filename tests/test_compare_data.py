@@ -131,6 +131,21 @@ def test_ours_is_the_sweep(folder):
     assert np.isnan(found.at(np.array([10.0, 25.0]), np.array([100.0, 201.0]))).all()
 
 
+def test_sign_of_a_voltage_does_not_count(folder, tmp_path):
+    """A sweep over both signs is the one over one of them, between its points too."""
+    sweep(Scene(), tmp_path, model="cylinders", voltage=[-200, -100, 0, 100, 200], f_ext=[25, 75])
+    at = np.array([30.0, 50.0, 75.0]), np.array([150.0, -30.0, -200.0])
+    np.testing.assert_allclose(known(tmp_path).at(*at), known(folder).at(at[0], abs(at[1])), rtol=1e-12)
+
+
+def test_failed_run_leaves_the_uncharged_state_of_another(folder, tmp_path):
+    """All voltages of a force have the same uncharged state; here the last run has none."""
+    table = tmp_path / "table.csv"
+    table.write_text("f_ext,voltage,uncharged_contact_length,failure\n25,0,1e-3,\n25,100,1e-3,\n25,200,,lost\n")
+    asked = Measured(ROOT / "x.csv", "X", "uncharged", "contact length", {}, (1e-3,), (np.nan,))
+    assert ours.ours(ours.read([tmp_path], sweep=True), asked).at(np.array([25.0]), np.array([0.0]))[0] == 1e-3
+
+
 def test_missing_points_are_not_compared(folder):
     """A failed run leaves its neighbours as they are."""
     found = known(folder)
@@ -229,6 +244,7 @@ def test_folders_are_told_apart(folder, table, tmp_path, capsys):
     assert "its folder is not there" in refused(capsys, "compare-data", file, "--run", "x", "--out", "none/x.png")
     other = tmp_path / "other"
     sweep(Scene(), other, model="cylinders", voltage=[0, 100])
+    (other / "sweep.json").unlink()  # as an earlier version left it
     assert "does not give its force" in refused(capsys, "compare-data", file, "--sweep", str(other))
     sweep(Scene(), other, model="cylinders", friction=[0.2, 0.3])
     assert "is over friction, which no measurement has" in refused(capsys, "compare-data", file, "--sweep", str(other))

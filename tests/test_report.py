@@ -15,7 +15,7 @@ import pytest
 from fingerpad.cli import main
 from fingerpad.cli import sweep as cli_sweep
 from fingerpad.io.result import Result
-from fingerpad.report import parameters, run_page, trust
+from fingerpad.report import parameters, run_page, source, trust
 from fingerpad.report.write import NAME, write
 from fingerpad.runs.solve import solved
 from fingerpad.runs.sweep import sweep
@@ -299,12 +299,12 @@ def data(page: str) -> dict:
 def test_files_of_an_earlier_sweep_do_not_stay_beside_a_new_table(tmp_path, monkeypatch, capsys):
     """Where the new dataset and report are not written; the command names the files that are there."""
     words = ["sweep", "--model", "cylinders", "--over", "voltage=0,100", "--out", str(tmp_path)]
-    assert main(words) == 0 and "sweep.nc, report.html" in capsys.readouterr().out
+    assert main(words) == 0 and "sweep.nc, report.html, sweep.json" in capsys.readouterr().out
     monkeypatch.setattr("fingerpad.runs.sweep.attempt", lambda folder: None)
     monkeypatch.setattr("fingerpad.runs.sweep_dataset.save", lambda sweep: "sweep.nc is missing: no room")
     assert main(words) == 0
     assert not (tmp_path / "sweep.nc").exists() and not (tmp_path / "report.html").exists()
-    assert capsys.readouterr().out.strip().endswith("table.csv")
+    assert capsys.readouterr().out.strip().endswith("table.csv, sweep.json")
 
 
 def test_options_are_quoted_for_a_shell():
@@ -331,14 +331,35 @@ def test_sweep_is_reproduced_by_what_its_report_says(tmp_path, axes):
     """The values as they were, with an accuracy, three of whose keys are empty."""
     scene = Scene.model_validate({"accuracy": {"mu_app": 0.01}})
     found = sweep(scene, tmp_path, model="cylinders", **axes)
-    kept = tmp_path / "full" / "0" / "asked.json"  # as runs leave it
-    kept.parent.mkdir(parents=True)
-    kept.write_text(json.dumps(scene.parameters()), encoding="utf-8")
     code = html.unescape(re.search(r"<pre><code>(.*?)</code>", write(tmp_path).read_text("utf-8"), re.DOTALL)[1])
     *study, command = code.splitlines()
     (tmp_path / "study.toml").write_text("\n".join(study), encoding="utf-8")
     words = shlex.split(command)
+    assert words[words.index("--model") + 1] == "cylinders"
     given = {name: [word for flag, word in itertools.pairwise(words) if flag == name] for name in ("--set", "--over")}
     data, along = cli_sweep.study(tmp_path / "study.toml" if study else None, given["--set"], given["--over"])
     assert from_data(data).parameters() == scene.parameters()
     assert {key: tuple(values) for key, values in along.items()} == found.axes
+
+
+def test_sweep_is_reported_with_its_own_scene(tmp_path):
+    """In a folder of several studies: the last one's, whatever runs of others are there."""
+    other = tmp_path / "full" / "0" / "asked.json"
+    other.parent.mkdir(parents=True)
+    other.write_text(json.dumps(Scene(f_ext=4.0).parameters()), encoding="utf-8")
+    sweep(Scene(f_ext=20.0, friction=0.4), tmp_path, model="cylinders", voltage=[0, 100])
+    assert source.read(tmp_path).parameters["f_ext"] == 20
+    page = html.unescape(write(tmp_path).read_text("utf-8"))
+    command = "fingerpad sweep --set f_ext=20.0 --set friction=0.4 --model cylinders --over voltage=0.0,100.0"
+    assert command in page
+
+
+def test_sweep_of_an_earlier_version_has_no_scene(tmp_path):
+    """And the page says so."""
+    sweep(Scene(), tmp_path, model="cylinders", voltage=[0, 100])
+    (tmp_path / "sweep.json").unlink()
+    page = html.unescape(write(tmp_path).read_text("utf-8"))
+    assert "has no sweep.json" in page and "Scene and model of the sweep are not in this line" in page
+    (tmp_path / "sweep.json").write_text("[]")
+    with pytest.raises(SceneError, match=r"sweep.json in .* cannot be read"):
+        source.read(tmp_path)

@@ -23,7 +23,7 @@ _NEAR = 1e-6  # relative, of conditions that count as the same
 
 
 class Curve(NamedTuple):
-    """A quantity of ours over the force at a voltage (V); SI units."""
+    """A quantity of ours over the force at a voltage (V), whose sign changes no force; SI units."""
 
     voltage: float
     force: Array
@@ -53,6 +53,7 @@ class Ours:
         """Return ours at pairs of force and voltage; NaN outside of ours.
 
         Between two forces ours is taken as linear, between two voltages as linear in U², as which attraction rises.
+        The sign of a voltage does not count.
         """
         found = []
         for f, u in zip(force, voltage, strict=True):
@@ -106,7 +107,7 @@ def _section(found: Result, table: Measured) -> Iterator[tuple[tuple[float, floa
     """Yield force and voltage of each state of the cross-section, and the value there."""
     for state in _states(found, table.state):
         yield (
-            (state.f_ext, state.voltage),
+            (state.f_ext, abs(state.voltage)),
             -state.bone_height if table.key == "depth" else float(getattr(state, table.key)),
         )
 
@@ -122,7 +123,7 @@ def _whole(found: Result, table: Measured) -> Iterator[tuple[tuple[float, float]
             f"the run has no newtons, which {_name(table)} has; run a scene of press, charge and slide again"
         )
     if table.state in found.finger.states:
-        voltage = 0.0 if table.state == "uncharged" else found.named[table.state].voltage
+        voltage = 0.0 if table.state == "uncharged" else abs(found.named[table.state].voltage)
         yield (found.finger.f_ext, voltage), found.finger.values(table.state)[table.key]
 
 
@@ -156,13 +157,13 @@ def _of_sweep(found: Table, table: Measured) -> Ours:
             f"the sweep in {clip(str(found.folder), 80)} does not give its {unknown[0]}; "
             "give one over f_ext and voltage"
         )
-    points = {}
+    points = dict[tuple[float, float], float]()
     try:
         for row in found.rows:
             force, voltage = (float(row[key] if key in found.axes else fixed[key]) for key in CONDITIONS)
-            points[force, 0.0 if table.state == "uncharged" else voltage] = (
-                float(row[column]) if row[column] else np.nan
-            )
+            at = force, 0.0 if table.state == "uncharged" else abs(voltage)
+            if row[column] or at not in points:  # else another run has it, at another voltage or sign of it
+                points[at] = float(row[column] or "nan")
     except (ValueError, KeyError, TypeError) as error:
         raise SceneError(f"the table of the sweep in {clip(str(found.folder), 80)} cannot be read: {error}") from None
     return _curves(points, table)

@@ -25,7 +25,8 @@ class Table:
     """Keys that are varied."""
     rows: tuple[dict[str, str], ...]
     parameters: dict[str, Any] | None
-    """Every parameter of one of its runs; None where none is in the folder."""
+    """Every parameter of the scene that it varies; None of a sweep by an earlier version, whose folder has none."""
+    model: str = "full"
 
 
 def read(folder: Path) -> Result | Table:
@@ -108,16 +109,10 @@ def _sweep(folder: Path) -> Table:
     whole = [row for row in rows if None not in row and None not in row.values()]
     if len(whole) < len(rows):
         raise SceneError(f"table.csv in {name} is cut short; give the command of the sweep again to write it anew")
-    return Table(folder, axes, rows, _parameters(folder))
-
-
-def _parameters(folder: Path) -> dict[str, Any] | None:
-    for model in _MODELS:
-        for file in sorted((folder / model).glob("*/asked.json")):
-            try:
-                found = json.loads(file.read_text(encoding="utf-8"))
-            except (OSError, ValueError):
-                continue
-            if isinstance(found, dict):
-                return found
-    return None
+    try:
+        asked = dict(json.loads((folder / "sweep.json").read_text(encoding="utf-8")))
+        return Table(folder, axes, rows, dict(asked["parameters"]), str(asked["model"]))
+    except FileNotFoundError:
+        return Table(folder, axes, rows, None)
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise SceneError(f"sweep.json in {name} cannot be read: {error}") from None

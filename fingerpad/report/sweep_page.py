@@ -97,7 +97,7 @@ def _failed(table: Table) -> str:
 
 def _parameters(table: Table) -> str:
     if table.parameters is None:
-        words = "The folder holds no scene: a closed form leaves its table alone. Its command has the parameters."
+        words = "The folder has no sweep.json, and so no scene: an earlier version of fingerpad wrote it."
         return html.section("parameters", "Parameters", html.paragraph(words))
     return html.section("parameters", "Parameters", parameters.all_of(table.parameters, table.axes))
 
@@ -106,6 +106,7 @@ def _cite(table: Table) -> str:
     given = {} if table.parameters is None else parameters.changed(table.parameters)
     kept = {key: value for key, value in given.items() if not (key in table.axes or "[" in key or value is None)}
     options = [parameters.option_of(key, value) for key, value in kept.items()]
+    options += [f"--model {table.model}"] if table.model != "full" else []
     values = {key: list(dict.fromkeys(row[key] for row in table.rows)) for key in table.axes}
     if all(_read(value) is not None for each in values.values() for value in each):
         over = [parameters.option_of(key, ",".join(each), "--over") for key, each in values.items()]
@@ -114,7 +115,11 @@ def _cite(table: Table) -> str:
         lines = [f"{parameters.toml(key)} = [{', '.join(map(_toml, each))}]" for key, each in values.items()]
         command = " ".join(["fingerpad sweep study.toml", *options, "--out results/again"])
         code = "\n".join(["# study.toml", "[sweep]", *lines, "", "# the command", command])
-    note = "Loads of its own in a scene file and a cheaper model are not in this line." if table.parameters else ""
+    note = ""
+    if table.parameters is None:
+        note = "Scene and model of the sweep are not in this line, since the folder does not have them."
+    elif any("[" in key and key not in table.axes for key in given):
+        note = "Loads of its own, and other lists of the scene, are not in this line."
     return html.section(
         "reproduce", "How to reproduce and cite", f"<pre><code>{html.text(code)}</code></pre>",
         html.paragraph(note, "note") if note else "", parameters.cite(),

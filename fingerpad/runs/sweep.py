@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.io import terminal
-from fingerpad.io.files import replace
+from fingerpad.io.files import replace, replace_json
 from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import PREFIXES, STATES
@@ -29,7 +29,7 @@ from variational.state import CONDITIONS, RESULTS
 if TYPE_CHECKING:
     import xarray
 
-FILES = ("table.csv", sweep_dataset.FILE, "report.html")
+FILES = ("table.csv", sweep_dataset.FILE, "report.html", "sweep.json")
 """What a sweep writes into its folder beside its points."""
 _MOST = 10_000  # points
 _LIMIT = 4 * 3600.0  # s of processor time for one point
@@ -193,6 +193,7 @@ def sweep(
     done = Sweep(values, tuple(found), folder)
     for name in FILES[1:]:  # else that of an earlier sweep may stay beside this one's table
         (folder / name).unlink(missing_ok=True)
+    replace_json(folder / FILES[-1], {"model": model, "parameters": scene.parameters()})
     done.to_csv(folder / FILES[0])
     missing = sweep_dataset.save(done)
     attempt(folder)
