@@ -333,7 +333,7 @@ def test_world_is_the_default(monkeypatch):
     """Without a communicator a run is of all ranks."""
     seen = []
 
-    def run(scene, out, comm, lines, bar, resume):
+    def run(scene, out, comm, lines, bar, resume, asked):
         seen.append(comm)
         return fp.Result(scene, "full", None, None, None)
 

@@ -1,12 +1,16 @@
 """Newtons from runs: at the end of a run for nothing, from traces of the full model, and full slip by two paths."""
 
+import html
+import signal
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.report import run_page
+from fingerpad.io.place import full_scene
+from fingerpad.model.simulation import Simulation
+from fingerpad.report import parameters, run_page
 from fingerpad.runs import solve
 from fingerpad.scene import SceneError
 from fingerpad.slices import traces
@@ -62,27 +66,68 @@ def test_full_slip_by_two_paths(traced):
         assert getattr(direct, name) == pytest.approx(getattr(end, name), rel=1e-5)
 
 
-def test_trace_that_was_too_short_is_made_again(tmp_path, monkeypatch):
-    """Its folder has a number; the same command once more takes the same folders.
+@pytest.mark.parametrize(("constant", "factor"), [("_POINT", 2), ("_MARGIN", 0.55)])
+def test_trace_that_was_too_short_is_made_again(tmp_path, monkeypatch, constant, factor):
+    """A first one, where the first guess of the largest force is too low, or the last one; with the same command, too.
 
-    The first guess of the largest force is too low.
+    Longer ones take the folders of shorter ones, which the last one shares with the result.
     """
-    monkeypatch.setattr(traces, "_POINT", 2 * traces._POINT)
-    found = []
+    monkeypatch.setattr(traces, constant, factor * getattr(traces, constant))
+    found, scene, out = [], small(**SMALL), tmp_path / "out"
     with no_pictures():
         for _ in range(2):
-            found.append(fp.run(small(**SMALL), force=FORCE, out=tmp_path / "out"))
-    assert {"uncharged", "uncharged_2", "charged"} <= {path.name for path in (tmp_path / "out").iterdir()}
+            found.append(fp.run(scene, force=FORCE, out=out))
+    assert {path.name for path in out.iterdir() if path.is_dir()} >= {"uncharged", "charged"}
     assert [each.finger.states["full_slip"].totals["f_ext"] for each in found] == pytest.approx(2 * [FORCE], rel=1e-9)
+    assert fp.Result.load(out).scene == found[-1].scene
+    for other in ({"force": 1.1 * FORCE}, {}):
+        with pytest.raises(SceneError, match="holds the results of another scene"):
+            fp.run(scene, out=out, **other)
 
 
-def test_last_trace_that_was_too_short_makes_way(tmp_path, monkeypatch):
-    """It has the folder of the result itself, where the longer one takes its place."""
-    monkeypatch.setattr(traces, "_MARGIN", 0.6)
+@pytest.mark.parametrize(("last", "kept"), [(False, {"uncharged"}), (True, {"uncharged", "charged", "."})])
+def test_force_that_was_interrupted(tmp_path, last, kept):
+    """Ends as other runs do, whichever trace it was in; its folder is no run that can go on, but the command can."""
+    scene, out, before = small(**SMALL), tmp_path / "out", Simulation._accepted
+
+    def accepted(self, *given):
+        if not last or self._model.loads[-1].name == "hold":
+            signal.raise_signal(signal.SIGTERM)
+        return before(self, *given)
+
+    with no_pictures(), pytest.MonkeyPatch.context() as patch, pytest.raises(SystemExit) as stop:
+        patch.setattr(Simulation, "_accepted", accepted)
+        fp.run(scene, force=FORCE, out=out)
+    assert stop.value.code == 143
+    assert stop.value.result.finger is None
+    words = "full slip" if last else "uncharged normal contact"
+    assert stop.value.result.failure.startswith("stopped by SIGTERM after step 1 of the trace of " + words)
+    assert {str(path.parent.relative_to(out)) for path in out.rglob("scene.json")} == kept
+    with pytest.raises(SceneError, match="has a trace of 0.002 N on the whole finger" if last else "has no scene.json"):
+        full_scene(out)
     with no_pictures():
-        found = fp.run(small(**SMALL), force=FORCE, out=tmp_path / "out")
-    assert found.finger.states["full_slip"].totals["f_ext"] == pytest.approx(FORCE, rel=1e-9)
-    assert fp.Result.load(tmp_path / "out").scene == found.scene
+        assert fp.run(scene, force=FORCE, out=out).finger
+
+
+def test_report_of_a_force_repeats_it(traced):
+    """With the force that was given and the scene's own keys; so does a scene whose keys are lists."""
+    page = html.unescape(run_page.page(traced))
+    assert "0.002 N on the whole finger, from traces of the cross-section." in page
+    command = page.partition("<code>fingerpad run ")[2].partition("</code>")[0]
+    assert command.endswith("--force '0.002 N' --out results/again") and "f_ext=" not in command
+    asked = {"force": 0.5, "parameters": fp.Scene(geometry={"ridge_profile": [1.0, -0.1]}).parameters()}
+    code = html.unescape(parameters.again({}, "full", asked))
+    assert 'from_kept(json.load(open("summary.json"))["asked"]["parameters"])' in code and "force=0.5, out=" in code
+
+
+def test_section_at_the_centre_is_on_its_scale():
+    """Slices half as large as the cross-section bear half of its force; friction is that of the deepest slice."""
+    scene = fp.Scene(slices={"z": [-12e-3, 12e-3], "width": [0.5, 0.5]})
+    found = fp.run(scene, model="cylinders", force=0.125)
+    slip = found.finger.states["full_slip"]
+    assert found.full_slip.f_ext == pytest.approx(2 * slip.centre, rel=1e-9)
+    at = slip.depth.argmax()
+    assert found.full_slip.mu_app == pytest.approx(slip.columns["f_t"][at] / slip.columns["f_ext"][at], rel=0.02)
 
 
 def test_points_of_the_traces_are_of_one_kind():

@@ -75,7 +75,7 @@ def main(argv: Sequence[str]) -> int:
     if args.quiet or args.model != "full":
         echo(str(result))
     elif args.force is not None:
-        echo(f"\n{result.finger}")
+        echo(f"\n{result.finger or result.failure}")
     _say_report(args)
     return exit_code(result)
 

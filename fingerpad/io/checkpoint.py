@@ -60,8 +60,8 @@ class Checkpoint:
         """
         results = f"{str(self._results)[-80:]}"
         if self.count() == 0:
-            finished = (self._results / "summary.json").exists()
-            why = "its run has reached its end" if finished else "its run had not come to one; run it again with --out"
+            why = "its run had not come to one; run again with --out"
+            why = "its run has reached its end" if self._ended() else why
             raise CheckpointError(f"{results} has no checkpoint to go on from: {why}")
         file = self._folder / "head.json"
         try:
@@ -84,6 +84,14 @@ class Checkpoint:
                 raise CheckpointError(
                     f"{self._part(number)} is not whole; delete it, and those after it, to go on from what is before it"
                 )
+
+    def _ended(self) -> bool:
+        """Return whether the run has written its results, and was not stopped before."""
+        try:
+            summary = json.loads((self._results / "summary.json").read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return False
+        return not summary.get("interrupted")
 
     def read(self, number: int) -> tuple[Any, Arrays]:
         """Return the JSON and the arrays of a part."""

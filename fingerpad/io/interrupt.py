@@ -34,12 +34,9 @@ class Interrupted(StepFailed):
         signal: the signal.
     """
 
-    def __init__(self, number: signal.Signals, step: int) -> None:
-        """Name the signal and what is kept after a step."""
-        super().__init__(
-            f"stopped by {number.name} after step {step}; every accepted step is in the folder of results, and "
-            "fingerpad run --resume FOLDER goes on from there"
-        )
+    def __init__(self, number: signal.Signals, step: int, kept: str) -> None:
+        """Name the signal, the step, and what is kept of the run."""
+        super().__init__("; ".join(filter(None, (f"stopped by {number.name} after step {step}", kept))))
         self.signal = number
 
 
@@ -82,15 +79,19 @@ class Interrupt:
         for number, handler in self._before.items():
             signal.signal(number, handler)
 
-    def stop_if_asked(self, step: int) -> None:
+    def stop_if_asked(self, step: int, kept: str = "") -> None:
         """Stop after an accepted step; collective.
+
+        Args:
+            step: its number.
+            kept: what is kept of the run, and how it goes on, in words.
 
         Raises:
             Interrupted: a signal came.
         """
         number = int(self._comm.allreduce(self._signal, op=MPI.MAX))
         if number:
-            raise Interrupted(signal.Signals(number), step)
+            raise Interrupted(signal.Signals(number), step, kept)
 
 
 def _leave_terminal() -> None:

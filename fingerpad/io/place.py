@@ -38,8 +38,10 @@ LEFT = (
         "result.nc.part",
     ),
     *("displacement.bp", "stress.bp", "sed.bp", "finger_*.npz", "finger_*.png", "surface*.npz", "surface*.png"),
-    *("history.png", "report.html", "report.html.part"),
+    *("history.png", "time.png", "footprint.png", "report.html", "report.html.part"),
 )
+TRACE = "trace"
+"""Key of ``scene.json`` where the scene is a trace of a force on the whole finger."""
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP)  # some network file systems
 
 
@@ -68,7 +70,12 @@ class Place:
     """
 
     def __init__(
-        self, folder: Path, parameters: Mapping[str, Any], comm: "MPI.Comm | Serial", model: str = "full"
+        self,
+        folder: Path,
+        parameters: Mapping[str, Any],
+        comm: "MPI.Comm | Serial",
+        model: str = "full",
+        asked: Mapping[str, Any] | None = None,
     ) -> None:
         """Choose a folder; nothing is touched before :meth:`take`, except that the folder is made.
 
@@ -77,11 +84,15 @@ class Place:
             parameters: of the scene that they are of.
             comm: communicator of the run.
             model: whose results they are, see :data:`fingerpad.runs.solve.MODELS`.
+            asked: of which the scene is a trace, if it is one: ``force`` (N) on the whole finger and ``parameters`` of
+                the scene that was given. A trace makes way for another one to a larger force.
         """
         self.folder, self._comm = folder, comm
         self._parameters = json.loads(json.dumps(parameters))  # as they are read back
         if model != "full":
             self._parameters["model"] = model
+        if asked is not None:
+            self._parameters[TRACE] = json.loads(json.dumps(asked))
         self._lock: TextIO | None = None
 
     def __enter__(self) -> "Place":
@@ -120,7 +131,8 @@ class Place:
             if error.errno not in _NO_LOCKS:
                 raise
         kept = self._kept()
-        if kept is not None and kept != self._parameters:
+        same = kept is not None and kept.get(TRACE, "") == self._parameters.get(TRACE)
+        if kept is not None and kept != self._parameters and not same:
             raise PlaceError(
                 f"{_short(self.folder)} holds the results of another scene ({difference(kept, self._parameters)}); "
                 "choose another folder, or delete the folder"
@@ -145,12 +157,6 @@ class Place:
         self._comm.barrier()
 
 
-def forget(folder: Path) -> None:
-    """Let a folder be that of another scene; the next run there deletes what this leaves of the last one."""
-    for name in ("scene.json", "summary.json", "steps.csv"):
-        (folder / name).unlink(missing_ok=True)
-
-
 def full_scene(folder: Path) -> Scene:
     """Return the scene whose full run is in a folder.
 
@@ -162,6 +168,11 @@ def full_scene(folder: Path) -> Scene:
         kept = dict(json.loads((folder / "scene.json").read_text(encoding="utf-8")))
     except (OSError, ValueError):
         raise PlaceError(f"{_short(folder)} has no scene.json, and so no run to go on with") from None
+    if TRACE in kept:
+        raise PlaceError(
+            f"{_short(folder)} has a trace of {kept[TRACE]['force']:g} N on the whole finger, which is one part of the "
+            "answer; give the command with --force again"
+        )
     if "model" in kept:
         raise PlaceError(f"{_short(folder)} has a run of the model {kept['model']!r}; only a full one can go on")
     if kept.get("laws", {}).keys() - {"mesh"}:

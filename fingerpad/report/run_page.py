@@ -105,10 +105,13 @@ def _asked(result: Result) -> str:
         words += ["ends at full slip"] if load.until_full_slip else []
         reached = [end for end in result.loads if end.name == load.name]
         rows.append((load.name, ", ".join(words), _cell(reached)))
+    intro, whole = "A fingertip on a charged screen, loaded in this order:", result.record.get("asked")
+    if whole:
+        intro = f"{whole['force']:.4g} N on the whole finger, from traces of the cross-section. Loads of this one:"
     return html.section(
         "asked",
         "What was asked",
-        html.paragraph("A fingertip on a charged screen, loaded in this order:"),
+        html.paragraph(intro),
         html.table(("load", "change", "state at its end"), rows),
         html.paragraph(PER_LENGTH, "note"),
     )
@@ -292,7 +295,7 @@ def _reproduce(result: Result) -> str:
     return html.section(
         "reproduce",
         "How to reproduce and cite",
-        parameters.again(_parameters(result), result.model, ""),
+        parameters.again(_parameters(result), result.model, result.record.get("asked")),
         html.folded("Versions", html.table(("program", "version"), rows)) if rows else "",
         parameters.cite(),
     )

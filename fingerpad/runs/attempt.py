@@ -73,7 +73,17 @@ class Attempt:
             self._recorder.record(step)
         if self._journal is not None:
             self._journal.accepted(self._clock.present())
-        self._interrupt.stop_if_asked(step.state.step)
+        self._interrupt.stop_if_asked(step.state.step, self._kept())
+
+    def _kept(self) -> str:
+        """Return what is kept of a run that is stopped, and how it goes on, in words."""
+        if self._writer.folder is None:
+            return ""
+        steps = "every accepted step is in the folder of results"
+        if self._journal is None:
+            return steps
+        resumes = "fingerpad run --resume FOLDER goes on from there"
+        return f"{steps}, and {resumes if self._journal.parts else 'the same command starts again'}"
 
     def _on_load(self) -> None:
         self.report.load_reached()
@@ -82,7 +92,7 @@ class Attempt:
 
     def _before_solve(self) -> None:
         """Stop if asked to, or tell how far the error estimate is."""
-        self._interrupt.stop_if_asked(self.simulation.finger.continuation.steps)
+        self._interrupt.stop_if_asked(self.simulation.finger.continuation.steps, self._kept())
         self._solves += 1
         assert self._refinement is not None
         if self._model.asked:  # until it is met

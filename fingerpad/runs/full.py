@@ -2,8 +2,10 @@
 
 import json
 import signal
+from collections.abc import Mapping
 from contextlib import nullcontext
 from pathlib import Path
+from typing import Any
 
 import fingerpad.started  # noqa: F401
 from fingerpad.io import petsc_options
@@ -30,7 +32,13 @@ from variational import jit
 
 
 def run(
-    scene: Scene, folder: Path | None, comm: MPI.Comm, lines: bool = True, bar: bool = True, resume: bool = False
+    scene: Scene,
+    folder: Path | None,
+    comm: MPI.Comm,
+    lines: bool = True,
+    bar: bool = True,
+    resume: bool = False,
+    asked: Mapping[str, Any] | None = None,
 ) -> Result:
     """Reach every load of a scene; refine where it asks for an accuracy; collective.
 
@@ -46,6 +54,7 @@ def run(
         lines: whether to print the steps.
         bar: whether to show the progress bar.
         resume: go on from the checkpoint in the folder.
+        asked: of which the scene is a trace, see :class:`fingerpad.io.place.Place`; a trace has no checkpoint.
 
     Returns:
         The result, the same on every rank. It has a ``failure`` if a load or an accuracy could not be reached; every
@@ -63,8 +72,10 @@ def run(
     petsc_options.check()
     console = Console(comm, lines, bar)
     try:
-        with nullcontext() if folder is None else Place(folder, scene.parameters(), comm) as place:
-            journal = None if place is None else Journal(comm, _checkpoint(scene, place.folder), resume)
+        with nullcontext() if folder is None else Place(folder, scene.parameters(), comm, asked=asked) as place:
+            journal = None
+            if place is not None and asked is None:
+                journal = Journal(comm, _checkpoint(scene, place.folder), resume)
             return _run(scene, Writer(place, comm), comm, console, journal)
     except GeometryError as error:
         what = "the finger cannot be meshed" if scene.laws.mesh is None else "mesh"

@@ -7,12 +7,12 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fingerpad.installed import needed_by
 from fingerpad.io import dataset, terminal
 from fingerpad.io.files import replace_json
-from fingerpad.io.place import Place, Serial, forget
+from fingerpad.io.place import Place, Serial
 from fingerpad.io.result import Result
 from fingerpad.model.check import check
 from fingerpad.scene import Scene, SceneError
@@ -50,7 +50,8 @@ def run(
             one ridge (seconds, half a minute the first time); ``"cylinders"``, a closed form (at once).
         force: external force on the whole finger, in N or as a text such as ``"0.5 N"``, in place of the scene's
             ``f_ext``. The result's ``finger`` is then summed over traces of the model (:mod:`fingerpad.slices.traces`),
-            three runs of the full one. The other states of the result are at the end of the last trace.
+            three runs of the full one. The other states of the result are at the end of the full model's last trace,
+            and of the other models at the force on the centre.
         closure: microscale model in place of the bearing area model, see :mod:`variational.roughness.closure`.
         materials: materials by layer (``{"dermis": NeoHooke(2.5e3)}``), see :mod:`variational.materials.material`.
         friction: friction law, see :mod:`variational.contact.friction`.
@@ -120,7 +121,8 @@ def solved(
         result = _solved(scene, model, out, comm, lines, bar, resume)
     else:
         result = _whole(scene, force, model, out, comm, lines, bar)
-    if report and out is not None and (terminal.rank() if comm is None else comm.rank) == 0:
+    whole = not (result.interrupted and force is not None)  # a force without all of its traces is no result
+    if report and whole and out is not None and (terminal.rank() if comm is None else comm.rank) == 0:
         from fingerpad.report.write import attempt, draw_footprint
 
         draw_footprint(result)
@@ -129,7 +131,14 @@ def solved(
 
 
 def _solved(
-    scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool, bar: bool, resume: bool
+    scene: Scene,
+    model: str,
+    out: Path | None,
+    comm: "MPI.Comm | None",
+    lines: bool,
+    bar: bool,
+    resume: bool = False,
+    asked: Mapping[str, Any] | None = None,
 ) -> Result:
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
@@ -139,7 +148,7 @@ def _solved(
         found = cylinders.solve(scene)
         return kept(found, out, Serial()) if terminal.rank() == 0 else found
     with needed_by(f"the model {model!r}"):
-        return _with_finite_elements(scene, model, out, comm, lines, bar, resume)
+        return _with_finite_elements(scene, model, out, comm, lines, bar, resume, asked)
 
 
 def _whole(
@@ -149,17 +158,18 @@ def _whole(
     from fingerpad.slices import traces
 
     value, own = traces.newtons(force), out if model == "full" else None
-    rank, made = terminal.rank() if comm is None else comm.rank, set[str]()
+    rank = terminal.rank() if comm is None else comm.rank
+    asked = {"force": value, "parameters": scene.parameters()}
 
     def solve(each: Scene, name: str) -> Result:
         shown = model == "full"  # the others have many scenes of seconds
         folder = traces.folder_of(own, name)
-        if folder is not None and name in made and rank == 0:  # a trace that was too short makes way for a longer one
-            forget(folder)
-        made.add(name)
-        return _solved(each, model, folder, comm, lines and shown, bar and shown, resume=False)
+        return _solved(each, model, folder, comm, lines and shown, bar and shown, asked=asked)
 
     found = traces.whole(scene, value, model, solve)
+    if found.interrupted:
+        return found
+    found = replace(found, record={**found.record, "asked": asked})
     if out is None or rank != 0:
         return found
     if model != "full":
@@ -170,7 +180,14 @@ def _whole(
 
 
 def _with_finite_elements(
-    scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool, bar: bool, resume: bool
+    scene: Scene,
+    model: str,
+    out: Path | None,
+    comm: "MPI.Comm | None",
+    lines: bool,
+    bar: bool,
+    resume: bool,
+    asked: Mapping[str, Any] | None,
 ) -> Result:
     import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
     from fingerpad.startup import MPI
@@ -180,7 +197,7 @@ def _with_finite_elements(
     if model == "full":
         from fingerpad.runs import full
 
-        return full.run(scene, out, comm, lines, bar, resume)
+        return full.run(scene, out, comm, lines, bar, resume, asked)
     from fingerpad.io.console import Console
     from fingerpad.reduced import smooth
 

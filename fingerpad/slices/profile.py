@@ -52,6 +52,10 @@ class Profile:
         found = self.rise(fine)
         return float(fine[found.argmin()]), float(found.min())
 
+    def centre_scale(self) -> float:
+        """Return the scale of the slice where the finger first touches."""
+        return float(self.width(np.array([self.lowest()[0]]))[0])
+
     def contact(self, delta: float) -> list[tuple[float, float]]:
         """Return the stretches (m) of the finger that touch, from one end of contact to the other.
 

@@ -101,8 +101,7 @@ def at_indentation(profile: Profile, trace: Trace, delta: float, count: int) -> 
             f"m under {force:.4g} N/m; give a trace to a larger force"
         )
     values = trace.at(np.minimum(relative, deepest))
-    place, lowest = profile.lowest()
-    scale = float(profile.width(np.array([place]))[0])
+    (_, lowest), scale = profile.lowest(), profile.centre_scale()
     most = trace.at(np.clip([(delta - lowest) / scale], 0.0, deepest))["f_ext"][0]
     return Total(delta, z, thickness, depth, scale * float(most), {name: width * values[name] for name in NAMES})
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fingerpad.io.result import Result
+from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene, SceneError
 from fingerpad.slices.finger import WholeFinger, errors, in_order
@@ -78,12 +79,17 @@ def whole(scene: Scene, force: float, model: str, solve: "Solve") -> Result:
 
     Raises:
         SceneError: a scene with a history, a profile that does not fit, or a force that no trace reached.
+
+    A trace that was interrupted is returned as the result, without the whole finger.
     """
     _refuse(scene)
     finger = profile(scene.slices)
     finger.lowest()
     reach = _Reach(scene, finger, force, model, solve)
-    found = {name: reach.follow(name) for name in _wanted(scene)}
+    try:
+        found = {name: reach.follow(name) for name in _wanted(scene)}
+    except _Stopped as stopped:
+        return stopped.result
     totals = {name: at_force(finger, each.trace, force, scene.slices.count) for name, each in found.items()}
     ends = {name: each.result.named.get("charged" if name == "uncharged" else name) for name, each in found.items()}
     known = {name: errors(totals[name], ends[name]) for name in totals}
@@ -91,7 +97,8 @@ def whole(scene: Scene, force: float, model: str, solve: "Solve") -> Result:
     source += ", ".join(f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
     last = list(found.values())[-1].result
     if model != "full":
-        last = solve(scene.model_copy(update={"f_ext": list(totals.values())[-1].centre}), "")
+        f_ext = list(totals.values())[-1].centre / finger.centre_scale()
+        last = solve(scene.model_copy(update={"f_ext": f_ext}), "")
     return replace(last, finger=WholeFinger(in_order(totals), source, known))
 
 
@@ -113,6 +120,16 @@ def _refuse(scene: Scene) -> None:
         raise SceneError("mesh is given; a force in N is that of fingers of the scene's own geometry alone")
 
 
+class _Stopped(Exception):  # noqa: N818
+    """A trace was interrupted; its attribute ``result`` says so."""
+
+    def __init__(self, result: Result, name: str) -> None:
+        super().__init__(name)
+        stopped = result.failure.partition(";")[0]
+        failure = f"{stopped} of the trace of {WORDS[name]}; the same command starts the traces again"
+        self.result = replace(result, failure=failure)
+
+
 class _Reach:
     """Follows traces to forces that are large enough."""
 
@@ -129,7 +146,7 @@ class _Reach:
         """
         for tries in range(_TRIES):
             top = min(self._top, _LARGEST)
-            made = self._made(name, top, tries)
+            made = self._made(name, top)
             try:
                 total = at_force(self._finger, made.trace, self._force, self._scene.slices.count)
             except BeyondTrace as error:
@@ -138,18 +155,18 @@ class _Reach:
                     raise SceneError(f"{error}{why}") from None
                 self._top *= _MORE
                 continue
-            self._top = total.centre * _MARGIN  # of the next trace
+            self._top = total.centre / self._finger.centre_scale() * _MARGIN  # of the next trace
             return made
         raise AssertionError("every try returns or raises")
 
-    def _made(self, name: str, top: float, tries: int) -> Traced:
+    def _made(self, name: str, top: float) -> Traced:
         scene = self._scene
         if self._model != "full":
             return self._points(name, top)
-        folder = "" if name == list(_wanted(scene))[-1] else f"{name}_{tries + 1}" if tries else name
+        folder = "" if name == list(_wanted(scene))[-1] else name
         result = self._solve(history(scene, name, top), folder)
         if result.interrupted:
-            raise SceneError(f"the trace was interrupted: {result.failure}")
+            raise _Stopped(result, name)
         try:
             return Traced(trace(points(result, name), scene.geometry.ridge_wavelength), result)
         except TraceError as error:
