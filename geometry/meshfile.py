@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from geometry import tags
 from geometry.profiles import GeometryError
@@ -150,6 +151,7 @@ def _check_mesh() -> None:
     parts = connected_components(links, directed=False)[0]
     if parts > 1:
         raise GeometryError(f"the mesh is in {parts} parts that share no node; layers must share nodes where they meet")
+    _check_nodes(xyz[:, :2], places)
     _check_facets(triangles)
     used = np.isin(nodes, triangles)
     _check_lowest(xyz[used], np.asarray(nodes, dtype=np.int64)[used])
@@ -188,6 +190,38 @@ def _check_areas(corners: Array) -> None:
         )
 
 
+def _check_nodes(xy: Array, triangles: Numbers) -> None:
+    """Refuse triangles that are twice in the mesh, and neighbours that do not share their nodes.
+
+    Args:
+        xy: places of all nodes (m), shape (nodes, 2).
+        triangles: their nodes by place in ``xy``, shape (triangles, 3).
+    """
+    twice = len(triangles) - len(np.unique(np.sort(triangles, axis=1), axis=0))
+    if twice:
+        raise GeometryError(f"{twice} of {len(triangles)} triangles are in the mesh twice")
+    edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    edges, counts = np.unique(edges, axis=0, return_counts=True)
+    if (counts > 2).any():
+        x, y = xy[edges[counts > 2][0]].mean(axis=0)
+        raise GeometryError(f"three triangles have the same edge at ({x:g}, {y:g}) m, so that they overlap")
+    edges = edges[counts == 1]
+    outline, size = np.unique(edges), float(np.ptp(xy[np.unique(triangles)], axis=0).max())
+    ends, tree = xy[edges], cKDTree(xy[outline])
+    middle, along = ends.mean(axis=1), ends[:, 1] - ends[:, 0]
+    near = tree.query_ball_point(middle, np.linalg.norm(along, axis=1) / 2 + _FLAT * size)
+    for k, places in enumerate(near):
+        others = outline[np.setdiff1d(places, np.searchsorted(outline, edges[k]))]
+        from_end = xy[others] - ends[k, 0]
+        beside = np.abs(along[k, 0] * from_end[:, 1] - along[k, 1] * from_end[:, 0]) / np.linalg.norm(along[k])
+        if (beside < _FLAT * size).any():
+            x, y = xy[others[beside.argmin()]]
+            raise GeometryError(
+                f"the triangles at ({x:g}, {y:g}) m do not share a node there, as neighbours must; "
+                "merge nodes at the same place, and let neighbours have the same nodes on their common edge"
+            )
+
+
 def _check_lowest(xyz: Array, nodes: Numbers) -> None:
     """Refuse a body whose lowest point cannot touch; of all nodes, their places (m) and their numbers."""
     ridges = [_of_group(1, tag).ravel() for _, tag in gmsh.model.getPhysicalGroups(1) if tags.is_ridge(tag)]
@@ -208,6 +242,7 @@ def _check_lowest(xyz: Array, nodes: Numbers) -> None:
 
 def _check_facets(triangles: Numbers) -> None:
     """Refuse ridges inside the body, and groups of facets that are no edges of triangles; of nodes, shape (n, 3)."""
+    taken: dict[int, str] = {}
     known, counts = np.unique(_keys(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)), return_counts=True)
     for dim, tag in gmsh.model.getPhysicalGroups(1):
         name, mine = gmsh.model.getPhysicalName(dim, tag), _keys(_of_group(1, tag))
@@ -215,6 +250,10 @@ def _check_facets(triangles: Numbers) -> None:
             raise GeometryError(f"group {name!r} has edges that no triangle has, or none at all")
         if (counts[np.isin(known, mine)] > 1).any() and (tags.is_ridge(tag) or tag in (tags.BONE_RIM, tags.OUTER_SKIN)):
             raise GeometryError(f"group {name!r} has edges inside the body; it must be of the outline alone")
+        for key in mine:
+            if key in taken:
+                raise GeometryError(f"groups {taken[key]!r} and {name!r} have an edge in common")
+            taken[key] = name
 
 
 def _keys(edges: Numbers) -> Numbers:
