@@ -6,6 +6,8 @@ from numpy.typing import NDArray
 from geometry.profiles import GeometryError, Profiles
 
 Array = NDArray[np.float64]
+_FEWEST = 3  # ridges
+_CLEAR = 1e-7  # m, between two layers, several times what their samples may miss
 _APART = 1e-6  # m, between points that the mesh has where the nail begins
 
 
@@ -19,20 +21,30 @@ def check(profiles: Profiles) -> None:
     f = profiles.finger
     if profiles.ridged_arc + f.ridge_wavelength > profiles.nail_arc:
         most = int(2 * profiles.nail_arc / f.ridge_wavelength - 2)
+        most -= 1 - most % 2
+        few = f"{_FEWEST} do where ridge_wavelength is {2 * profiles.nail_arc / (_FEWEST + 2):.3g} m or less"
         raise GeometryError(
             f"ridge_count {f.ridge_count} of ridge_wavelength {f.ridge_wavelength:g} m do not fit between "
-            f"the nail's edges; at most {most - 1 + most % 2} do"
+            f"the nail's edges; {f'at most {most} do' if most >= _FEWEST else few}"
         )
-    s = np.linspace(-profiles.nail_arc, profiles.nail_arc, 64 * f.ridge_count + 1)
+    if f.ridge_count < _FEWEST:
+        raise GeometryError(
+            f"ridge_count is {f.ridge_count}; a whole finger has {_FEWEST} ridges at least, since the last one on "
+            "either side must not touch"
+        )
+    ridges = profiles.ridged_arc + f.ridge_wavelength  # the flanks outside go over into the smooth skin
+    half = np.union1d(np.linspace(0, ridges, 64 * (f.ridge_count + 2) + 1), np.linspace(0, profiles.nail_arc, 1001))
+    s = np.concatenate([-half[:0:-1], half])
     curves = [("skin", profiles.skin), ("SC-VE junction", profiles.sc_ve)]
     curves += [("VE-D junction", profiles.ve_d), ("D-subcutis junction", profiles.d_sub)]
     thickness = ["sc_thickness", "ve_thickness", "dermis_thickness"]
     for (upper, above), (lower, below), name in zip(curves, curves[1:], thickness, strict=False):
         gap = float((below(s) - above(s)).min())
-        if gap <= 0:
+        if gap < _CLEAR:
+            how = f"cross by {-gap:.3g} m" if gap <= 0 else f"are {gap:.2g} m apart"
             raise GeometryError(
-                f"{upper} and {lower} cross by {-gap:.3g} m; "
-                f"{name} is {getattr(f, name):g} m and must exceed {getattr(f, name) - gap:.3g} m"
+                f"{upper} and {lower} {how}; {name} is {getattr(f, name):g} m and must exceed "
+                f"{getattr(f, name) - gap + _CLEAR:.4g} m"
             )
     a, b = f.width / 2, f.height / 2
     sharpest = min(a**2 / b, b**2 / a)
@@ -103,6 +115,12 @@ def _check_edge(profiles: Profiles) -> None:
             "the skin's layers end inside the bone at the nail's edge: reduce dermis_thickness "
             f"({f.dermis_thickness:g} m) or bone_width ({f.bone_width:g} m), or change nail_half_width "
             f"({f.nail_half_width:g} m) or nail_bed_half_width ({f.nail_bed_half_width:g} m)"
+        )
+    skin = float(profiles.skin(end))
+    if f.nail_thickness < skin + _APART:
+        raise GeometryError(
+            f"nail_thickness is {f.nail_thickness:g} m, and the skin's mean line at the nail's edge is {skin:.4g} m "
+            f"deep, by ridge_amplitude; the nail must be thicker by {_APART:g} m or more"
         )
     for name, depth in (("SC-VE", profiles.sc_ve(end)), ("VE-D", profiles.ve_d(end))):
         if abs(float(depth) - f.nail_thickness) < _APART:

@@ -62,6 +62,15 @@ def test_cost_of_a_press_is_a_part():
     assert cost.expected(scene, plan(scene)).factorisations == pytest.approx(cost.SHARES["force"] * cost.RUNS)
 
 
+def test_cost_of_a_slide_is_that_of_its_way():
+    """Given as a place or as a distance."""
+    found = []
+    for way in ("bone_x", "bone_x_by"):
+        scene = from_data({"history": [{"name": "press", "f_ext": 75.0}, {"name": "slide", way: 5e-3}]})
+        found.append(cost.expected(scene, plan(scene)).factorisations)
+    assert found[0] == found[1] == pytest.approx((cost.SHARES["force"] + cost.SHARES["slide"]) * cost.RUNS)
+
+
 @pytest.mark.parametrize(
     ("seconds", "words"),
     [(3.0, "1.5 to 6 s"), (80.0, "0.67 to 2.7 minutes"), (1200.0, "10 to 40 minutes"), (7200.0, "1 to 4 hours")],

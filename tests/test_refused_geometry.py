@@ -53,6 +53,16 @@ def test_parameters_are_refused(given, message):
     ("given", "message"),
     [
         ({"ve_thickness": 150e-6}, "SC-VE junction and VE-D junction cross by .*ve_thickness is 0.00015 m"),
+        ({"ve_thickness": 136e-6, "ridge_count": 3}, "VE-D junction cross by .*must exceed 0.0001"),
+        ({"ridge_count": 1}, "ridge_count is 1; a whole finger has 3 ridges at least"),
+        (
+            {
+                **{"width": 4e-3, "height": 3e-3, "bone_width": 1.6e-3, "bone_height": 0.8e-3, "bone_centre": 1.7e-3},
+                **{"nail_half_width": 1e-3, "nail_bed_half_width": 0.4e-3, "ridge_wavelength": 5e-3},
+            },
+            "between the nail's edges; 3 do where ridge_wavelength is 0.00[0-9]+ m or less",
+        ),
+        ({"nail_thickness": 50e-6}, "and the skin's mean line at the nail's edge is 5e-05 m deep"),
         ({"limiting_ridge_height": 450e-6}, "SC-VE junction and VE-D junction cross by .*ve_thickness is 0.000175 m"),
         ({"dermis_thickness": 100e-6}, "VE-D junction and D-subcutis junction cross by .*dermis_thickness is 0.0001 m"),
         (

@@ -67,6 +67,10 @@ def meshed(scene: Scene, receptors: bool, half: bool) -> Iterator[Any]:
             fingertip.build(scene.geometry, scene.mesh, receptors, half)
         except GeometryError as error:
             raise SceneError(f"the finger cannot be meshed: {error}") from None
+        except Exception as error:
+            if type(error) is not Exception:  # gmsh's own are of no other kind
+                raise
+            raise SceneError(f"gmsh cannot mesh the finger: {error}; try smaller elements") from None
         yield gmsh
     finally:
         gmsh.finalize()

@@ -85,6 +85,6 @@ def factorisations(scene: Scene) -> list[float]:
 
 
 def _share(load: Load) -> float:
-    share = SHARES["slide"] if load.bone_x is not None else 0.0
+    share = SHARES["slide"] if load.bone_x is not None or load.bone_x_by is not None else 0.0
     share += SHARES["voltage"] if load.voltage is not None else 0.0
     return share + (SHARES["force"] if load.f_ext is not None or load.bone_height is not None else 0.0)
