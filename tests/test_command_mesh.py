@@ -62,6 +62,20 @@ def test_cost_of_a_press_is_a_part():
     assert cost.expected(scene, plan(scene)).factorisations == pytest.approx(cost.SHARES["force"] * cost.RUNS)
 
 
+def test_mesher_that_fails_is_refused_in_a_sentence(monkeypatch, capsys):
+    """With what gmsh says; an error of the program stays one."""
+    pytest.importorskip("gmsh")
+
+    def fail(*given):
+        raise Exception("no closed loop")  # noqa: TRY002  # as gmsh's are
+
+    monkeypatch.setattr("geometry.fingertip.build", fail)
+    assert "gmsh cannot mesh the finger: no closed loop; try smaller" in refused(capsys, "mesh", "--out", "x.msh")
+    monkeypatch.setattr("geometry.fingertip.build", lambda *given: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        main(["mesh", "--out", "x.msh"])
+
+
 def test_cost_of_a_slide_is_that_of_its_way():
     """Given as a place or as a distance."""
     found = []

@@ -76,7 +76,7 @@ def test_instrument_without_them(tmp_path):
     found = scan(path, size=(3.0, 4.0), unit="um").map
     np.testing.assert_allclose(found.heights, h * 1e-6, rtol=1e-12)
     assert found.size == pytest.approx((3e-6, 4e-6), rel=1e-12)
-    with pytest.raises(ValueError, match="has no unit of its own; give the heights' too"):
+    with pytest.raises(ValueError, match="has no unit of its own; give that of the heights"):
         scan(path, size=(3.0, 4.0))
     with pytest.raises(ValueError, match="holds heights alone; give the lengths"):
         scan(path, unit="um")

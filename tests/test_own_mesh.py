@@ -83,7 +83,7 @@ def test_key_of_a_file_is_the_argument(place, tmp_path):
     assert summary["laws"]["mesh"] == str(place)
     assert summary["parameters"]["laws"]["mesh"]["sha256"] == hashlib.sha256(place.read_bytes()).hexdigest()
     assert by_key.charged.contact_length == by_argument.charged.contact_length > 0
-    command = html.unescape(again(summary["parameters"], "full", "key"))
+    command = html.unescape(again(summary["parameters"], "full"))
     assert from_kept(summary["parameters"]).parameters() == fp.Scene.load(file).parameters()
     assert 'from_kept(json.load(open("scene.json")))' in command
 
@@ -139,7 +139,7 @@ def write_text(path: Path, text: str) -> str:
 def test_command_line_is_the_run_again(tmp_path):
     file = write_text(tmp_path / "my mesh.msh", "one")
     kept = from_data({"geometry": {"file": file, "sc_thickness": 3e-4}, "voltage": 100.0}).parameters()
-    words = shlex.split(html.unescape(again(kept, "full", "x")).removeprefix("<pre><code>").partition(" --out")[0])
+    words = shlex.split(html.unescape(again(kept, "full")).removeprefix("<pre><code>").partition(" --out")[0])
     assert words[:2] == ["fingerpad", "run"]
     assert load(None, dict(override(word) for word in words[3::2])).parameters() == kept
 

@@ -33,7 +33,7 @@ def finished(scene, folder) -> dict[str, bytes]:
     """A folder with what an earlier run of the scene may have left."""
     with Place(folder, scene.parameters(), MPI.COMM_WORLD) as place:
         place.take()
-    for name in ("summary.json", "steps.csv", "finger_press.png", "notes of mine.txt"):
+    for name in ("summary.json", "steps.csv", "finger_press.png", "time.png", "footprint.png", "notes of mine.txt"):
         (folder / name).write_text("old")
     (folder / "sed.bp").mkdir()
     return {file.name: file.read_bytes() for file in folder.iterdir() if file.is_file()}

@@ -13,6 +13,7 @@ import fingerpad as fp
 from fingerpad import cli
 from fingerpad.model.journal import Journal
 from tests.runs import no_pictures
+from variational.roughness.selfaffine import SelfAffine
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "demos" / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -50,7 +51,7 @@ SMALLER = {
 def folder(tmp_path, monkeypatch) -> Path:
     """A folder with the files that the lines name, as the current one."""
     (tmp_path / "scene.toml").write_text(SMALL, encoding="utf-8")
-    heights = np.random.default_rng(1).normal(size=(32, 32))
+    heights = 1e6 * SelfAffine().surface((128, 128), (1e-3, 1e-3), seed=1).heights
     np.savetxt(tmp_path / "skin.csv", heights, delimiter=",")
     page = (ROOT / "docs" / "command.md").read_text(encoding="utf-8")
     shown = re.search(r"^    # source: .*?(?=\n\n)", page, re.MULTILINE | re.DOTALL)

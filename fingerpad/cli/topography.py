@@ -72,7 +72,7 @@ def _scan(args: argparse.Namespace) -> Found:
         raise SceneError(f"{clip(str(args.file), 80)} cannot be read: {error.strerror or error}") from None
     except (ValueError, ImportError) as error:
         text = str(error).replace("give the lengths along x and y too", "give --size or --pixel too")
-        raise SceneError(text.replace("give the heights' too", "give --unit too")) from None
+        raise SceneError(text.replace("give that of the heights", "give --unit")) from None
 
 
 def _report(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iterator[str]:

@@ -60,9 +60,8 @@ class Checkpoint:
         """
         results = f"{str(self._results)[-80:]}"
         if self.count() == 0:
-            why = "its run had not come to one; run again with --out"
-            why = "its run has reached its end" if self._ended() else why
-            raise CheckpointError(f"{results} has no checkpoint to go on from: {why}")
+            why = "reached its end" if self._ended() else "not come to one; run again with --out"
+            raise CheckpointError(f"{results} has no checkpoint to go on from: its run has {why}")
         file = self._folder / "head.json"
         try:
             head = dict(json.loads(file.read_text(encoding="utf-8")))

@@ -34,7 +34,7 @@ class Interrupted(StepFailed):
         signal: the signal.
     """
 
-    def __init__(self, number: signal.Signals, step: int, kept: str) -> None:
+    def __init__(self, number: signal.Signals, step: int, kept: str = "") -> None:
         """Name the signal, the step, and what is kept of the run."""
         super().__init__("; ".join(filter(None, (f"stopped by {number.name} after step {step}", kept))))
         self.signal = number

@@ -140,6 +140,18 @@ def _solved(
     resume: bool = False,
     asked: Mapping[str, Any] | None = None,
 ) -> Result:
+    """Return what a model answers, its results written into a folder; collective; arguments as of :func:`solved`.
+
+    Args:
+        scene: the scene.
+        model: one of :data:`MODELS`.
+        out: folder of results.
+        comm: communicator.
+        lines: whether to print.
+        bar: whether to show a bar.
+        resume: whether to go on.
+        asked: of which the scene is a trace, see :class:`fingerpad.io.place.Place`.
+    """
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     if model == "cylinders":
@@ -148,7 +160,23 @@ def _solved(
         found = cylinders.solve(scene)
         return kept(found, out, Serial()) if terminal.rank() == 0 else found
     with needed_by(f"the model {model!r}"):
-        return _with_finite_elements(scene, model, out, comm, lines, bar, resume, asked)
+        import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
+        from fingerpad.startup import MPI
+
+        check(scene)
+        comm = comm or MPI.COMM_WORLD
+        if model == "full":
+            from fingerpad.runs import full
+
+            return full.run(scene, out, comm, lines, bar, resume, asked)
+        from fingerpad.io.console import Console
+        from fingerpad.reduced import smooth
+
+        console = Console(comm, lines, bar)
+        try:
+            return kept(smooth.solve(scene, tables_in(out), comm, console), out, comm)
+        finally:
+            console.close()
 
 
 def _whole(
@@ -177,35 +205,6 @@ def _whole(
     replace_json(out / "summary.json", found.to_dict())
     missing = dataset.save(found)
     return replace(found, notes=(*found.notes, missing)) if missing else found
-
-
-def _with_finite_elements(
-    scene: Scene,
-    model: str,
-    out: Path | None,
-    comm: "MPI.Comm | None",
-    lines: bool,
-    bar: bool,
-    resume: bool,
-    asked: Mapping[str, Any] | None,
-) -> Result:
-    import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
-    from fingerpad.startup import MPI
-
-    check(scene)
-    comm = comm or MPI.COMM_WORLD
-    if model == "full":
-        from fingerpad.runs import full
-
-        return full.run(scene, out, comm, lines, bar, resume, asked)
-    from fingerpad.io.console import Console
-    from fingerpad.reduced import smooth
-
-    console = Console(comm, lines, bar)
-    try:
-        return kept(smooth.solve(scene, tables_in(out), comm, console), out, comm)
-    finally:
-        console.close()
 
 
 def kept(result: Result, out: Path | None, comm: "MPI.Comm | Serial") -> Result:

@@ -79,7 +79,7 @@ def scan(
     if found.unit is not None and (unit is not None or size_unit is not None):
         raise ValueError(f"{path} has its own units; give none")
     if found.unit is None and unit is None and not is_plain(path):
-        raise ValueError(f"{path} has no unit of its own; give the heights' too")
+        raise ValueError(f"{path} has no unit of its own; give that of the heights")
     if found.size is not None and (size is not None or pixel is not None):
         raise ValueError(f"{path} has its own size; give none")
     if found.size is None and size is None and pixel is None:

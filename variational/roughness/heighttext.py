@@ -6,6 +6,7 @@ Numbers are parted by semicolons, tabs, commas or spaces, with a decimal point o
 Three columns are points of a regular grid.
 """
 
+import math
 import re
 from typing import NamedTuple
 
@@ -16,7 +17,6 @@ Array = NDArray[np.float64]
 _MISSING = {"", "nan", "na", "n/a", "-", "--", "***", "bad"}
 _COMMENT = ("#", "%", "//")
 _OFF = 0.02  # of a pixel, by which a point may lie beside the grid
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NAMES = {None: "spaces", ";": "semicolons", "\t": "tabs", ",": "commas"}
 
 
@@ -58,7 +58,7 @@ def parse(text: str, missing: str | None = None) -> Text:
         elif len(words) == len(rows[0]) > 3 and 2 * len(unknown) < len(words):
             raise _unknown(k, unknown[0])
     if separator is not None and all(line.rstrip(" ").endswith(separator) for _, line in lines):
-        rows = [row[:-1] for row in rows]
+        rows = [row[:-1] for row in rows]  # what comes after the last separator of a line
     for (k, _), row in zip(lines, rows, strict=True):
         if len(row) != len(rows[0]):
             raise ValueError(f"no matrix of numbers: line {k} has {len(row)} of them, the first one {len(rows[0])}")
@@ -121,19 +121,17 @@ def _unknown(number: int, word: str) -> ValueError:
 
 
 def is_number(text: str) -> bool:
-    """Return whether a text is a number with a decimal point."""
-    return re.fullmatch(_NUMBER, text.strip()) is not None
-
-
-def is_mark(text: str) -> bool:
-    """Return whether a text is one of the usual marks of missing pixels."""
-    return text.strip().lower() in _MISSING
+    """Return whether a text is a number with a decimal point, and not nan or inf."""
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
 
 
 def _has_numbers(line: str, marks: set[str]) -> bool:
     """Return whether a line starts with a number, or has numbers and marks of missing pixels alone."""
     words = [word.strip('"').lower() for word in re.split(r"[;,\s]+", line.strip())]
-    numbers = [bool(re.fullmatch(_NUMBER, word)) for word in words]
+    numbers = [is_number(word) for word in words]
     known = all(number or word in marks for number, word in zip(numbers, words, strict=True))
     return (known and any(numbers)) or bool(re.match(r"[\s;,]*[-+]?[.,]?\d", line))
 

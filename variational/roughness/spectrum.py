@@ -151,7 +151,7 @@ class PowerSpectrum:
         if resolved and lowest == len(scan) - 1:
             raise ValueError(
                 f"the spectrum rolls off at a wavelength of {4 * np.pi / high:.3g} m or less, which pixels of "
-                f"{np.pi / high / 2:.3g} m do not resolve; measure with smaller pixels, or smooth the map"
+                f"{np.pi / high / 2:.3g} m do not resolve; measure with smaller pixels"
             )
         if not resolved:
             ln_q_0 = 0.0
