@@ -16,9 +16,9 @@ halved once, of which a single change is known, :data:`MORE` for others. Roache 
 three. Where an accuracy is asked for, this error has to be within it, at the price of a finer mesh.
 
 The orders are those known beforehand: p = 1, that of a contact's edge on a mesh whose nodes are not at the edge, for
-forces and lengths, so that the error left is as large as the last change; p = 2, that of the strains of quadratic
-elements, for energy densities at sites deep in the skin, which hardly depend on the edge. An order observed from three
-meshes is mostly noise, since an edge moves facet by facet (``docs/accuracy.md``).
+forces and lengths, so that the error left is as large as the last change; for energy densities at sites deep in the
+skin, which hardly depend on the edge, that of the strains, p = 2 with quadratic elements and p = 1 with linear ones. An
+order observed from three meshes is mostly noise, since an edge moves facet by facet (``docs/accuracy.md``).
 
 For the same reason a change may come out small by accident. That of a sum over ridges counts as at least the root of
 the sum of their squared changes, what changes of random sign come to; and any as at least a quarter of the one before
@@ -53,6 +53,8 @@ class MeshParameter:
 
     changes: list[dict[str, float]] = field(default_factory=list)
     """By how much each quantity changed, at each halving; magnitudes."""
+    degree: int = 2
+    """Polynomial degree of the elements."""
 
     def record(self, coarse: Parts, fine: Parts) -> None:
         """Record values before and after the next halving."""
@@ -67,7 +69,11 @@ class MeshParameter:
         change = self.changes[-1][name]
         if len(self.changes) > 1:
             change = max(change, self.changes[-2][name] / 4)
-        return change / (2 ** order(name) - 1)
+        return change / (2 ** self.order(name) - 1)
+
+    def order(self, name: str) -> int:
+        """Return the order with which the error of a quantity falls."""
+        return min(self.degree, 2) if "_sed_" in name else 1
 
     def safe(self, name: str) -> float:
         """Return the same with its factor of safety."""
@@ -77,11 +83,6 @@ class MeshParameter:
 def _change(before: ArrayLike, now: ArrayLike) -> float:
     parts = np.atleast_1d(np.subtract(now, before))
     return max(abs(float(parts.sum())), float(np.linalg.norm(parts)))
-
-
-def order(name: str) -> int:
-    """Return the order with which the error of a quantity falls."""
-    return 2 if "_sed_" in name else 1
 
 
 def errors(parameters: Mapping[str, MeshParameter], names: Sequence[str]) -> dict[str, float]:
@@ -111,7 +112,7 @@ def to_refine(parameters: Mapping[str, MeshParameter], allowed: Mapping[str, flo
         for key in sorted(shares, key=shares.__getitem__, reverse=True):
             if left <= most or shares[key] * len(shares) <= most:
                 break
-            left -= shares[key] * (1 - 2 ** -order(name))
+            left -= shares[key] * (1 - 2 ** -parameters[key].order(name))
             found.add(key)
     return [key for key in parameters if key in found]
 

@@ -45,6 +45,10 @@ def test_parameters_in_use_give_the_same_scene():
             {"accuracy": {"sed": 0.1}, "output": {"receptors": False}},
             "accuracy.sed is 0.1 and output.receptors is false, without which there are no sites",
         ),
+        (
+            {"accuracy": {"f_t": 0.1}, "friction": 0},
+            "accuracy.f_t is 0.1 and friction is 0, with which the quantity is zero and has no relative accuracy",
+        ),
     ],
 )
 def test_impossible_accuracy_is_refused(given, words):

@@ -29,10 +29,12 @@ def test_second_order_is_overestimated_three_times():
     assert parameter(law(2.0), 0, 1).share("q") == pytest.approx(3 * 0.1 / 16, rel=1e-12)
 
 
-def test_energy_density_is_taken_for_second_order():
-    found = MeshParameter()
+@pytest.mark.parametrize(("degree", "left"), [(1, 0.3), (2, 0.1), (3, 0.1)])
+def test_energy_density_is_taken_for_the_order_of_strains(degree, left):
+    """Half of the last change is left at first order, a quarter at second; cubic elements have no more to show for."""
+    found = MeshParameter(degree=degree)
     found.record({"slip_sed_0": 1.3}, {"slip_sed_0": 1.0})
-    assert found.share("slip_sed_0") == pytest.approx(0.1, rel=1e-12)
+    assert found.share("slip_sed_0") == pytest.approx(left, rel=1e-12)
 
 
 @pytest.mark.parametrize(("name", "left"), [("slip_f_t", 0.1 / 4), ("slip_sed_0", 0.1 / 4 / 3)])

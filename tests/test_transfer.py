@@ -82,6 +82,16 @@ def test_displacement_returns_on_its_own_mesh(bodies, reached):
     np.testing.assert_allclose(before, reached[COARSE][0].u, atol=1e-16)
 
 
+def test_skin_of_a_ridge_higher_than_wide_is_in_order():
+    """Its points lie farthest apart along its height, in which the skin turns back. Tolerance: roundoff of 1 mm."""
+    path = prepare(load(MPI.COMM_WORLD, ridge(COARSE, height=900e-6, amplitude=500e-6)))
+    path.solver.problem.w.interpolate(lambda x: np.stack([100 * x[0], 200 * x[0]]) * (900e-6 - x[1]))
+    state = take_snapshot(path.coupling, path.observer.state())
+    assert abs(state.skin[0].chord) == pytest.approx([1, 0], abs=1e-3)
+    restore(state, path.coupling)
+    np.testing.assert_allclose(take_snapshot(path.coupling, path.observer.state()).u, state.u, atol=1e-16)
+
+
 @pytest.mark.parametrize(("old", "new"), [(COARSE, FINE), (FINE, COARSE)])
 def test_skin_does_not_come_off_the_screen(bodies, reached, old, new):
     """Facets of other lengths cut the ridge's curve elsewhere: fine ones lower by 0.7 um, coarse ones higher by 0.5.

@@ -39,6 +39,7 @@ from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import RestartRequired
 from fingerpad.richardson import MeshParameter, errors, plus_minus, to_refine
 from geometry.profiles import GeometryError
+from variational.element import ELEMENTS
 from variational.solvers.continuation import StepFailed
 from variational.state import RESULTS, ContactState, Errors
 
@@ -97,7 +98,8 @@ class Refinement:
         keys = [key for key in _SIZES if key != "receptor" or receptors]
         if model.options.friction and "charged" in path.states and {"contact_length", "sed"} & set(self.asked):
             keys.append("steps")
-        self.parameters = {key: MeshParameter() for key in keys}
+        degree = ELEMENTS[model.numerics.element].degree
+        self.parameters = {key: MeshParameter(degree=degree) for key in keys}
         self.refinements = dict.fromkeys(keys, 0)
 
     def run(self) -> RestartRequired | None:

@@ -17,6 +17,7 @@ LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
 def refuse_contradictions(
     accuracy: Accuracy | None,
     output: Output,
+    friction: float,
     roughness: Roughness,
     h_0: float,
     history: Sequence[Load] | None,
@@ -28,6 +29,7 @@ def refuse_contradictions(
     Args:
         accuracy: table of the scene, likewise ``output``, ``roughness`` and ``history``.
         output: see there.
+        friction: key of the scene.
         roughness: see there.
         h_0: effective insulator thickness (m).
         history: see there.
@@ -37,7 +39,7 @@ def refuse_contradictions(
     Raises:
         ValueError: the keys, their values and the remedy.
     """
-    _refuse_accuracy(accuracy, output)
+    _refuse_accuracy(accuracy, output, friction)
     _refuse_endless_gap(roughness, h_0)
     if history is not None:
         _refuse_history(history, given)
@@ -45,9 +47,17 @@ def refuse_contradictions(
         _refuse_floating(history)
 
 
-def _refuse_accuracy(accuracy: Accuracy | None, output: Output) -> None:
-    """Refuse an accuracy of receptor sites that are not there."""
-    if accuracy is not None and accuracy.sed is not None and not output.receptors:
+def _refuse_accuracy(accuracy: Accuracy | None, output: Output, friction: float) -> None:
+    """Refuse an accuracy of receptor sites that are not there, and of friction that is zero."""
+    if accuracy is None:
+        return
+    for name in ("mu_app", "f_t") if friction == 0 else ():
+        if (asked := getattr(accuracy, name)) is not None:
+            raise ValueError(
+                f"accuracy.{name} is {show(asked)} and friction is 0, with which the quantity is zero and has no "
+                "relative accuracy; leave out one of the two"
+            )
+    if accuracy.sed is not None and not output.receptors:
         raise ValueError(
             f"accuracy.sed is {show(accuracy.sed)} and output.receptors is false, without which there are no "
             "sites; leave out one of the two"

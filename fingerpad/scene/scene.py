@@ -90,7 +90,9 @@ class Scene(Part):
     def _consistent(self) -> "Scene":
         given = {name: getattr(self, name) for name in DEFAULT_HISTORY if name in self.model_fields_set}
         scale = self.numerics.step_scale
-        refuse_contradictions(self.accuracy, self.output, self.roughness, self.h_0, self.history, given, scale)
+        refuse_contradictions(
+            self.accuracy, self.output, self.friction, self.roughness, self.h_0, self.history, given, scale
+        )
         return self
 
     def replace(self, **changes: Any) -> "Scene":

@@ -41,6 +41,7 @@ from variational.solvers.equations import Control
 
 Array = NDArray[np.float64]
 _CANDIDATES = 32  # triangles about a point, by their centroids; sizes of neighbours differ by far less
+_TURNS_BACK = 1.5  # way of the skin along an axis over its extent: 1 where it goes one way, 2 there and back
 _OUTSIDE = 1.0  # altitudes of a triangle that a point of the same body may be outside of it
 
 
@@ -187,13 +188,18 @@ def place(ridge: SkinState, position: Array, nodes: Array) -> Array:
     Both have the shape (n, 2).
     """
     n = position.shape[1]
-    gauss = (1 + np.polynomial.legendre.leggauss(n)[0]) / 2
+    gauss = _gauss(n)
     points, along = ridge.along.reshape(-1, n), (nodes - ridge.origin) @ ridge.chord
     length = (points[:, -1] - points[:, 0]) / (gauss[-1] - gauss[0])
     start = points[:, 0] - gauss[0] * length
     facet = np.clip(np.searchsorted(start, along, side="right") - 1, 0, len(start) - 1)
     powers = np.vander((along - start[facet]) / length[facet], n)
     return np.einsum("nk,nki->ni", powers @ np.linalg.inv(np.vander(gauss, n)), position[facet])
+
+
+def _gauss(n: int) -> Array:
+    """Return the places of n Gauss points on a facet of length 1, shape (n,)."""
+    return (1 + np.polynomial.legendre.leggauss(n)[0]) / 2
 
 
 def _u_x(problem: Problem) -> Array:
@@ -215,9 +221,14 @@ def _ridge(points: Array, on_facet: int) -> SkinState:
     """Sort the points of a ridge along its chord; rows x, y, elastic slip, pressure, and current x and y."""
     xy = points[:2]
     origin = xy.mean(axis=1)
-    # A ridge is wider than high: the chord is its points' first principal direction.
-    chord = np.linalg.svd(xy - origin[:, None], full_matrices=False)[0][:, 0]
-    along = chord @ (xy - origin[:, None])
+    # The chord is the first principal direction, in which most ridges are wide, unless the skin turns back on the way.
+    axes = np.linalg.svd(xy - origin[:, None], full_matrices=False)[0]
+    places = axes.T @ (xy - origin[:, None])
+    on_facets = places[0].reshape(-1, on_facet)
+    span = _gauss(on_facet)[-1] - _gauss(on_facet)[0]  # of the points on a facet, whose length is 1
+    way = np.abs(on_facets[:, -1] - on_facets[:, 0]).sum() / span
+    chosen = int(way > _TURNS_BACK * np.ptp(places[0]))
+    chord, along = axes[:, chosen], places[chosen]
     order = np.argsort(along)
     position = points[4:, order].T.reshape(-1, on_facet, 2)
     return SkinState(origin, chord, along[order], points[2, order], points[3, order], position)
