@@ -196,7 +196,9 @@ class Continuation:
         """
         start, depth = self._now.control.y or 0.0, 0.0
         while not self._bears():
-            depth += max(self.touch_depth, self._clearance())
+            # To a depth at which the screen bears it whatever the roundoff, also where it comes from above.
+            clearance = self._clearance()
+            depth += self.touch_depth + (clearance if clearance > self.touch_depth / 2 else 0.0)
             if not self._reach(Target("touch", bone_height=start - depth)):
                 return False
         self.solver.control.y = None
