@@ -60,6 +60,7 @@ def steps(f_ext: list[float]) -> list[dict]:
     for k, (bone_x, load) in enumerate(zip(x, f_ext, strict=True)):
         length, ridges = 1.5e-3 - 0.1 * bone_x, 17 - (k > 6) - (k > 8)
         row = {"bone_x": bone_x, "f_t": 35 * np.tanh(1e3 * bone_x), "f_ext": load, "contact_length": length}
+        row["mu_app"] = row["f_t"] / load
         rows.append(row | {"ridges_in_contact": ridges, "jump": k in (7, 9)})
     return rows
 

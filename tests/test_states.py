@@ -1,6 +1,7 @@
 """Which states of a history have a name: histories that people invent, as rows without a finger."""
 
 import itertools
+import math
 from dataclasses import replace
 
 import pytest
@@ -239,6 +240,26 @@ def test_each_load_has_its_summary(pressed):
     assert slide["end"]["f_t"] == slide["extremes"]["f_t"]["max"] == pytest.approx(MU_0 * 2.0)
     assert slide["extremes"]["f_t"]["min_step"] == pressed.rows[2].step
     assert slide["end"]["step"] == pressed.rows[9].step
+
+
+def test_friction_without_a_force_has_no_coefficient(pressed):
+    """It is neither zero nor the least: extremes are of the states that have one, and left out where none has."""
+    pressed.slide("slide", 0.4e-3)
+    lifted = replace(pressed.rows[-1], mu_app=math.nan)
+    whole, before, up = (
+        states.load_result("", rows, None).extremes for rows in ([*pressed.rows, lifted], pressed.rows, [lifted])
+    )
+    assert whole["mu_app"].to_dict() == before["mu_app"].to_dict()
+    assert "mu_app" not in up and up["f_t"].min == lifted.f_t
+
+
+def test_first_press_begins_unloaded(pressed):
+    """A first load over time by the bone's height has no state at its begin: the mean is that from zero on."""
+    two = [replace(pressed.rows[0], time=t, contact_length=1e-3 * t) for t in (1.0, 2.0)]
+    passed = states.load_result("press", two, None).over_time
+    assert (passed.start, passed.seconds) == (0.0, 2.0)
+    assert passed.mean["contact_length"] == pytest.approx(1e-3, rel=1e-12)
+    assert math.isnan(passed.mean["mu_app"])
 
 
 def test_touch_belongs_to_the_load_on_the_way():

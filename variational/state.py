@@ -112,7 +112,7 @@ class ContactState:
     f_t: float
     """Friction force on the bone (N/m), positive where the bone is dragged towards x > 0."""
     mu_app: float
-    """Apparent friction coefficient f_t / f_ext."""
+    """Apparent friction coefficient f_t / f_ext; NaN where no force presses the finger."""
     f_contact: float
     """Contact force of the screen (N/m)."""
     f_electrostatic: float

@@ -27,7 +27,7 @@ STEPS = {
     "bone_x": Column("m", "horizontal position of the bone"),
     "bone_height": Column("m", "change of the bone's height from the unloaded position"),
     "f_t": Column("N/m", "friction force on the bone per metre of finger"),
-    "mu_app": Column("1", "apparent friction coefficient f_t / f_ext"),
+    "mu_app": Column("1", "apparent friction coefficient f_t / f_ext; none where no force presses"),
     "f_contact": Column("N/m", "contact force of the screen per metre of finger"),
     "f_electrostatic": Column("N/m", "electrostatic attraction per metre of finger"),
     "ridges_in_contact": Column("1", "number of ridges in contact"),

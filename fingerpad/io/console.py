@@ -1,12 +1,13 @@
 """The output of a run in a terminal: one line a step under a legend, and a progress bar; on rank 0."""
 
+import math
 from collections.abc import Collection, Mapping
 
 from mpi4py import MPI
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from fingerpad.io.left import Pace
-from fingerpad.io.quantities import PER_LENGTH
+from fingerpad.io.quantities import PER_LENGTH, cell
 from fingerpad.io.terminal import watched
 from variational.state import ContactState
 
@@ -101,15 +102,15 @@ class Console:
         assert s.record is not None
         most = self._mu_0 * s.f_contact if s.load in self._slipping else 0.0
         self._pace.on_path(done, abs(s.f_t) / most if most > 0 else 0.0)
-        left = self._pace.left() + self._of
+        left, mu = self._pace.left() + self._of, cell("mu_app", s.mu_app)
         self.show(
             f"{s.step:4d} {s.load[:7]:7s} {s.f_ext:7.3f} {s.voltage:5.1f} {s.bone_x * 1e3:7.4f} "
-            f"{s.bone_height * 1e3:8.5f} {s.f_t:8.4f} {s.mu_app:7.4f} {s.f_electrostatic:7.3f} "
+            f"{s.bone_height * 1e3:8.5f} {s.f_t:8.4f} {mu:>7s} {s.f_electrostatic:7.3f} "
             f"{s.ridges_in_contact:6d} {s.contact_length * 1e3:8.4f} {s.record.newton_iterations:6d} "
             f"{s.record.factorisations:5d}  {left}{'  jump, ' + _released(s) if s.record.jump else ''}"
         )
         loads = f"{s.load}: {s.f_ext:.1f} N/m, {s.voltage:.0f} V, x {s.bone_x * 1e3:.2f} mm"
-        words = f"{loads}, µ_app {s.mu_app:.3f}"
+        words = loads if math.isnan(s.mu_app) else f"{loads}, µ_app {s.mu_app:.3f}"
         self._progress.update(
             self._task, completed=self._pace.part, description=words, left=f"{self._pace.left()} left{self._of}"
         )

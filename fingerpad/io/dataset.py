@@ -168,9 +168,9 @@ def _loads(result: "Result") -> Variables:
     for name in ("full_slip_reached", "full_slip_held"):
         slip = Column("1", f"whether full slip was {name.rpartition('_')[2]} in the load")
         found[f"load_{name}"] = ("load",), _array([getattr(load, name) for load in loads]), _about(slip)
-    for quantity in loads[0].extremes if loads else ():
+    for quantity in dict.fromkeys(name for load in loads for name in load.extremes):
         for end, words in (("min", "least"), ("max", "largest")):
-            values = [getattr(load.extremes[quantity], end) for load in loads]
+            values = [getattr(load.extremes.get(quantity), end, math.nan) for load in loads]
             column = columns.STEPS[quantity]
             about = _about(Column(column.unit, f"{words} value in the load: {column.meaning}"))
             found[f"load_{quantity}_{end}"] = ("load",), _array(values), about

@@ -28,9 +28,9 @@ def history(
 
     Args:
         path: of the PNG file; None for the figure alone.
-        rows: accepted steps in order, with ``bone_x`` (m), ``f_t`` and ``f_ext`` (N/m), ``contact_length`` (m),
-            ``ridges_in_contact`` and, true where ridges jumped, ``jump``. What precedes sliding is left out but
-            for its last row.
+        rows: accepted steps in order, with ``bone_x`` (m), ``f_t`` and ``f_ext`` (N/m), ``mu_app``,
+            ``contact_length`` (m), ``ridges_in_contact`` and, true where ridges jumped, ``jump``. What precedes
+            sliding is left out but for its last row.
         title: what run it is, see :mod:`fingerpad.io.titles`.
         mu_0: friction coefficient, drawn as the limit without attraction.
         named: states by name; those with an estimated discretisation error are drawn with error bars.
@@ -40,7 +40,7 @@ def history(
     def column(name: str) -> Array:
         return np.array([row[name] for row in rows], dtype=float)
 
-    x, f_t, f_ext = _MM * column("bone_x"), column("f_t"), column("f_ext")
+    x, f_t = _MM * column("bone_x"), column("f_t")
     jumps = x[[bool(row.get("jump", False)) for row in rows]]
     with style.look():
         figure = style.figure(7.5)
@@ -48,7 +48,7 @@ def history(
         force, length, ridges = figure.subplots(3, 1, sharex=True, height_ratios=[2, 2, 1])
         force.plot(x, f_t, "o-", ms=3.5, color=style.BLACK, label="friction force $f_T$")
         force.set_ylabel("friction force $f_T$ (N/m)")
-        _draw_apparent(force, x, f_t, f_ext, mu_0)
+        _draw_apparent(force, x, column("f_ext"), column("mu_app"), mu_0)
         length.plot(x, _MM * column("contact_length"), "o-", ms=3.5, color=style.BLACK, label="contact length $L_R$")
         length.set_ylabel("contact length $L_R$ (mm)")
         _draw_errors(force, named or {}, "f_t", 1.0)
@@ -86,7 +86,7 @@ def _sliding(rows: Sequence[Mapping[str, Any]]) -> Sequence[Mapping[str, Any]]:
     return rows[-1:]
 
 
-def _draw_apparent(ax: Axes, x: Array, f_t: Array, f_ext: Array, mu_0: float | None) -> None:
+def _draw_apparent(ax: Axes, x: Array, f_ext: Array, mu_app: Array, mu_0: float | None) -> None:
     """Add mu_app on the right, a second scale of the same curve where f_ext is constant, else a curve of its own."""
     label = "apparent friction\n$\\mu_{app} = f_T / f_{ext}$ (–)"
     load, other = float(f_ext[0]), ax
@@ -95,7 +95,6 @@ def _draw_apparent(ax: Axes, x: Array, f_t: Array, f_ext: Array, mu_0: float | N
         ax.secondary_yaxis("right", functions=there_and_back).set_ylabel(label)
     else:
         load, other = 1.0, ax.twinx()
-        mu_app = np.divide(f_t, f_ext, out=np.full_like(f_t, np.nan), where=f_ext > 0)
         other.plot(x, mu_app, "s--", ms=3, color=style.GREEN)
         other.set_ylabel(label, color=style.GREEN)
     if mu_0 is not None:

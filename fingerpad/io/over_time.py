@@ -14,6 +14,7 @@ therefore has even k alone: twice the frequency of the voltage, and its multiple
 Fritsch, Carlson, SIAM J. Numer. Anal. 17 (1980), doi 10.1137/0717021.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -47,7 +48,7 @@ class OverTime:
     seconds: float
     """Length of the load (s)."""
     mean: dict[str, float]
-    """Mean over time by quantity, in its unit."""
+    """Mean over time by quantity, in its unit; NaN where a state has no apparent friction coefficient."""
     periods: int = 0
     """Whole periods of the waveform that the spectrum is of, the last of the load; 0 without a spectrum."""
     frequency: tuple[float, ...] = ()
@@ -78,7 +79,10 @@ def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime
     time = times - start
     corners = [] if wave is None else wave.corners(seconds)
     values = {name: np.array([getattr(state, name) for state in states]) for name in QUANTITIES}
-    mean = {name: _integral(time, value, corners).real / seconds for name, value in values.items()}
+    mean = {
+        name: math.nan if np.isnan(value).any() else _integral(time, value, corners).real / seconds
+        for name, value in values.items()
+    }
     if wave is None or (periods := int(seconds / wave.period + _NEAR)) < 1:
         return OverTime(start, seconds, mean)
     found = spectrum(time, values["f_t"], wave.period, periods, corners)

@@ -28,6 +28,11 @@ WORDS = {"uncharged": "uncharged normal contact", "charged": "charged normal con
 PREFIXES = {"uncharged": "uncharged", "charged": "normal", "full_slip": "slip"}
 """Prefixes of the quantities of a state in flat tables and in ``summary.json``: ``normal_contact_length``."""
 _ROUNDOFF = 1e-9  # relative, of a displacement or a voltage
+_UNLOADED = ContactState(
+    f_ext=0.0, voltage=0.0, f_t=0.0, mu_app=math.nan, f_contact=0.0, f_electrostatic=0.0, ridges_in_contact=0,
+    contact_length=0.0, time=0.0,
+)  # fmt: skip
+"""Where a run begins."""
 
 
 def before_sliding(rows: Sequence[ContactState]) -> Sequence[ContactState]:
@@ -122,7 +127,7 @@ class LoadResult:
     name: str
     end: ContactState
     extremes: dict[str, Extreme]
-    """By quantity: apparent friction coefficient, friction force, contact length and attraction."""
+    """By quantity: friction force, contact length, attraction, and apparent friction coefficient where one is known."""
     full_slip_reached: bool
     full_slip_held: bool
     stable: bool | None
@@ -176,9 +181,13 @@ def load_result(
     extremes = {}
     for quantity in QUANTITIES:
         of = attrgetter(quantity)
-        least, most = min(mine, key=of), max(mine, key=of)
+        known = [state for state in mine if not math.isnan(of(state))]
+        if not known:
+            continue
+        least, most = min(known, key=of), max(known, key=of)
         extremes[quantity] = Extreme(of(least), least.step, of(most), most.step, least.time, most.time)
     slips = any(state.slip_began for state in mine), any(state.slip_held for state in mine)
     # A waveform has a state of its own at its begin, after a jump from the voltage before.
-    passed = over_time(mine if wave is not None else [*before, *mine], wave)
+    begin = [] if wave is not None else before or ([_UNLOADED] if mine[0].time > 0 else [])
+    passed = over_time([*begin, *mine], wave)
     return LoadResult(name, mine[-1], extremes, *slips, stable, passed)

@@ -1,5 +1,6 @@
 """The present state of a path of loads, and the energies and work of the step to it, in plain numbers."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -33,7 +34,7 @@ def contact_state(
         bone_x=float(solver.bone[0]),
         bone_height=float(solver.bone[1]),
         f_t=f_t,
-        mu_app=f_t / f_ext if f_ext > BALANCED * solver.force_scale else 0.0,
+        mu_app=f_t / f_ext if f_ext > BALANCED * solver.force_scale else math.nan,
         f_contact=float(loads.f_contact.sum()),
         f_electrostatic=float(loads.f_attraction.sum()),
         ridges_in_contact=int((loads.length > 0).sum()),

@@ -6,6 +6,7 @@ triangles.
 
 import base64
 import csv
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -97,7 +98,8 @@ def _about(state: ContactState | None) -> str:
     if state is None:
         return ""
     words = f"{state.f_ext:.4g} N/m, {state.voltage:.4g} V, bone at {_MM * state.bone_x + 0.0:.4g} mm"
-    slip = f", µ = {state.mu_app:.3f}" if abs(state.f_t) > 1e-9 * abs(state.f_ext) else ""
+    slides = abs(state.f_t) > 1e-9 * abs(state.f_ext) and not math.isnan(state.mu_app)
+    slip = f", µ = {state.mu_app:.3f}" if slides else ""
     return f"{words}{slip}, L_R = {_MM * state.contact_length:.3f} mm, {state.ridges_in_contact} ridges in contact"
 
 
