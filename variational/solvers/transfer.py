@@ -223,12 +223,13 @@ def _ridge(points: Array, on_facet: int) -> SkinState:
     origin = xy.mean(axis=1)
     # The chord is the first principal direction, in which most ridges are wide, unless the skin turns back on the way.
     axes = np.linalg.svd(xy - origin[:, None], full_matrices=False)[0]
-    places = axes.T @ (xy - origin[:, None])
-    on_facets = places[0].reshape(-1, on_facet)
+    chord = axes[:, 0]
+    along = chord @ (xy - origin[:, None])
+    on_facets = along.reshape(-1, on_facet)
     span = _gauss(on_facet)[-1] - _gauss(on_facet)[0]  # of the points on a facet, whose length is 1
-    way = np.abs(on_facets[:, -1] - on_facets[:, 0]).sum() / span
-    chosen = int(way > _TURNS_BACK * np.ptp(places[0]))
-    chord, along = axes[:, chosen], places[chosen]
+    if np.abs(on_facets[:, -1] - on_facets[:, 0]).sum() > _TURNS_BACK * span * np.ptp(along):
+        chord = axes[:, 1]
+        along = chord @ (xy - origin[:, None])
     order = np.argsort(along)
     position = points[4:, order].T.reshape(-1, on_facet, 2)
     return SkinState(origin, chord, along[order], points[2, order], points[3, order], position)
