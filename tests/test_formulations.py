@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from ffcx.naming import compute_signature
 from mpi4py import MPI
 from scipy.optimize import brentq
 
@@ -238,3 +239,13 @@ def test_too_many_coupling_iterations():
     run.coupling.cap = 1
     with pytest.raises(StepFailed, match="COUPLING_CAP at a contact error of"):
         run.run(Target("press", bone_height=-0.1 * HEIGHT))
+
+
+def test_bodies_of_a_process_share_their_kernels():
+    """Stresses are differentiated by labelled gradients, and a label of the next free number makes another kernel."""
+
+    def name() -> str:
+        compiled = make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.5e-3)), Nitsche(10.0)).observer._compiled
+        return compute_signature([(compiled.ufl_expression, np.zeros((1, 1)))], "")
+
+    assert name() == name()

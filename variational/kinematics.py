@@ -1,6 +1,11 @@
 """Kinematics of finite strain in the plane."""
 
 import ufl
+from ufl.classes import Label
+
+# What laws are differentiated by. A label's number is part of a kernel's name: with the next free one, as UFL gives
+# them out from 0 on, the stresses of each body in a process would be compiled anew.
+GRADIENT, STRETCH = Label(10**9), Label(10**9 + 1)
 
 
 def deformation_gradient(H):

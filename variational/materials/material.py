@@ -29,6 +29,7 @@ import numpy as np
 import ufl
 from ufl.algorithms.apply_algebra_lowering import apply_algebra_lowering
 from ufl.algorithms.apply_derivatives import apply_derivatives
+from ufl.classes import Variable
 
 from variational import kinematics
 from variational.coefficients import Law, said
@@ -87,7 +88,7 @@ class Material(Law):
 
     def distortion_zz(self, F):
         """Return the Cauchy stress normal to the plane (Pa) without the volumetric part, of F, (2, 2)."""
-        stretch = ufl.variable(ufl.as_ufl(1.0))
+        stretch = Variable(ufl.as_ufl(1.0), kinematics.STRETCH)
         return ufl.diff(self.energy(_in_space(F, stretch)), stretch) / ufl.det(F)
 
     def pressure(self, H):

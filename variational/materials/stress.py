@@ -9,6 +9,7 @@ part is p I, p positive in tension: an element may have a better p than the one 
 """
 
 import ufl
+from ufl.classes import Variable
 
 from variational import kinematics
 from variational.materials.material import Material
@@ -16,7 +17,7 @@ from variational.materials.material import Material
 
 def first_piola_kirchhoff(solid: Material, F, p=None):
     """Return the first Piola-Kirchhoff stress P = dW/dF (Pa), shape (2, 2); by default the pressure p is that of F."""
-    F = ufl.variable(F)
+    F = Variable(F, kinematics.GRADIENT)
     H = kinematics.displacement_gradient(F)
     p = solid.pressure(H) if p is None else p
     return ufl.diff(solid.distortion(H), F) + p * kinematics.cofactor(F)
