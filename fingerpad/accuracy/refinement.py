@@ -23,6 +23,7 @@ effect of a penalty is reported beside it (:mod:`fingerpad.accuracy.rigid_screen
 Not estimated: the effect on normal contact of a friction history that is the first mesh's.
 """
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from typing import Any
@@ -85,6 +86,11 @@ class Refinement:
         for name in {"mu_app", "f_t"} & set(self.asked) if "full_slip" not in path.states else ():
             raise StepFailed(
                 f"accuracy.{name} is {self.asked[name]:g}, which full slip decides, and that was not reached"
+            )
+        if "mu_app" in self.asked and math.isnan(path.states["full_slip"].state.mu_app):
+            raise StepFailed(
+                f"accuracy.mu_app is {self.asked['mu_app']:g}, and at full slip no force presses the finger, so that "
+                "mu_app has no value; ask for accuracy.f_t"
             )
         if self.asked and not path.states:
             raise StepFailed("accuracy is given and the history has neither normal contact nor full slip")
