@@ -155,6 +155,19 @@ def test_contradictions_are_refused(load_, message):
     assert found.startswith(message) and len(found) <= 280 and ". " not in found
 
 
+@pytest.mark.parametrize(("points", "allowed"), [(1900, False), (1000, True)])
+def test_steps_of_a_table_are_counted(points, allowed):
+    """From 100 to -100 V and back at each point takes eight steps: four to zero, and four on."""
+    times, voltages = [1e-3 * k for k in range(points)], [100.0 * (-1) ** k for k in range(points)]
+    table = {"waveform": "file", "times": times, "voltages": voltages}
+    load_ = {"name": "wave", "duration": times[-1], "voltage": table}
+    if allowed:
+        wave = from_data({"history": [PRESS, load_]}).history[1].wave
+        assert wave.count(times[-1], 1.0) == len(wave.samples(times[-1], 1.0)) == 8 * (points - 1) + 1
+    else:
+        assert refusal(load_).startswith(f"history[1].voltage has {points} points, some 1.519e+04 steps; there must be")
+
+
 def test_time_that_is_not_known_is_refused():
     """A place after a load that may stop early; the same move relative to it is known."""
     slide = {"name": "slide", "bone_x": 1e-3, "until_full_slip": True}

@@ -156,7 +156,10 @@ def _refuse_samples(key: str, wave: Waveform, seconds: float, step_scale: float)
         )
     samples = wave.count(seconds, step_scale)
     if samples > MOST:
+        has, less = f"{seconds / wave.period:.4g} periods in {seconds:g} s", "a lower frequency, a shorter load"
+        if wave.times is not None:
+            has, less = f"{len(wave.times)} points", "fewer points, smaller changes between them"
         raise ValueError(
-            f"{key}.voltage has {seconds / wave.period:.4g} periods in {seconds:g} s, some {samples:.4g} steps; there "
-            f"must be at most {MOST} of them: take a lower frequency, a shorter load or a larger numerics.step_scale"
+            f"{key}.voltage has {has}, some {samples:.4g} steps; there must be at most {MOST} of them: take {less} or "
+            "a larger numerics.step_scale"
         )

@@ -134,9 +134,9 @@ class Waveform(Part):
 
     # -- samples -----------------------------------------------------------------------------------------
     def count(self, seconds: float, step_scale: float) -> float:
-        """Return how many samples a load of some seconds has, about; zeros of the voltage come on top."""
+        """Return how many samples a load of some seconds has; zeros of a periodic voltage come on top."""
         if self.times is not None:
-            return len(self.times) * (1 + SAMPLES / step_scale)
+            return len(self.samples(seconds, step_scale))
         return seconds / self.period * _per_period(step_scale)
 
     def samples(self, seconds: float, step_scale: float) -> list[Sample]:
