@@ -120,7 +120,7 @@ def test_pictures(ran, tmp_path, kind):
 
 
 def test_picture_of_another_kind_is_refused(ran):
-    with pytest.raises(ValueError, match="kind is 'movie'; it must be one of surface, finger, history"):
+    with pytest.raises(ValueError, match="kind is 'movie'; it must be one of surface, finger, history, footprint"):
         ran[0].plot("movie")
 
 

@@ -62,6 +62,14 @@ def test_estimate_draws_a_curve_for_each_force(tmp_path):
     assert (tmp_path / "mu.png").stat().st_size > 10_000
 
 
+@pytest.mark.parametrize("voltage", ["0", "-100,-50"])
+@pytest.mark.parametrize("command", ["estimate", "microscale"])
+def test_picture_without_a_positive_voltage(command, voltage, tmp_path, capsys):
+    """The colours of voltages go up to the largest amount, which may be zero."""
+    main([command, f"--voltage={voltage}", "--plot", str(tmp_path / "plot.png")])
+    assert (tmp_path / "plot.png").stat().st_size > 10_000
+
+
 # -- microscale --------------------------------------------------------------------------------------------
 def test_real_area_is_the_bearing_area():
     """Half of the surface is above its mean, a sixth above one rms height (15.87 % of a Gaussian)."""

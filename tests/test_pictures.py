@@ -178,6 +178,12 @@ def test_surface_without_contact(tmp_path):
     assert (tmp_path / "surface.png").stat().st_size > 10_000
 
 
+def test_names_are_shown_as_they_are(tmp_path):
+    """A load's name may have dollar signs, between which Matplotlib would set its own mathematics or fail."""
+    figure = surface(tmp_path / "surface.png", [profile(r"After $5 _{ $", 0.0, 1.0)], TITLE)
+    assert figure.axes[0].get_title(loc="left").startswith(r"A  After \$5 _{ \$: ")
+
+
 @pytest.mark.parametrize("f_ext", [[20.0, 50.0] + 10 * [75.0], list(range(70, 82))], ids=["constant", "varying"])
 def test_history(tmp_path, f_ext):
     """It starts with the charged normal state, the last before sliding, and marks both jumps."""

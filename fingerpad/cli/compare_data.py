@@ -12,6 +12,7 @@ from fingerpad.cli.arguments import Parser, echo, path, writable
 from fingerpad.cli.measured import Measured, read
 from fingerpad.cli.tables import Column, text
 from fingerpad.io.states import WORDS
+from fingerpad.io.titles import plain
 from fingerpad.scene.messages import SceneError, clip
 
 if TYPE_CHECKING:
@@ -146,6 +147,6 @@ def _panel(ax: "Axes", each: _Compared) -> None:
         )
     force = "force (N)" if each.table.whole else "force per length (N/m)"
     ax.set(xlabel="voltage (V)" if over_voltage else force)
-    ax.set(ylabel=f"{each.table.quantity} ({unit or '–'})", title=clip(each.table.source, 40))
+    ax.set(ylabel=f"{each.table.quantity} ({unit or '–'})", title=plain(clip(each.table.source, 40)))
     ax.set_ylim(bottom=0)
     ax.legend()

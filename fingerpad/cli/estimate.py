@@ -117,7 +117,7 @@ def draw(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
     with plot.panels(file, "Friction at full slip, closed form") as (_, (ax,)):
         for k, value in enumerate(forces if each == "f_ext" else voltages):
             points = [row for row in rows if row[each] == value and "mu_app" in row]
-            colour = style.voltage(value, max(voltages)) if each == "voltage" else None
+            colour = style.voltage(value, max(voltages, key=abs)) if each == "voltage" else None
             x, mu = ([point[key] for point in points] for key in (over, "mu_app"))
             plot.curve(ax, k, x, mu, label[each].format(value), colour)
         ax.set(xlabel=axis[over], ylabel=r"apparent friction coefficient $\mu_{app}$ (–)")

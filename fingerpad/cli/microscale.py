@@ -102,7 +102,7 @@ def draw(file: Path, rows: Sequence[dict[str, Any]]) -> None:
         gaps.set(ylabel="length (µm)", ylim=(0, None))
         for k, voltage in enumerate(voltages):
             found = [row["p_el"] * 1e-3 for row in rows if row["voltage"] == voltage]
-            plot.curve(stress, k, p, found, f"{voltage:g} V", style.voltage(voltage, max(voltages)))
+            plot.curve(stress, k, p, found, f"{voltage:g} V", style.voltage(voltage, max(voltages, key=abs)))
         stress.set(ylabel="attraction $p_{el}$ (kPa)", ylim=(0, None))
         plot.curve(area, 0, p, [100 * row["area"] for row in first], "")
         area.set(ylabel="real area of contact (% of the nominal)", yscale="log")

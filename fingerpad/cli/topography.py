@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, path, positive, writable
+from fingerpad.io.titles import plain
 from fingerpad.scene.messages import SceneError, clip
 from variational.roughness.heightfile import UNITS, Found, is_plain, scan
 from variational.roughness.spectrum import Fit, power_spectrum, roughness_table
@@ -108,7 +109,7 @@ def draw(file: Path, name: str, found: Found, fit: Fit) -> None:
 
     flat, um = found.map.detrended("curvature"), 1e6
     heights, spectrum = distribution(flat), power_spectrum(flat, window="hann")
-    with plot.panels(file, f"{name}: curvature removed", 3) as (figure, (area, shares, psd)):
+    with plot.panels(file, f"{plain(name)}: curvature removed", 3) as (figure, (area, shares, psd)):
         limit = float(np.abs(flat.heights).max()) * um
         ends = (0, flat.size[0] * um, 0, flat.size[1] * um)
         image = area.imshow(flat.heights.T * um, origin="lower", extent=ends, cmap="cividis", vmin=-limit, vmax=limit)

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 _PATH, _FINAL = "path on the starting mesh", "final mesh"
 _TITLES = {name: words.capitalize() for name, words in WORDS.items()}
-KINDS = ("surface", "finger", "history", "time")
 
 
 class End(NamedTuple):
@@ -80,12 +79,13 @@ class Drawing:
         """Draw a picture, and write it where a path is given.
 
         Args:
-            kind: one of :data:`KINDS`: the skin in normal contact, partial and full slip, the deformed finger at full
-                slip or else at the end, friction and contact length over sliding, and with the voltage over time.
+            kind: ``"surface"``, the skin in normal contact, partial and full slip; ``"finger"``, the deformed finger at
+                full slip or else at the end; ``"history"``, friction and contact length over sliding; ``"time"``, the
+                same with the voltage over time.
             path: of the PNG file.
 
         Raises:
-            ValueError: another kind, or a history that has no such picture.
+            ValueError: a history that has no such picture.
         """
         if kind == "finger":
             return self._last_finger(path)
@@ -96,8 +96,6 @@ class Drawing:
             return self._skin(path, profiles, [state for _, state, _ in self._shown().values()])
         if kind == "time":
             return self._over_time(path)
-        if kind != "history":
-            raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(KINDS)}")
         if not self._slides():
             raise ValueError("the run has no history of sliding; the bone never moved sideways with skin on the screen")
         shown = [state.row() for state in self.states[len(before_sliding(self.states)) - 1 :]]
@@ -175,7 +173,8 @@ class Drawing:
         snapshots = [end.snapshot for end in self.ends.values()]
         snapshots += [view.snapshot for view in self.finer.values() if view.snapshot is not None]
         highest = max(map(finger_picture.highest_density, snapshots))
-        return finger_picture.finger(path, snapshot, sites, _joined(f"{title}: {conditions}", note), ridges, highest)
+        words = _joined(f"{titles.plain(title)}: {conditions}", note)
+        return finger_picture.finger(path, snapshot, sites, words, ridges, highest)
 
     def _shown(self) -> "dict[str, tuple[str, ContactState, View | None]]":
         """Return the states along whose skin is drawn: title, state, and its view on the final mesh if there is one."""

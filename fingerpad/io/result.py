@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 _STABILITY = ("stable", "lambda_min", "gain")
 _CHANGES = ("error", "penalty")
+KINDS = ("surface", "finger", "history", "footprint", "time")
+"""Pictures of a result."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +104,11 @@ class Result:
         Raises:
             ValueError: another kind, or a kind without data in this result.
         """
-        if kind == "footprint" and self.finger is not None:
+        if kind not in KINDS:
+            raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(KINDS)}")
+        if kind == "footprint":
+            if self.finger is None:
+                raise ValueError("the result has no whole finger to draw: a history has none, and of another scene a note says why")
             from fingerpad.io.footprint_picture import footprint  # Matplotlib
 
             return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None

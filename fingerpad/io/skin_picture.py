@@ -105,7 +105,7 @@ def saw_teeth(p: Array) -> float:
 
 
 def _surface_title(letter: str, state: SurfaceProfile) -> str:
-    words = f"{letter}  {state.title}: {titles.loads([(state.f_ext, state.voltage, state.bone_x)])}"
+    words = f"{letter}  {titles.plain(state.title)}: {titles.loads([(state.f_ext, state.voltage, state.bone_x)])}"
     words += f", $L_R$ = {_MM * state.contact_length:.3g} mm"
     if state.contact_length > 0:
         words += f", $f_{{ext}}/L_R$ = {_KPA * state.f_ext / state.contact_length:.3g} kPa"

@@ -44,8 +44,8 @@ def figure(height: float, width: float = WIDTH) -> Figure:
 
 
 def voltage(value: float, highest: float = 200.0) -> tuple[float, float, float, float]:
-    """Return the colour of a voltage (V): dark blue at 0 V, over red to orange at ``highest``."""
-    return matplotlib.colormaps["plasma"](0.82 * min(abs(value) / highest, 1.0))
+    """Return the colour of a voltage (V): dark blue at 0 V, over red to orange at ``highest`` or its negative."""
+    return matplotlib.colormaps["plasma"](0.82 * min(abs(value) / abs(highest), 1.0) if highest else 0.0)
 
 
 def count(axis: Axis) -> None:

@@ -7,6 +7,11 @@ _MM = 1e3
 _NOTHING = 1e-9  # N/m, V or mm: what a title calls zero
 
 
+def plain(words: str) -> str:
+    """Return words that a user chose, as of a load or a file, so that a picture shows each character as it is."""
+    return words.replace("$", r"\$")
+
+
 def conditions(f_ext: float, voltage: float, mu_0: float | None, bone_x: float | None = None) -> str:
     """Return f_ext (N/m), U (V), where the bone is sideways (m) and, if known, mu_0 as the words of a title."""
     return loads([(f_ext, voltage, bone_x)]) + _friction(mu_0)
