@@ -132,6 +132,14 @@ def test_pictures_of_a_result_that_was_read(ran):
         read.plot("surface")
 
 
+@pytest.mark.parametrize("keys", [(0, 1), (1, 0)], ids=["width first", "profile first"])
+def test_sweep_over_a_value_and_an_entry_of_a_list_of_its_table(tmp_path, keys):
+    axes = [("geometry.width", [15e-3]), ("geometry.ridge_profile[0]", [0.9])]
+    scene = fp.Scene(geometry={"ridge_profile": [1.0, 0.8]})
+    found = fp.sweep(scene, tmp_path, model="cylinders", **dict(axes[k] for k in keys))
+    assert found[0].scene.geometry == scene.geometry.model_copy(update={"width": 15e-3, "ridge_profile": (0.9, 0.8)})
+
+
 def test_failure_is_a_warning():
     """A finger without enough ridges; the states before are there."""
     few = {"f_ext": 10.0, "geometry": {"ridge_count": 5}, "output": {"receptors": False, "errors": False}}

@@ -108,7 +108,7 @@ class Result:
             raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(KINDS)}")
         if kind == "footprint":
             if self.finger is None:
-                raise ValueError("the result has no whole finger to draw: a history has none, and of another scene a note says why")
+                raise ValueError("the result has no whole finger to draw: a history has none, else a note says why")
             from fingerpad.io.footprint_picture import footprint  # Matplotlib
 
             return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None

@@ -229,7 +229,7 @@ def _scenes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> list[Scene]:
 def _with(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     """Return the scene with other values by dotted key, as :meth:`Scene.replace` does."""
     data: dict[str, Any] = {}
-    for key, value in changes.items():
+    for key, value in sorted(changes.items(), key=lambda change: "[" not in change[0]):  # whole lists first
         table = re.split(r"[.\[]", key, maxsplit=1)[0]
         if "[" in key and table not in data:  # an entry of a list, of which the others stay
             data[table] = scene.parameters().get(table)
