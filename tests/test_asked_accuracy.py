@@ -7,11 +7,12 @@ from mpi4py import MPI
 
 from fingerpad.accuracy import solves
 from fingerpad.accuracy.refinement import Refinement
+from fingerpad.io import states
 from fingerpad.io.interrupt import Interrupted
 from fingerpad.richardson import plus_minus
 from fingerpad.runs import attempt
 from fingerpad.runs.batch import key
-from fingerpad.scene import SceneError, from_data
+from fingerpad.scene import SceneError, from_data, load_names
 from tests.test_accuracy import known, model_of, search
 from variational.solvers.continuation import StepFailed
 from variational.solvers.failure import NotConverged
@@ -49,11 +50,19 @@ def test_parameters_in_use_give_the_same_scene():
             {"accuracy": {"f_t": 0.1}, "friction": 0},
             "accuracy.f_t is 0.1 and friction is 0, with which the quantity is zero and has no relative accuracy",
         ),
+        (
+            {"accuracy": {"f_t": 0.1}, "history": [{"name": "Full_slip", "f_ext": 1.0}]},
+            "history.0..name is 'Full_slip' and accuracy is given, with which the state of that name has files",
+        ),
     ],
 )
 def test_impossible_accuracy_is_refused(given, words):
     with pytest.raises(SceneError, match=words):
         from_data(given)
+
+
+def test_names_of_states_are_those_of_their_files():
+    assert tuple(states.WORDS[name] for name in ("charged", "full_slip")) == load_names.FINAL_STATES
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from fingerpad.scene.load_names import first_clash
+from fingerpad.scene.load_names import FINAL_STATES, first_clash
 from fingerpad.scene.materials import Roughness
 from fingerpad.scene.messages import show
 from fingerpad.scene.parameters import Accuracy, Load, Output
@@ -43,6 +43,7 @@ def refuse_contradictions(
     _refuse_endless_gap(roughness, h_0)
     if history is not None:
         _refuse_history(history, given)
+        _refuse_names(history if accuracy else ())
         _refuse_times(history, step_scale)
         _refuse_floating(history)
 
@@ -93,6 +94,16 @@ def _refuse_history(history: Sequence[Load], given: Mapping[str, Any]) -> None:
             f"history[{clash[1]}].name is {other} and history[{clash[0]}].name is {one}; each load must have a "
             "name of its own, also where spaces become _ and letters have no case, since files are named by it"
         )
+
+
+def _refuse_names(history: Sequence[Load]) -> None:
+    """Refuse a load whose files would be those of a state on the final mesh."""
+    for k, load in enumerate(history):
+        if first_clash([*FINAL_STATES, load.name]) is not None:
+            raise ValueError(
+                f"history[{k}].name is {show(load.name)} and accuracy is given, with which the state of that name has "
+                "files of its own; take another name"
+            )
 
 
 def _refuse_floating(history: Sequence[Load]) -> None:

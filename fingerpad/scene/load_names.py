@@ -7,6 +7,8 @@ file system cannot hold or that no one can read on a screen, and every load's fi
 import unicodedata
 from collections.abc import Sequence
 
+FINAL_STATES = ("charged normal contact", "full slip")
+"""States that have files of their own where an accuracy is asked for."""
 _MOST_BYTES = 100  # of a name; a file system allows 255, of which the files take some
 _FORBIDDEN = '/\\:*?"<>|'  # the first separates folders, the others are forbidden on memory sticks
 
