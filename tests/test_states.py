@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from fingerpad.io import states
+from fingerpad.scene import Load
 from variational.state import ContactState
 
 STEADY, LEAST = 1e-6, 1e-9
@@ -271,6 +272,8 @@ def test_touch_belongs_to_the_load_on_the_way():
     history.still("press", f_ext=2.0)
     history.still("press", f_ext=3.0)
     assert [(name, len(mine)) for name, mine in states.by_load(history.rows)] == [("press", 4), ("press", 2)]
+    stopped = states.load_results(history.rows[:1], [Load(name="press", f_ext=2.0)], lambda k, end: None)
+    assert [load.name for load in stopped] == ["press"], "a run stopped in the first touch"
 
 
 def test_normal_contact_after_a_way_through_the_air():

@@ -158,7 +158,8 @@ def load_results(
     before: list[ContactState] = []
     for k, (name, mine) in enumerate(by_load(rows)):
         load = next(iter(loads[mine[-1].load_number - 1 :]), None)
-        yield load_result(name, mine, stable(k, mine[-1]), before, None if load is None else load.wave)
+        named, wave = (name, None) if load is None else (load.name, load.wave)  # a first touch may be all there is
+        yield load_result(named, mine, stable(k, mine[-1]), before, wave)
         before = mine[-1:]
 
 
