@@ -60,9 +60,11 @@ class Load(Part):
     """Speed (m/s) of the bone on its way, which makes it a load over time. The model is quasi-static: the speed only
     sets how long the way takes."""
     duration: Annotated[Finite, within(1e-6, 1e5, "s")] | None = None
-    """Time (s) that the load takes, in place of a speed."""
+    """Time (s) that the load takes, in place of a speed. The bone moves evenly in time; of a force its root changes
+    evenly, and of a voltage its square, as the attraction does."""
     until_full_slip: Switch = False
-    """Whether the load stops as soon as every point in contact slips one way; only with bone_x or bone_x_by."""
+    """Whether the load stops at full slip: where every point in contact slips one way, and forces stay the same over a
+    further 0.2 mm, which may end beyond bone_x. Only with bone_x or bone_x_by."""
 
     @model_validator(mode="after")
     def _consistent(self) -> "Load":
