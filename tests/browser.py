@@ -23,6 +23,7 @@ _FLAGS = (
     "--disable-component-update",
     "--disable-sync",
 )
+SIZES = {"laptop": (1366, 768), "phone": (390, 844)}
 _ERRORS = """<script>
 const errors = [];
 addEventListener("error", (event) => errors.push(event.message));
