@@ -1,6 +1,7 @@
 """The report of a folder: its numbers are the folder's, a browser opens it, and bad folders are refused or told."""
 
 import json
+import math
 import re
 import shutil
 from dataclasses import replace
@@ -215,8 +216,8 @@ def test_half_written_run_is_reported_as_such(copy):
     [
         ({}, "holds no results of fingerpad"),
         ({"notes.txt": "hello"}, "holds no results of fingerpad"),
-        ({"summary.json": '{"f_ext": 75,'}, "is not whole, or not of a run"),
-        ({"summary.json": "[1, 2]"}, "is not whole, or not of a run"),
+        ({"summary.json": '{"f_ext": 75,'}, "its files are not whole, or not of a run"),
+        ({"summary.json": "[1, 2]"}, "its files are not whole, or not of a run"),
         ({"summary.json": '{"failure": "f_ext is too large"}'}, "was refused and has no results: f_ext is too large"),
         ({"table.csv": "a,b\n1,2\n"}, "is not the table of a sweep"),
         ({"table.csv": "voltage,slip_mu_app,failure\n100,0.3,\n200"}, "is cut short"),
@@ -232,6 +233,27 @@ def test_bad_folder_is_refused_in_a_sentence(tmp_path, capsys, files, words):
     said = capsys.readouterr().err
     assert words in said and said.count("\n") == 1
     assert not (tmp_path / NAME).exists()
+
+
+def test_result_without_a_coefficient_is_read_back(tmp_path):
+    """As of a finger that slides while nothing presses it."""
+    solved(Scene(), "cylinders", tmp_path)
+    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+    (tmp_path / "summary.json").write_text(json.dumps(summary | {"slip_mu_app": None}), encoding="utf-8")
+    read = Result.load(tmp_path)
+    assert math.isnan(read.full_slip.mu_app) and read.full_slip.f_t == summary["slip_f_t"]
+    assert write(tmp_path).exists() and read.to_dict()["slip_mu_app"] is None
+
+
+def test_run_without_an_accepted_step_is_read_back(copy):
+    """Its first step failed: there is a failure and no table."""
+    summary = json.loads((copy / "summary.json").read_text(encoding="utf-8"))
+    known = {key: value for key, value in summary.items() if not key.startswith(("uncharged_", "normal_", "slip_"))}
+    failed = known | {"steps": 0, "loads": [], "states": {}, "failure": "no equilibrium"}
+    (copy / "summary.json").write_text(json.dumps(failed), encoding="utf-8")
+    for file in copy.glob("*.csv"):
+        file.unlink()
+    assert Result.load(copy).failure == "no equilibrium"
 
 
 def test_folder_that_is_not_there(tmp_path):

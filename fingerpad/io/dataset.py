@@ -118,7 +118,7 @@ def write(file: Path, make: "Callable[[], xarray.Dataset]") -> str:
 
 def attributes(result: "Result") -> dict[str, Any]:
     """Return the attributes of a dataset: model, versions, and every parameter by its dotted key and as JSON."""
-    parameters = result.scene.parameters()
+    parameters = result.record.get("parameters") or result.scene.parameters()  # the former with laws that are not read
     found: dict[str, Any] = {"title": "fingerpad: a fingertip on a touchscreen", "model": result.model}
     found |= {name: text for name in ("failure", "interrupted") if (text := getattr(result, name))}
     found |= {"notes": "\n".join(result.notes)} if result.notes else {}

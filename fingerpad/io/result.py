@@ -13,6 +13,7 @@ from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
 from fingerpad.io.states import PREFIXES, STATES, WORDS, LoadResult, load_results
 from fingerpad.scene import Scene, SceneError, from_data
 from fingerpad.scene.laws import coefficient
+from fingerpad.scene.messages import clip
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
 
 if TYPE_CHECKING:
@@ -207,24 +208,26 @@ class Result:
         from fingerpad.io import dataset  # it takes a Result
         from fingerpad.io.drawing import Drawing  # Matplotlib, which reading numbers does not need
 
-        folder = Path(folder)
+        folder, name = Path(folder), clip(str(folder), 80)
         try:
             summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+            if set(summary) == {"failure"}:
+                raise SceneError(f"the run in {name} was refused and has no results: {summary['failure']}")
             found = cls.from_dict(summary, folder)
             skins = dataset.skins(folder)
             known = {name: replace(state, skin=skins.get(name)) for name, state in found.named.items()}
             found = replace(found, **{name: known.get(name) for name in STATES})  # type: ignore[arg-type]
-            if found.model != "full":
-                return found
+            if found.model != "full" or not (summary.get("steps") or (folder / "steps.csv").exists()):
+                return found  # of no path, or of one without an accepted step
             with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
                 steps = tuple(ContactState.from_row(row) for row in csv.DictReader(file))
             mu_0 = None if "laws" in found.record.get("parameters", {}) else coefficient(found.scene)
             drawing = Drawing(mu_0, steps, {}, {}, {}, None, found.named)
             return replace(found, steps=steps, loads=tuple(_loads(steps, found.scene, summary)), drawing=drawing)
-        except (OSError, ValueError, KeyError) as error:
+        except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:  # JSON of other things
             if isinstance(error, SceneError):
                 raise
-            raise SceneError(f"run {folder} cannot be read: {error}") from None
+            raise SceneError(f"run {name} cannot be read: its files are not whole, or not of a run ({error})") from None
 
     # -- text ------------------------------------------------------------------------------------------
     def __str__(self) -> str:
@@ -293,7 +296,7 @@ def _state(summary: Mapping[str, Any], prefix: str) -> ContactState | None:
     if summary.get(f"{prefix}_contact_length") is None:
         return None
     values = {key: summary.get(f"{prefix}_{key}") for key in (*CONDITIONS, *RESULTS, *_STABILITY)}
-    given = {key: value for key, value in values.items() if value is not None}
+    given = {"mu_app": math.nan} | {key: value for key, value in values.items() if value is not None}
     for key in ("f_ext", "voltage"):  # of the scene itself, in results of models without a loading path
         given.setdefault(key, summary[key] if summary.get("model", "full") != "full" else math.nan)
     if prefix == PREFIXES["full_slip"]:

@@ -40,7 +40,7 @@ def read(folder: Path) -> Result | Table:
     if not folder.is_dir():
         raise SceneError(f"{name} is not a folder; give one that fingerpad run or fingerpad sweep wrote")
     if (folder / "summary.json").exists():
-        return _run(folder)
+        return Result.load(folder)
     if (folder / "table.csv").exists():
         return _sweep(folder)
     if (folder / "steps.csv").exists():
@@ -51,21 +51,6 @@ def read(folder: Path) -> Result | Table:
     if (folder / "scene.json").exists():
         raise SceneError(f"the run in {name} has no accepted step yet; make the report when it has one")
     raise SceneError(f"{name} holds no results of fingerpad; give a folder that fingerpad run or fingerpad sweep wrote")
-
-
-def _run(folder: Path) -> Result:
-    name = clip(str(folder), 80)
-    try:
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-        if set(summary) == {"failure"}:
-            raise SceneError(f"the run in {name} was refused and has no results: {summary['failure']}")
-        if summary.get("model", "full") == "full" and not (folder / "steps.csv").exists():  # no step was accepted
-            return Result.from_dict(summary, folder)
-        return Result.load(folder)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:  # JSON of other things
-        if isinstance(error, SceneError):
-            raise
-        raise SceneError(f"run {name} cannot be read: summary.json is not whole, or not of a run ({error})") from None
 
 
 def _unfinished(folder: Path) -> Result:
