@@ -1,5 +1,6 @@
 """What is installed: this package's version; libraries and the compiler of forms, whose absence is one sentence."""
 
+import hashlib
 import os
 import shlex
 import shutil
@@ -11,6 +12,7 @@ from importlib import metadata
 from pathlib import Path
 
 COMPILER = "C compiler"
+_PACKAGES = ("geometry", "variational", "fingerpad")
 OPTIONAL = ("dolfinx", "ufl", "basix", "ffcx", "petsc4py", "mpi4py", "gmsh", "matplotlib", COMPILER)
 
 
@@ -20,6 +22,14 @@ def version() -> str:
     if project.is_file():
         return str(tomllib.loads(project.read_text(encoding="utf-8"))["project"]["version"])
     return metadata.version("fingerpad")
+
+
+def source() -> str:
+    """Return a hash of the program's own files, which tells two states of one version apart."""
+    root, found = Path(__file__).resolve().parents[1], hashlib.sha256()
+    for file in sorted(file for package in _PACKAGES for file in (root / package).rglob("*.py")):
+        found.update(str(file.relative_to(root)).encode() + file.read_bytes())
+    return found.hexdigest()[:12]
 
 
 @contextmanager

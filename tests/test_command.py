@@ -244,6 +244,13 @@ def test_ranges(text, values):
     assert ranges.read("x", text) == values
 
 
+def test_whole_numbers_stay_whole():
+    """Some keys take no others; a range has them where its step is whole, too."""
+    for text in ("55,57", "55:59:3", "-3"):
+        assert all(isinstance(value, int) for value in ranges.read("x", text))
+    assert [type(value) for value in ranges.read("x", "0:1:3")] == [float] * 3
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

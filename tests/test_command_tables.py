@@ -6,7 +6,8 @@ import pytest
 
 from fingerpad.cli import estimate, main, microscale, sweep
 from fingerpad.reduced import cylinders
-from fingerpad.scene import Scene, from_data, keys, load
+from fingerpad.runs.sweep import sweep as run_sweep
+from fingerpad.scene import Scene, SceneError, from_data, keys, load
 from tests.commands import kept, refused
 from variational.roughness.bam import BearingArea
 
@@ -150,12 +151,65 @@ def test_sweep_prints_and_keeps_a_table(tmp_path, capsys):
         (["--over", "voltage=0,-5500"], "voltage is -5500 V; it must be"),
         (["--over", "volts=0,5"], "volts is not a key of a scene; did you mean voltage?"),
         (["--over", "voltage=0,5", "--set", "voltage=5"], "--set voltage is given and voltage is varied"),
+        (["--over", "voltage=0,5", "--over", "voltage=9"], "--over voltage is given twice"),
+        (["--over", "voltage=5,5"], "voltage of the sweep is [5, 5]; each value must be there once"),
         (["--over", "voltage=0:200:200", "--over", "f_ext=1:200:200"], "the sweep has 40000 points"),
     ],
 )
 def test_sweep_refuses(argv, message, capsys, tmp_path):
     assert refused(capsys, "sweep", *argv, "--out", str(tmp_path / "new")).startswith(message)
     assert not list(tmp_path.iterdir())
+
+
+def test_sweep_over_words_switches_and_whole_numbers(tmp_path, capsys):
+    """Points are read; that the closed form is of one finger fails some of them and no other."""
+    axes = ["contact.formulation=penalty,nitsche", "output.errors=true,false", "geometry.ridge_count=55:57:2"]
+    assert main(["sweep", *(f"--over={axis}" for axis in axes), "--model=cylinders", f"--out={tmp_path}"]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert [sum(f" {word} " in f" {line}" for line in lines) for word in ("nitsche", "true", "55")] == [4, 4, 4]
+    assert sum("0.5170" in line for line in lines) == 2
+
+
+def test_sweep_head_has_units(tmp_path):
+    found = run_sweep(Scene(), tmp_path, model="cylinders", **{"roughness.h_rms": [2e-6, 3e-6]})
+    assert "roughness.h_rms (m)" in str(found)
+
+
+def test_sweep_over_keys_that_need_each_other(tmp_path):
+    """Only the points are checked: a value may need that of another axis."""
+    axes = {"contact.formulation": ["nitsche"], "contact.gamma_0": [1, 2]}
+    found = run_sweep(Scene(), tmp_path, model="cylinders", **axes)
+    assert [result.scene.contact.gamma_0 for result in found] == [1.0, 2.0]
+
+
+def test_files_of_a_study_are_beside_it(tmp_path):
+    text = """[sweep]
+    "geometry.file" = ["a.msh", "sub/b.msh"]
+    roughness.topography.file = ["map.npy"]
+    """
+    (tmp_path / "study.toml").write_text(text, encoding="utf-8")
+    _, axes = sweep.study(tmp_path / "study.toml", [], [])
+    assert axes["geometry.file"] == [str(tmp_path / "a.msh"), str(tmp_path / "sub" / "b.msh")]
+    assert axes["roughness.topography.file"] == [str(tmp_path / "map.npy")]
+
+
+def test_sweep_and_run_have_folders_of_their_own(tmp_path, capsys):
+    """One would replace the other's report."""
+    run, study = tmp_path / "run", tmp_path / "study"
+    assert main(["run", "--model=cylinders", f"--out={run}"]) == 0
+    over = "--over=voltage=0,100"
+    assert main(["sweep", "--model=cylinders", over, f"--out={study}"]) == 0
+    capsys.readouterr()
+    assert "holds the results of a run (scene.json)" in refused(
+        capsys, "sweep", "--model=cylinders", over, f"--out={run}"
+    )
+    assert "holds the results of a sweep" in refused(capsys, "run", "--model=cylinders", f"--out={study}")
+
+
+def test_folder_of_a_sweep_that_is_a_file(tmp_path):
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    with pytest.raises(SceneError, match="out .*file cannot be a folder, since it is a file"):
+        run_sweep(Scene(), tmp_path / "file", model="cylinders", voltage=[1.0])
 
 
 # -- models side by side -----------------------------------------------------------------------------------

@@ -116,6 +116,7 @@ class Formula(Friction):
         (Derjaguin(0.3, float("inf")), "tau_0 is inf; it must be a finite number"),
         (Derjaguin(0.3, 5e3, 0.0), "limit of .* is nan Pa at 0 Pa"),
         (Coulomb(-0.1), "is -0.1 Pa at 1 Pa; it must be finite and not negative"),
+        (Formula(lambda p: 2 * p**0.9), "over the pressure is .* it must begin with a finite slope"),
         (Formula(lambda p: 0.3 * p + 5e3), "is 5000 Pa at a pressure of 0 Pa; it must go to 0 with the pressure"),
         (Formula(lambda p: 0.3 * p + 5e3 * (p > 0)), "is 5000 Pa at a pressure of 1e-06 Pa; it must go to 0"),
         (Formula(lambda p: 0.0), r"has the shape \(\) for 5 pressures"),

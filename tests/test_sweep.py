@@ -9,11 +9,15 @@ from pathlib import Path
 
 import pytest
 
+from fingerpad.installed import source
+from fingerpad.io.files import replace
+from fingerpad.io.result import Result
 from fingerpad.runs import batch as module
 from fingerpad.runs.batch import key, result, sweep
 from fingerpad.runs.processes import End, Pool
 from fingerpad.runs.processes import run as run_module
-from fingerpad.scene import from_data
+from fingerpad.runs.sweep import Sweep, _older
+from fingerpad.scene import Scene, from_data
 from tests.small_finger import small
 
 
@@ -76,11 +80,18 @@ def test_summary_cut_short_is_no_result(started, tmp_path):
     assert result(scene, tmp_path) is None
 
 
-def test_run_that_was_stopped_is_no_result(started, tmp_path):
+@pytest.mark.parametrize(
+    "stopped",
+    [
+        {"f_ext": 10, "failure": "stopped by SIGTERM", "interrupted": True},
+        {"f_ext": 10, "failure": "step 1 (touch) found no equilibrium: MUMPS_OUT_OF_MEMORY (INFOG(1) = -19)"},
+    ],
+    ids=["stopped", "out of memory"],
+)
+def test_run_that_another_machine_may_end_is_no_result(started, tmp_path, stopped):
     """Its summary is for whoever stopped it; the sweep runs the scene again."""
     scene = from_data({"f_ext": 10})
     (tmp_path / key(scene)).mkdir()
-    stopped = {"f_ext": 10, "failure": "stopped by SIGTERM", "interrupted": True}
     (tmp_path / key(scene) / "summary.json").write_text(json.dumps(stopped))
     assert sweep(scenes(10), tmp_path)["10 N/m"] == {"f_ext": 10}
     assert len(started) == 1
@@ -129,3 +140,20 @@ def test_crash_says_its_last_words():
     end = run_module("fingerpad.runs.batch", ["no scene.json", "nowhere", "5", "full"], 5.0)
     assert end.reason == "CRASH_1"
     assert "no scene.json" in end.message
+
+
+def test_points_of_another_state_of_the_program_are_told(tmp_path):
+    """Kept points are taken over whatever computed them, and the sweep says how many that were."""
+    versions = ({"source": source()}, {"source": "0123456789ab"}, {})
+    found = [Result(Scene(), "full", None, None, None, record={"provenance": {"versions": v}}) for v in versions]
+    study = Sweep({"voltage": (0.0, 1.0, 2.0)}, tuple(found), tmp_path)
+    assert _older(study, tmp_path / "full").startswith("1 of 3 points are of another state of the program; delete")
+    assert _older(Sweep({"voltage": (0.0,)}, tuple(found[:1]), tmp_path), tmp_path) == ""
+
+
+def test_two_processes_may_write_a_file_at_once(tmp_path):
+    """As the tasks of an array do with the table of their sweep; one of them is whole at the end."""
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(lambda k: replace(tmp_path / "table.csv", f"{k}\n" * 1000), range(400)))
+    lines = (tmp_path / "table.csv").read_text().splitlines()
+    assert len(lines) == 1000 and len(set(lines)) == 1 and [file.name for file in tmp_path.iterdir()] == ["table.csv"]

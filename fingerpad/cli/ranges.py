@@ -16,7 +16,7 @@ _HOW = "write one value, several as 0, 50, 200, or first:last:count as in 0:200:
 
 
 def read(name: str, text: str) -> list[float | str]:
-    """Return the values of a text: numbers, or texts of a number and a unit where a unit is given.
+    """Return the values of a text: numbers, whole ones as such, or texts of a number and a unit where one is given.
 
     Args:
         name: of the key or option, for a refusal.
@@ -30,19 +30,23 @@ def read(name: str, text: str) -> list[float | str]:
     values = _range(name, numbers) if ":" in numbers else _list(numbers)
     if not values:
         raise SceneError(f"{name} is {clip(text) or 'empty'}; {_HOW}")
-    return [f"{value!r} {unit}" for value in values] if unit else [*values]
+    return [f"{float(value)!r} {unit}" for value in values] if unit else [*values]
 
 
 def _list(text: str) -> list[float]:
     parts = [part.strip() for part in text.split(",")]
-    return [float(part) for part in parts] if all(re.fullmatch(_NUMBER, part) for part in parts) else []
+    return [_number(part) for part in parts] if all(re.fullmatch(_NUMBER, part) for part in parts) else []
+
+
+def _number(text: str) -> float:
+    return int(text) if re.fullmatch(r"[-+]?\d{1,15}", text) else float(text)
 
 
 def _range(name: str, text: str) -> list[float]:
     found = re.fullmatch(rf"({_NUMBER}):({_NUMBER}):(\d+)(:log)?", text.replace(" ", ""))
     if found is None:
         return []
-    first, last, count = float(found[1]), float(found[2]), int(found[3][:9])
+    first, last, count = _number(found[1]), _number(found[2]), int(found[3][:9])
     if not 1 <= count <= _MOST:
         raise SceneError(f"{name} is {clip(text)}, of {count} values; it must be of 1 to {_MOST}")
     if count == 1 and first != last:
@@ -50,5 +54,6 @@ def _range(name: str, text: str) -> list[float]:
     if found[4] and not (first > 0 and last > 0):
         raise SceneError(f"{name} is {clip(text)}; both ends must be greater than 0 for equal ratios")
     space = np.geomspace if found[4] else np.linspace
-    values = [float(f"{value:.12g}") for value in space(first, last, count)]
-    return [first, *values[1:-1], last] if count > 1 else [first]
+    between = [_number(f"{value:.12g}") for value in space(first, last, count)][1:-1]
+    values = [first, *between, last] if count > 1 else [first]
+    return values if all(isinstance(value, int) for value in values) else [*map(float, values)]

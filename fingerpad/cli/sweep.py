@@ -1,5 +1,6 @@
 """``fingerpad sweep``: a scene over values of its keys, each run in a process of its own and kept on disk."""
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -27,9 +28,8 @@ def main(argv: Sequence[str]) -> int:
         _EXAMPLES,
     )
     parser.add_scene()
-    parser.add_argument(
-        "--over", action="append", default=[], metavar="KEY=RANGE", help="values of a key: 0,50 or first:last:count"
-    )
+    words = "values of a key: 0,50 or first:last:count, or words"
+    parser.add_argument("--over", action="append", default=[], metavar="KEY=RANGE", help=words)
     parser.add_out("results/sweep", "folder of all runs and of table.csv (default: results/sweep)")
     parser.add_argument("--jobs", type=positive(int), default=2, metavar="N", help="runs at a time (default: 2)")
     parser.add_argument("--model", choices=MODELS, default="full", help="model to run (default: full)")
@@ -51,10 +51,10 @@ def study(file: Path | None, given: Sequence[str], over: Sequence[str]) -> tuple
     Args:
         file: a scene with a table ``[sweep]``, of a list or a range for each key.
         given: ``KEY=VALUE`` for the scene.
-        over: ``KEY=RANGE``, which win over the table's.
+        over: ``KEY=RANGE``, which win over the table's; or words as in ``numerics.element=P1,P2``.
 
     Raises:
-        SceneError: nothing is varied, or a key is given twice.
+        SceneError: nothing is varied, or a key is given twice by options.
     """
     data = read_study(file) if file is not None else {}
     axes: dict[str, list[Any]] = {}
@@ -65,11 +65,15 @@ def study(file: Path | None, given: Sequence[str], over: Sequence[str]) -> tuple
         axes[key] = ranges.read(f"sweep.{key}", value) if isinstance(value, str) else value
         if not isinstance(axes[key], list) or not axes[key]:
             raise SceneError(f'sweep.{key} is {show(value)}; it must be a list or a range such as "0:200:5"')
+    given_over = set[str]()
     for text in over:
-        key, equals, values = text.partition("=")
-        if not (equals and key.strip()):
+        key, equals, values = (part.strip() for part in text.partition("="))
+        if not (equals and key):
             raise SceneError(f"--over {clip(text) or 'an empty text'} is no KEY=RANGE; write --over voltage=0:200:5")
-        axes[key.strip()] = ranges.read(f"--over {key.strip()}", values)
+        if key in given_over:
+            raise SceneError(f"--over {clip(key)} is given twice; give all of its values in one")
+        given_over.add(key)
+        axes[key] = _words(values) or ranges.read(f"--over {key}", values)
     if not axes:
         raise SceneError("nothing is varied; give a table [sweep] in the scene file or --over KEY=RANGE")
     for key, value in map(override, given):
@@ -77,3 +81,10 @@ def study(file: Path | None, given: Sequence[str], over: Sequence[str]) -> tuple
             raise SceneError(f"--set {key} is given and {key} is varied; give one of the two")
         put(data, key, value)
     return data, axes
+
+
+def _words(text: str) -> list[Any]:
+    """Return the values of a list of words, switches among them; empty where a part of it is none."""
+    parts = [part.strip() for part in text.split(",")]
+    words = all(re.fullmatch(r"[A-Za-z][\w -]*", part) for part in parts)
+    return [override(f"key={part}")[1] for part in parts] if words else []

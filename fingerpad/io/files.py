@@ -7,11 +7,12 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 
 def replace(file: Path, text: str | bytes) -> None:
     """Write a file of text or bytes; what was there stays until all of it is written."""
-    part = file.with_name(f"{file.name}.part")
+    part = file.with_name(f"{file.name}.{uuid4().hex[:8]}.part")  # another process may write the same file
     try:
         part.write_bytes(text.encode("utf-8") if isinstance(text, str) else text)
         part.replace(file)

@@ -9,13 +9,17 @@ _FILES = 160  # bytes that the longest name of a file in the folder takes of a p
 _PATH = 80  # characters of a path in a sentence
 
 
-def check_folder(folder: Path) -> None:
+def check_folder(folder: Path, option: str = "--out") -> None:
     """Refuse a folder that cannot be made or written to; nothing is made.
+
+    Args:
+        folder: to be made or written to.
+        option: what it was given by.
 
     Raises:
         SceneError: why not.
     """
-    name, text = f"--out {clip(str(folder), _PATH)}", str(folder)
+    name, text = f"{option} {clip(str(folder), _PATH)}", str(folder)
     try:
         text.encode("utf-8")
     except UnicodeEncodeError:

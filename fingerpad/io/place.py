@@ -32,13 +32,13 @@ LEFT = (
         "coupling.csv",
         "fields.csv",
         "summary.json",
-        "summary.json.part",
+        "summary.json*.part",
         "run.log",
         "result.nc",
-        "result.nc.part",
+        "result.nc*.part",
     ),
     *("displacement.bp", "stress.bp", "sed.bp", "finger_*.npz", "finger_*.png", "surface*.npz", "surface*.png"),
-    *("history.png", "time.png", "footprint.png", "report.html", "report.html.part"),
+    *("history.png", "time.png", "footprint.png", "report.html", "report.html*.part"),
 )
 TRACE = "trace"
 """Key of ``scene.json`` where the scene is a trace of a force on the whole finger."""
@@ -130,6 +130,8 @@ class Place:
         except OSError as error:
             if error.errno not in _NO_LOCKS:
                 raise
+        if (self.folder / "sweep.json").exists():
+            raise PlaceError(f"{_short(self.folder)} holds the results of a sweep; choose another folder")
         kept = self._kept()
         same = kept is not None and kept.get(TRACE, "") == self._parameters.get(TRACE)
         if kept is not None and kept != self._parameters and not same:

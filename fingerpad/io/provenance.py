@@ -2,7 +2,6 @@
 
 import contextlib
 import ctypes
-import hashlib
 import os
 import platform
 import re
@@ -19,12 +18,10 @@ import scipy
 import ufl
 from petsc4py import PETSc
 
-from fingerpad.installed import version
+from fingerpad.installed import source, version
 from fingerpad.io.petsc_options import in_use
 from variational import jit
 
-_ROOT = Path(__file__).resolve().parents[2]
-_PACKAGES = ("geometry", "variational", "fingerpad")
 # Threads and kernels of the linear algebra, MPI's and PETSc's settings, compilers of the forms, what is loaded.
 _VARIABLES = re.compile(
     r"(BLIS|GOTO|MKL|OMP|OMPI_MCA|OPENBLAS|PETSC|UCX)_.*|CC|CFLAGS|CPPFLAGS|LDFLAGS|LD_PRELOAD|LD_LIBRARY_PATH"
@@ -51,7 +48,7 @@ def provenance() -> dict[str, Any]:
 def _versions() -> dict[str, str]:
     return {
         "fingerpad": version(),
-        "source": _source(),
+        "source": source(),
         "dolfinx": dolfinx.__version__,
         "basix": basix.__version__,
         "ffcx": ffcx.__version__,
@@ -62,14 +59,6 @@ def _versions() -> dict[str, str]:
         "scipy": scipy.__version__,
         "python": platform.python_version(),
     }
-
-
-def _source() -> str:
-    """Return a hash of the program's own files, which tells two states of one version apart."""
-    found = hashlib.sha256()
-    for file in sorted(file for package in _PACKAGES for file in (_ROOT / package).rglob("*.py")):
-        found.update(str(file.relative_to(_ROOT)).encode() + file.read_bytes())
-    return found.hexdigest()[:12]
 
 
 def _loaded() -> set[Path]:

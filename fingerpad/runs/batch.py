@@ -27,6 +27,7 @@ from fingerpad.scene import Scene
 
 Summary = dict[str, Any]
 _LIMIT = 900.0  # s of processor time for one scene
+_OF_THE_MACHINE = "MUMPS_OUT_OF_MEMORY"  # a failure that says nothing of the scene
 
 
 def key(scene: Scene) -> str:
@@ -35,12 +36,20 @@ def key(scene: Scene) -> str:
 
 
 def result(scene: Scene, folder: Path) -> Summary | None:
-    """Return the summary of a scene that has been run in a sweep's folder to its end, whatever that was."""
+    """Return the summary of a scene that has been run in a sweep's folder to its end, whatever that was.
+
+    A run that was stopped, or had too little memory, has not come to its end.
+    """
+    summary = _summary(scene, folder)
+    again = summary is None or summary.get("interrupted") or _OF_THE_MACHINE in summary.get("failure", "")
+    return None if again else summary
+
+
+def _summary(scene: Scene, folder: Path) -> Summary | None:
     try:
-        summary = dict(json.loads((folder / key(scene) / "summary.json").read_text(encoding="utf-8")))
+        return dict(json.loads((folder / key(scene) / "summary.json").read_text(encoding="utf-8")))
     except (OSError, json.JSONDecodeError):
         return None
-    return None if summary.get("interrupted") else summary
 
 
 def progress(quiet: bool = False) -> Progress:
@@ -89,8 +98,8 @@ def sweep(
         quiet: whether to print nothing, and show no bar.
 
     Returns:
-        The summaries by name. That of a run that crashed, took too long or was asked to stop holds ``failure`` alone,
-        and it goes on the next time; what it left is in its folder.
+        The summaries by name. That of a run that crashed, took too long, had too little memory or was asked to stop
+        holds ``failure`` alone, and it goes on the next time; what it left is in its folder.
     """
     found = {name: result(scene, folder) for name, scene in scenes.items()}
     broken: dict[str, Summary] = {}
@@ -113,7 +122,9 @@ def sweep(
         summary = result(scenes[name], folder)
         if summary is None:
             crashed = f"{end.reason}: {end.message}" if end.reason else "INTERRUPTED"
-            broken[name] = {"failure": end.message if end.code == os.EX_TEMPFAIL else crashed}
+            said = (_summary(scenes[name], folder) or {}).get("failure", "")
+            of_process = end.message if end.code == os.EX_TEMPFAIL else crashed
+            broken[name] = {"failure": said if _OF_THE_MACHINE in said else of_process}
         if quiet:
             return
         words = (summary or broken[name]).get("failure") or _said(summary or {})

@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fingerpad.installed import source
 from fingerpad.io import terminal
 from fingerpad.io.files import replace, replace_json
+from fingerpad.io.folder import check_folder
 from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import PREFIXES, STATES
@@ -22,7 +24,7 @@ from fingerpad.report.write import attempt
 from fingerpad.runs import sweep_dataset
 from fingerpad.runs.solve import MODELS, solved
 from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.messages import show
+from fingerpad.scene.messages import clip, show
 from fingerpad.scene.reading import plain, put
 from variational.state import CONDITIONS, RESULTS
 
@@ -119,7 +121,7 @@ class Sweep:
         heads = [*(_head(key) for key in self.axes), *(_head(key) for key in _SHOWN)]
         rows = [heads]
         for point, result in zip(self.points(), self.results, strict=True):
-            first = [f"{value:g}" if isinstance(value, int | float) else str(value) for value in point.values()]
+            first = [_text(value) for value in point.values()]
             state = result.full_slip
             if state is None:
                 rows.append([*first, result.failure or "no full slip"])
@@ -139,9 +141,16 @@ class _Lines(list[str]):
         self.append(line)
 
 
+def _text(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f"{value:g}" if isinstance(value, int | float) else str(value)
+
+
 def _head(key: str) -> str:
     if key not in QUANTITIES:
-        return key
+        meant = sweep_dataset.described(key)
+        return key if meant is None or not meant.unit else f"{key} ({meant.unit})"
     quantity = QUANTITIES[key]
     unit = f" ({quantity.unit})" if quantity.unit else ""
     return f"{quantity.words.split()[-1] if key != 'ridges_in_contact' else 'ridges'}{unit}"
@@ -172,7 +181,7 @@ def sweep(
 
     Raises:
         SceneError: a key or a value that a scene cannot have, no values, a scene with laws of its own, which other
-            processes cannot be given, or more than one rank of MPI.
+            processes cannot be given, more than one rank of MPI, or a folder that holds a run.
     """
     scene = Scene() if scene is None else scene
     if terminal.ranks() > 1:
@@ -182,9 +191,9 @@ def sweep(
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     scenes = _scenes(scene, axes)
-    values = {key: tuple(_at(each, key) for each in found) for key, found in _along(scene, axes).items()}
+    values = _values(scenes, axes)
     folder = Path(out)
-    folder.mkdir(parents=True, exist_ok=True)
+    _claim(folder)
     if model == "cylinders":
         found = [_closed(each) for each in scenes]
     else:
@@ -195,35 +204,59 @@ def sweep(
         (folder / name).unlink(missing_ok=True)
     replace_json(folder / FILES[-1], {"model": model, "parameters": scene.parameters()})
     done.to_csv(folder / FILES[0])
-    missing = sweep_dataset.save(done)
+    notes = tuple(filter(None, (sweep_dataset.save(done), _older(done, folder / model))))
     attempt(folder)
-    return replace_fields(done, notes=(missing,)) if missing else done
+    return replace_fields(done, notes=notes)
 
 
-def _along(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> dict[str, list[Scene]]:
-    """Return the scenes along each axis."""
-    for key, values in axes.items():
-        listed = isinstance(values, Sequence | np.ndarray) and not isinstance(values, str) and len(values)
-        if not listed or any(np.iterable(value) and not isinstance(value, str | Mapping) for value in values):
-            raise SceneError(
-                f"{key} of the sweep is {show(values)}; it must be a list of at least one value, none a list"
-            )
-    return {key: [_with(scene, {key: value}) for value in values] for key, values in axes.items()}
+def _older(done: Sweep, folder: Path) -> str:
+    """Return a note on points that another state of the program has computed; empty without one."""
+    kept = (each.record.get("provenance", {}).get("versions", {}) for each in done)
+    found = [versions["source"] for versions in kept if "source" in versions]
+    count = len(found) - found.count(source())
+    if not count:
+        return ""
+    return f"{count} of {len(done)} points are of another state of the program; delete {folder} to compute them again."
+
+
+def _claim(folder: Path) -> None:
+    """Make the folder; refuse one that cannot be one, or holds a run."""
+    check_folder(folder, "out")
+    run = next((name for name in ("scene.json", "summary.json", "steps.csv") if (folder / name).exists()), None)
+    if run is not None:
+        raise SceneError(f"out {clip(str(folder), 80)} holds the results of a run ({run}); choose another folder")
+    folder.mkdir(parents=True, exist_ok=True)
 
 
 def _scenes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> list[Scene]:
     """Return the scenes of all points, checked."""
     if not axes:
         raise SceneError("the sweep has no axis; give values of at least one key, such as voltage=[0, 100, 200]")
+    for key, values in axes.items():
+        listed = isinstance(values, Sequence | np.ndarray) and not isinstance(values, str) and len(values)
+        if not listed or any(np.iterable(value) and not isinstance(value, str | Mapping) for value in values):
+            raise SceneError(
+                f"{key} of the sweep is {show(values)}; it must be a list of at least one value, none a list"
+            )
     if scene.parameters().get("laws", {}).keys() - {"mesh"}:
         raise SceneError(
             "the scene has laws of its own, which the processes of a sweep cannot be given; call run for each point"
         )
-    _along(scene, axes)
     count = int(np.prod([len(values) for values in axes.values()]))
     if count > _MOST:
         raise SceneError(f"the sweep has {count} points; at most {_MOST} are allowed")
     return [_with(scene, dict(zip(axes, point, strict=True))) for point in itertools.product(*axes.values())]
+
+
+def _values(scenes: Sequence[Scene], axes: Mapping[str, Sequence[Any]]) -> dict[str, tuple[Any, ...]]:
+    """Return the values of each axis in SI, from the scenes of the grid, the last axis fastest."""
+    found, apart = {}, len(scenes)  # points from one value of an axis to the next
+    for key, values in axes.items():
+        apart //= len(values)
+        found[key] = tuple(_at(scenes[k * apart], key) for k in range(len(values)))
+        if len(set(map(repr, found[key]))) < len(values):
+            raise SceneError(f"{key} of the sweep is {show(values)}; each value must be there once")
+    return found
 
 
 def _with(scene: Scene, changes: Mapping[str, Any]) -> Scene:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fingerpad.io import dataset
-from fingerpad.scene.keys import every
+from fingerpad.scene.keys import Key, every
 
 if TYPE_CHECKING:
     import xarray
@@ -46,14 +46,18 @@ def of_sweep(sweep: "Sweep") -> "xarray.Dataset":
     for name, words in (("wall_seconds", "elapsed time"), ("processor_seconds", "processor time of all ranks")):
         values = np.array([getattr(result.cost, name) for result in sweep.results], np.float64).reshape(shape)
         found[name] = axes, values, {"units": "s", "long_name": f"{words} of the point"}
-    known = {key.name: key for key in every()}
     for key, along in sweep.axes.items():
-        meant = known.get(re.sub(r"\[\d+\]", "[]", key))
+        meant = described(key)
         unit, words = ("1", key) if meant is None else (meant.unit or "1", meant.meaning)
         found[key] = (key,), _coordinate(along), {"units": unit, "long_name": words}
     coords = {name: value for name, value in found.items() if name in (*axes, "state")}
     data = {name: value for name, value in found.items() if name not in coords}
     return xarray.Dataset(data, coords, _shared(sweep))
+
+
+def described(key: str) -> Key | None:
+    """Return what is known of a dotted key of a scene, None of a table."""
+    return next((each for each in every() if each.name == re.sub(r"\[\d+\]", "[]", key)), None)
 
 
 def save(sweep: "Sweep") -> str:

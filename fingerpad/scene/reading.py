@@ -19,6 +19,7 @@ _DEPTH = f"a scene has at most {_MOST_DEPTH} inside one another"
 _MOST_BITS = 1000  # of a whole number; floating point has 1024
 _PATH = 80  # characters of a path in a message
 _NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
+_FILES = r"geometry\.file|roughness\.topography\.file|history\[\d+\]\.voltage\.file"
 _KEY = re.compile(rf"{_NAME}(\.{_NAME})*")
 
 
@@ -64,17 +65,21 @@ def read_study(path: Path) -> dict[str, Any]:
         SceneError: the file cannot be read.
     """
     data: dict[str, Any] = plain(read(path))
-    loads = data["history"] if isinstance(data.get("history"), list) else ()
-    tables = [data.get("geometry"), *(_inner(load, "voltage") for load in loads)]
-    tables.append(_inner(data.get("roughness"), "topography"))
-    for table in tables:
-        if isinstance(table, dict) and isinstance(table.get("file"), str):
-            table["file"] = str(path.parent / table["file"])
+    _beside(data, path.parent)
+    _beside(data.get("sweep"), path.parent)
     return data
 
 
-def _inner(table: Any, key: str) -> Any:
-    return table.get(key) if isinstance(table, dict) else None
+def _beside(value: Any, folder: Path, where: str = "") -> Any:
+    """Return a value with the files that it names, one by one or in a list, as paths from a folder on."""
+    if isinstance(value, dict):
+        value |= {key: _beside(inner, folder, f"{where}.{key}".lstrip(".")) for key, inner in value.items()}
+    elif isinstance(value, list):
+        names = [f"{where}[{k}]" if isinstance(inner, dict) else where for k, inner in enumerate(value)]
+        return [_beside(inner, folder, name) for inner, name in zip(value, names, strict=True)]
+    elif isinstance(value, str) and re.fullmatch(_FILES, where):
+        return str(folder / value)
+    return value
 
 
 def read_bytes(path: Path) -> bytes:

@@ -35,6 +35,7 @@ CONE_ROUNDOFF = 1e-8  # relative: a traction this near the limit counts as on it
 _PRESSURES = np.array([0.0, 1.0, 1e2, 1e4, 1e6])  # Pa, at which a law is examined
 _JUMP = 1e-6  # Pa, p_n at which the limit must be below _JUMPED
 _JUMPED = 1.0  # Pa
+_SMALL, _STEEPER = (1e-12, 1e-3), 1.05  # Pa, between which the limit over the pressure must not rise by more
 
 
 class Friction(Law, ABC):
@@ -81,14 +82,15 @@ class Friction(Law, ABC):
         """Refuse what is no law of friction.
 
         Raises:
-            ValueError: numbers that are not finite; a limit that is not zero without pressure, begins with a jump, is
-                negative or no number, or fails. In one sentence.
+            ValueError: numbers that are not finite; a limit that is not zero without pressure, begins with a jump or an
+                infinite slope, is negative or no number, or fails. In one sentence.
         """
         self.refuse_numbers()
         try:
             with np.errstate(all="ignore"):
                 found = np.asarray(self.limit(_PRESSURES), dtype=float)
                 one = float(self.limit(_JUMP))
+                slopes = [float(self.limit(p)) / p for p in _SMALL]
         except Exception as error:  # whatever the user's limit raises
             raise ValueError(f"the limit of {self} cannot be evaluated: {said(error)}") from error
         if found.shape != _PRESSURES.shape:
@@ -103,6 +105,11 @@ class Friction(Law, ABC):
             value, p = (found[0], 0.0) if found[0] else (one, _JUMP)
             raise ValueError(
                 f"the limit of {self} is {value:g} Pa at a pressure of {p:g} Pa; it must go to 0 with the pressure"
+            )
+        if not slopes[0] <= _STEEPER * slopes[1]:
+            raise ValueError(
+                f"the limit of {self} over the pressure is {slopes[1]:g} at {_SMALL[1]:g} Pa and {slopes[0]:g} at "
+                f"{_SMALL[0]:g} Pa; it must begin with a finite slope, as c ((p + a)^n - a^n) does for c p^n"
             )
 
 
