@@ -89,7 +89,7 @@ def _failed(table: Table) -> str:
     ]
     if not rows:
         return html.section("failed", "Failures", html.paragraph("No run failed."))
-    note = "A run that crashed, was stopped or had too little memory is started again by the same command, no other one."
+    note = "A run that crashed, was stopped or had too little memory is started again by the same command."
     return html.section(
         "failed", "Which runs failed, and why", html.table(("point", "reason"), rows), html.paragraph(note)
     )
