@@ -102,7 +102,7 @@ def error(found: Mapping[str, Any], model: str, key: str) -> float | None:
 _ANSWERS = "forces, friction and contact length"
 _WHICH = {  # model: finger it is for, its answers
     "cylinders": ("the default finger, or one whose uncharged contact length is known", _ANSWERS),
-    "smooth": ("any finger", f"{_ANSWERS}, height of the bone"),
+    "smooth": ("any finger of which three ridges or more touch", f"{_ANSWERS}, height of the bone"),
     "full": ("any finger", "everything, receptors too"),
 }
 

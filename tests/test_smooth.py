@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad.reduced import ridge_cell, smooth
+from fingerpad.reduced import ridge_cell, smooth, stages
 from fingerpad.richardson import ONCE
-from fingerpad.scene import SceneError, from_data
+from fingerpad.scene import SceneError, from_data, load
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
+from tests.small_finger import SMALL
 from variational.contact.ridge_law import RidgeTable
 from variational.state import RESULTS, ContactState
 
@@ -154,7 +155,7 @@ def test_stages_are_those_that_take_time(answer):
     smooth.solve(from_data(SCENE), answer[1], console=shown)
     assert [part for _, part in shown.told] == [0.0, 0.5]
     assert all(text.startswith("the smooth finger") for text, _ in shown.told)
-    assert shown.whole == 2 * smooth._FINGER
+    assert shown.whole == 2 * stages.FINGER
 
 
 @pytest.mark.parametrize(("voltage", "count"), [(0.0, 4), (100.0, 6)])
@@ -162,30 +163,68 @@ def test_tables_that_are_missing_count(tmp_path, voltage, count):
     """Of each of two meshes: one table or two, and the finger. Its last stage is not the end."""
     shown = Recorder()
     scenes = [from_data(SCENE | {"voltage": voltage, "mesh": SCENE["mesh"] | {"contact": h}}) for h in (1e-5, 5e-6)]
-    stages = smooth._Stages(scenes, tmp_path, MPI.COMM_SELF, shown)
+    there = stages.Stages(scenes, tmp_path, MPI.COMM_SELF, shown)
     for k in range(count):
-        stages.begin(str(k))
+        there.begin(str(k))
     parts = [part for _, part in shown.told]
     assert [text for text, _ in shown.told] == [str(k) for k in range(count)]
     assert parts[0] == 0.0 and parts == sorted(set(parts))
-    assert parts[-1] == pytest.approx(1 - smooth._FINGER / shown.whole)
+    assert parts[-1] == pytest.approx(1 - stages.FINGER / shown.whole)
 
 
-def test_table_that_ends_too_soon_is_said(answer, monkeypatch):
-    """A table to a fiftieth of the force: the finger stops where it ends, with one sentence."""
-    folder, tables = answer[1], ridge_cell.tables
+def shortened(least: int):
+    """Return what gives tables that end at a fiftieth of the force, where they are less than so many times deeper."""
+    tables = ridge_cell.tables
 
-    def short(scene, folder, comm):
+    def short(scene, folder, comm, deeper=1):
         found = tables(scene, folder, comm)
-        for table in (found.normal, found.slip):
+        for table in (found.normal, found.slip) if deeper < least else ():
             keep = np.arange(len(table.y)) >= np.argmax(table.contact < 0.04)
             for name, values in vars(table).items():
                 object.__setattr__(table, name, values[keep])
         return found
 
-    monkeypatch.setattr(ridge_cell, "tables", short)
+    return short
+
+
+def test_table_that_ends_too_soon_is_said(answer, monkeypatch):
+    """The finger stops where it ends, with one sentence."""
+    monkeypatch.setattr(ridge_cell, "tables", shortened(2))
+    monkeypatch.setattr(smooth, "_DEEPEST", 1)
     with pytest.raises(SceneError, match="its table ends at"):
-        smooth.solve(from_data(SCENE), folder)
+        smooth.solve(from_data(SCENE), answer[1])
+
+
+def test_table_that_ends_too_soon_is_made_deeper(answer, monkeypatch):
+    """Twice, and the finger begins again; its stages are counted anew."""
+    monkeypatch.setattr(ridge_cell, "tables", shortened(4))
+    shown = Recorder()
+    found = smooth.solve(from_data(SCENE), answer[1], console=shown)
+    assert found.full_slip.f_t == answer[0].full_slip.f_t
+    parts = [part for _, part in shown.told]
+    assert 0 <= min(parts) and max(parts) < 1
+
+
+def test_table_goes_deeper(tmp_path):
+    """To twice the force, in a file of its own."""
+    scene = from_data(SCENE)
+    once, twice = (ridge_cell.tables(scene, tmp_path, MPI.COMM_SELF, deeper) for deeper in (1, 2))
+    assert twice.normal.contact.max() == pytest.approx(2 * once.normal.contact.max(), rel=1e-6)
+    assert once.name != twice.name
+
+
+def test_less_than_a_ridge_is_refused(tmp_path):
+    """Spread evenly over its width, a ridge of a sharply curved finger that touches by a part of it is too stiff."""
+    light = load(SMALL).replace(f_ext=0.3, voltage=0.0, mesh={"contact": 10e-6})
+    with pytest.raises(SceneError, match="touches over 0.* mm, less than a ridge of 0.483 mm"):
+        smooth.solve(light, tmp_path)
+
+
+def test_few_ridges_are_told(answer):
+    """Of a flat finger with skin that touches over three and over two of them."""
+    light = smooth.solve(from_data(SCENE | {"f_ext": 0.5}), answer[1])
+    told = [[note for note in found.notes if "stand apart" in note] for found in (answer[0], light)]
+    assert not told[0] and told[1][0].startswith("the skin touches over 2")
 
 
 def test_history_is_refused(tmp_path):

@@ -72,18 +72,19 @@ class Tables:
     unknowns: int
 
 
-def tables(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Tables:
+def tables(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, deeper: int = 1) -> Tables:
     """Return the tables of a scene's ridge, made now or read from a folder; collective.
 
     Args:
         scene: a scene.
         folder: of tables, each a JSON file named by a hash of what it depends on, which it holds.
         comm: communicator of the ranks that want them.
+        deeper: how many times the force that suffices for the default finger the ridge is pressed to.
 
     Raises:
         StepFailed: the cell could not be pressed or slid.
     """
-    made_of, file = _place(scene, folder, comm)
+    made_of, file = _place(scene, folder, comm, deeper)
     data = json.loads(file.read_text(encoding="utf-8")) if comm.rank == 0 and file.exists() else None
     data = comm.bcast(data)
     if data is None:
@@ -97,20 +98,20 @@ def tables(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD) -> Table
     return Tables(file.stem, normal, slip, **rest)
 
 
-def are_kept(scene: Scene, folder: Path, comm: MPI.Comm) -> bool:
+def are_kept(scene: Scene, folder: Path, comm: MPI.Comm, deeper: int) -> bool:
     """Return whether the tables of a scene's ridge are in a folder; collective."""
-    file = _place(scene, folder, comm)[1]
+    file = _place(scene, folder, comm, deeper)[1]
     return bool(comm.bcast(file.exists() if comm.rank == 0 else None))
 
 
-def _place(scene: Scene, folder: Path, comm: MPI.Comm) -> tuple[dict[str, Any], Path]:
+def _place(scene: Scene, folder: Path, comm: MPI.Comm, deeper: int) -> tuple[dict[str, Any], Path]:
     """Return what a table depends on, and its file; collective."""
-    made_of = comm.bcast(_made_of(scene))  # a law without a source counts by the process that it is in
+    made_of = comm.bcast(_made_of(scene, deeper))  # a law without a source counts by the process that it is in
     name = hashlib.sha256(json.dumps(made_of, sort_keys=True).encode()).hexdigest()[:16]
     return made_of, folder / f"{name}.json"
 
 
-def _made_of(scene: Scene) -> dict[str, Any]:
+def _made_of(scene: Scene, deeper: int = 1) -> dict[str, Any]:
     """Return what a table depends on."""
     parameters = scene.parameters()
     skin = ("sc_thickness", "ve_thickness", "ridge_wavelength", "ridge_amplitude", "ridge_profile")
@@ -122,7 +123,7 @@ def _made_of(scene: Scene) -> dict[str, Any]:
         "version": VERSION,
         "voltage": scene.voltage,
         "friction": coefficient(scene),
-        "f_max": _largest(scene.f_ext),
+        "f_max": deeper * _largest(scene.f_ext),
         "geometry": {name: parameters["geometry"][name] for name in skin},
         "materials": {name: parameters["materials"][name] for name in layers},
         "contact_size": scene.mesh.contact,
@@ -133,9 +134,9 @@ def _made_of(scene: Scene) -> dict[str, Any]:
 
 
 def _largest(f_ext: float) -> float:
-    """Return a force (N/m) that no ridge exceeds, of few values, for tables to serve many scenes.
+    """Return a force (N/m) that no ridge of the default finger exceeds, of few values: tables serve many scenes.
 
-    In the full runs of the default finger the central ridge bears up to 0.33 (f_ext / 1 N/m)^0.73.
+    In its full runs the central ridge bears up to 0.33 (f_ext / 1 N/m)^0.73.
     """
     needed = 1.5 * 0.33 * f_ext**0.73
     return float(2.5 * 2 ** max(0, np.ceil(np.log2(needed / 2.5))))

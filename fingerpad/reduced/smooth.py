@@ -14,7 +14,7 @@ The finger's own elements, a quarter of a ridge, have no part in it: halving all
 lengths by 0.1 % and the bone's height by 0.13 % (default finger, 15 and 75 N/m, 200 V).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
@@ -30,6 +30,7 @@ from fingerpad.io.states import WORDS
 from fingerpad.model.touching import by_rule
 from fingerpad.reduced import ridge_cell
 from fingerpad.reduced.answer import Stopwatch, at_rest, at_slip, refuse_others
+from fingerpad.reduced.stages import Stages, ridges
 from fingerpad.richardson import MeshParameter
 from fingerpad.scene import Scene, SceneError, laws
 from geometry import fingertip, tags
@@ -54,12 +55,9 @@ _PRESSED = 0.01
 """Force that a table's last ridge in contact may bear, over the largest in it. A ridge lets go when it is pulled or,
 without attraction, when nothing presses it."""
 _HALF_ARC = 5e-3  # m, of the skin that can touch
+_FEW = 3  # ridges
+_DEEPEST = 1024  # times the force to which a ridge is first pressed
 _JUDGED = "mu_app", "contact_length", "f_electrostatic"
-_CHARGED, _UNCHARGED, _FINGER = 4.0, 2.5, 8.0
-"""Expected processor time (s) of a ridge's tables at facets of 5 um, with a voltage and without, and of the finger's
-loads: of default scenes between 20 and 75 N/m and 100 and 200 V, known to a factor of two."""
-_FINER = 0.4  # power of one over the facets with which the time of a table grows: from 5 to 2.5 um
-_SIZE = 5e-6  # m, those facets
 
 
 def smoothed(finger: Fingertip) -> Fingertip:
@@ -85,39 +83,6 @@ def sizes(scene: Scene) -> MeshSize:
     )  # fmt: skip
 
 
-class _Stages:
-    """What there is to do, one after the other, and how much of its time is over."""
-
-    def __init__(self, scenes: Sequence[Scene], folder: Path, comm: MPI.Comm, console: Console | None) -> None:
-        """Find what there is to do; collective.
-
-        Args:
-            scenes: of the fingers, in order.
-            folder: of the ridges' tables.
-            comm: communicator of the mesh.
-            console: shows it; None for nothing.
-        """
-        self._console, self._seconds, self._done = console, list[float](), 0
-        for scene in scenes:
-            for each in _ridges(scene):
-                time = (_CHARGED if each.voltage else _UNCHARGED) * (_SIZE / each.mesh.contact) ** _FINER
-                self._seconds.append(0.0 if ridge_cell.are_kept(each, folder, comm) else time)
-            self._seconds.append(_FINGER)
-        if console is not None:
-            console.expect({}, sum(self._seconds))
-
-    def begin(self, what: str) -> None:
-        """Show what begins, unless it takes no time."""
-        if self._console is not None and self._seconds[self._done]:
-            self._console.phase(what, sum(self._seconds[: self._done]) / sum(self._seconds))
-        self._done += 1
-
-
-def _ridges(scene: Scene) -> list[Scene]:
-    """Return the scenes whose ridges the finger of a scene has: charged and uncharged, or one without a voltage."""
-    return [scene, scene.model_copy(update={"voltage": 0.0})] if scene.voltage else [scene]
-
-
 def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: Console | None = None) -> Result:
     """Return the answer of the smooth finger; collective.
 
@@ -129,13 +94,14 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: 
 
     Raises:
         SceneError: a scene with a history, with a mesh or another friction law than Coulomb's of its own, one this
-            model finds no equilibrium for, or one whose mesh.contact is too large for the answer to mean anything.
+            model finds no equilibrium for, one under whose force less than a ridge touches, or one whose mesh.contact
+            is too large for the answer to mean anything.
     """
     clock = Stopwatch()
     refuse_others(scene, "smooth")
     _refuse_friction(scene)
     half = scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"contact": scene.mesh.contact / 2})})
-    stages = _Stages((scene, half), folder, comm, console)
+    stages = Stages((scene, half), folder, comm, console)
     fingers, answers = zip(*(_solved(one, folder, comm, stages) for one in (scene, half)), strict=True)
     errors = {state: estimated(answers[0][state], answers[1].get(state)) for state in answers[0]}
     _refuse_coarse(scene, answers[0], errors)
@@ -146,6 +112,12 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: 
     made = f"tables of the ridge took {made_in:.2f} s of processor time when they were made; kept in {folder}"
     counted = "ridges are counted by their mean height, which misses some that barely touch"
     notes = [made, "receptors are not in this model", counted]
+    least = min(finger.touching for finger in fingers)
+    if least < _FEW:
+        notes.append(
+            f"the skin touches over {least:.2g} ridges; fewer than {_FEW} stand apart, and this model spreads them: "
+            "friction and contact length may be off by more than the error given"
+        )
     if "full_slip" not in found:
         notes.append(f"no full slip within {scene.slide_length:g} m of sliding")
     more: dict[str, Any] = {
@@ -161,18 +133,28 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: 
 
 
 def _solved(
-    scene: Scene, folder: Path, comm: MPI.Comm, stages: _Stages
+    scene: Scene, folder: Path, comm: MPI.Comm, stages: Stages
 ) -> tuple["_SmoothFinger", dict[str, ContactState]]:
     """Return the finger at the end of its loads, and its states by name.
 
     Raises:
-        SceneError: the ridge could not be followed to where it lets go, or no equilibrium was found.
+        SceneError: the ridge could not be followed to where it lets go, less than a ridge touches, or no equilibrium
+            was found.
     """
+    deeper = 1
     try:
-        finger = _SmoothFinger(scene, folder, comm, stages)
-        _refuse_lost(scene, finger.charged.slip)
-        found = {"charged": at_rest(scene, finger.press())}
-        slip = finger.slide()
+        while True:
+            try:
+                finger = _SmoothFinger(scene, folder, comm, stages, deeper)
+                _refuse_lost(scene, finger.charged.slip)
+                found = {"charged": at_rest(scene, finger.press())}
+                slip = finger.slide()
+                break
+            except _TableEnds:
+                deeper *= 2
+                if deeper > _DEEPEST:
+                    raise
+                stages.again(scene, folder, comm, deeper)
     except StepFailed as error:
         raise SceneError(
             f"the model 'smooth' found no equilibrium with the ridge's tables at mesh.contact {scene.mesh.contact:g} "
@@ -246,16 +228,20 @@ def _named(state: str, name: str) -> str:
     return f"{name} of {WORDS[state]}"
 
 
+class _TableEnds(StepFailed):
+    """A ridge is pressed more deeply than its table goes."""
+
+
 class _SmoothFinger:
     """The smooth finger and its loads."""
 
-    def __init__(self, scene: Scene, folder: Path, comm: MPI.Comm, stages: _Stages) -> None:
+    def __init__(self, scene: Scene, folder: Path, comm: MPI.Comm, stages: Stages, deeper: int) -> None:
         self.scene = scene
         tables = []
-        for each in _ridges(scene):
+        for each in ridges(scene):
             size = f"facets of {each.mesh.contact * 1e6:.3g} µm"
             stages.begin(f"one ridge pressed, slid and lifted at {each.voltage:g} V, {size}")
-            tables.append(ridge_cell.tables(each, folder, comm))
+            tables.append(ridge_cell.tables(each, folder, comm, deeper))
         self.charged, self.uncharged = charged, uncharged = tables[0], tables[-1]
         stages.begin(f"the smooth finger with the law of this ridge, {size}")
         finger = smoothed(scene.geometry)
@@ -270,6 +256,7 @@ class _SmoothFinger:
             on_accept=self._accepted, step_scale=_STEPS,
         )  # fmt: skip
         self.solver, self.observer, self.walk = made.solver, made.observer, made.continuation
+        self.touching = np.inf  # least width over which skin touches, in ridges
 
     def press(self) -> dict[str, Any]:
         """Press and charge the finger and return its normal contact."""
@@ -295,7 +282,7 @@ class _SmoothFinger:
         comm = self.solver.layout.comm
         lowest = float(np.min(comm.allgather(float(self.walk.surface_state.y.min(initial=np.inf)))))
         if lowest < self.law.table.y[0]:
-            raise StepFailed(
+            raise _TableEnds(
                 f"step {self.walk.steps} ({target.name}): a ridge is pressed by {-lowest:.3g} m and its table ends at "
                 f"{-self.law.table.y[0]:.3g} m"
             )
@@ -305,6 +292,14 @@ class _SmoothFinger:
         contact, attraction, length = (
             surface.per_ridge(np.asarray(value / period, dtype=float)) for value in self.law.table.at(y)
         )
+        width = float(surface.per_ridge(np.asarray(self.law.table.at(y)[2] > 0, dtype=float)).sum())
+        self.touching = min(self.touching, width / period)
+        if width < period:
+            raise SceneError(
+                f"f_ext is {self.scene.f_ext:g} N/m, under which the finger of the model 'smooth' touches over "
+                f"{1e3 * width:.2g} mm, less than a ridge of {1e3 * period:.3g} mm, which it spreads evenly over that "
+                "length; use the model 'full'"
+            )
         mean = self._mean_height()
         if mean[0] < 0 or mean[-1] < 0:
             raise StepFailed("the skin touches beyond mesh.touching_half_arc, which must be larger")
