@@ -1,5 +1,7 @@
 """Rung 2 on a finger of few ridges, lightly pressed: what it answers, and that it is in balance."""
 
+import os
+import signal
 from dataclasses import replace
 
 import numpy as np
@@ -176,7 +178,7 @@ def shortened(least: int):
     """Return what gives tables that end at a fiftieth of the force, where they are less than so many times deeper."""
     tables = ridge_cell.tables
 
-    def short(scene, folder, comm, deeper=1):
+    def short(scene, folder, comm, deeper, pause):
         found = tables(scene, folder, comm)
         for table in (found.normal, found.slip) if deeper < least else ():
             keep = np.arange(len(table.y)) >= np.argmax(table.contact < 0.04)
@@ -225,6 +227,19 @@ def test_few_ridges_are_told(answer):
     light = smooth.solve(from_data(SCENE | {"f_ext": 0.5}), answer[1])
     told = [[note for note in found.notes if "stand apart" in note] for found in (answer[0], light)]
     assert not told[0] and told[1][0].startswith("the skin touches over 2")
+
+
+@pytest.mark.parametrize(("number", "error"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, SystemExit)])
+@pytest.mark.parametrize("kept", [True, False], ids=["finger", "ridge"])
+def test_signal_ends_it_after_the_step(answer, tmp_path, kept, number, error):
+    """In the ridge's path or in the finger's, and not inside PETSc."""
+
+    class Stopping(Recorder):
+        def phase(self, text, part):
+            os.kill(os.getpid(), number)
+
+    with pytest.raises(error):
+        smooth.solve(from_data(SCENE), answer[1] if kept else tmp_path, console=Stopping())
 
 
 def test_history_is_refused(tmp_path):

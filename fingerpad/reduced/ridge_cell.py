@@ -28,6 +28,7 @@ from ufl.algorithms.apply_algebra_lowering import apply_algebra_lowering
 from ufl.algorithms.apply_derivatives import apply_derivatives
 
 from fingerpad.io.files import replace_json
+from fingerpad.io.interrupt import Interrupted
 from fingerpad.reduced.answer import Stopwatch
 from fingerpad.scene import Scene
 from fingerpad.scene.laws import coefficient
@@ -72,7 +73,13 @@ class Tables:
     unknowns: int
 
 
-def tables(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, deeper: int = 1) -> Tables:
+def tables(
+    scene: Scene,
+    folder: Path,
+    comm: MPI.Comm = MPI.COMM_WORLD,
+    deeper: int = 1,
+    pause: Callable[[], None] = lambda: None,
+) -> Tables:
     """Return the tables of a scene's ridge, made now or read from a folder; collective.
 
     Args:
@@ -80,6 +87,7 @@ def tables(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, deeper: 
         folder: of tables, each a JSON file named by a hash of what it depends on, which it holds.
         comm: communicator of the ranks that want them.
         deeper: how many times the force that suffices for the default finger the ridge is pressed to.
+        pause: called after each step; may raise to stop.
 
     Raises:
         StepFailed: the cell could not be pressed or slid.
@@ -89,7 +97,7 @@ def tables(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, deeper: 
     data = comm.bcast(data)
     if data is None:
         # Every rank makes it by itself; what differs, if only the time it took, is rank 0's.
-        data = comm.bcast({"made_of": made_of} | _Cell(scene, made_of["f_max"]).tabulate())
+        data = comm.bcast({"made_of": made_of} | _Cell(scene, made_of["f_max"], pause).tabulate())
         if comm.rank == 0:
             folder.mkdir(parents=True, exist_ok=True)
             replace_json(file, data)
@@ -145,7 +153,8 @@ def _largest(f_ext: float) -> float:
 class _Cell:
     """A ridge and its path."""
 
-    def __init__(self, scene: Scene, f_max: float) -> None:
+    def __init__(self, scene: Scene, f_max: float, pause: Callable[[], None] = lambda: None) -> None:
+        self.pause = pause
         self.clock, self.scene, self.f_max = Stopwatch(), scene, f_max
         finger = flat_junction(scene.geometry)
         top = mean_depth(finger) + finger.sc_thickness + finger.ve_thickness + _DERMIS
@@ -172,6 +181,7 @@ class _Cell:
         self.rows: dict[str, list[tuple[float, ...]]] = {}
 
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
+        self.pause()
         loads = self.observer.ridge_loads(self.walk.surface_state)
         f_ext = float(loads.f_contact[0] - loads.f_attraction[0])
         yields = sum((t * (1 - confined(solid, f_ext / self.period)) for solid, t in self.layers), 0.0)
@@ -209,6 +219,8 @@ class _Cell:
         for height in heights:
             try:
                 self.walk.run(Target("lift", bone_height=height))
+            except Interrupted:
+                raise
             except StepFailed:  # the jump off the screen: nothing in contact comes after it
                 break
             if self.rows["lift"][-1][3] == 0:

@@ -25,6 +25,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from fingerpad.io.console import Console
+from fingerpad.io.interrupt import Interrupt, Interrupted
 from fingerpad.io.result import Cost, Result
 from fingerpad.io.states import WORDS
 from fingerpad.model.touching import by_rule
@@ -102,10 +103,12 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: 
     _refuse_friction(scene)
     half = scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"contact": scene.mesh.contact / 2})})
     stages = Stages((scene, half), folder, comm, console)
-    fingers, answers = zip(*(_solved(one, folder, comm, stages) for one in (scene, half)), strict=True)
+    with Interrupt(comm) as interrupt, interrupt.ends_the_program():
+        found = [_solved(one, folder, comm, stages, interrupt) for one in (scene, half)]
+    fingers, answers = zip(*found, strict=True)
     errors = {state: estimated(answers[0][state], answers[1].get(state)) for state in answers[0]}
     _refuse_coarse(scene, answers[0], errors)
-    found = {state: replace(value, error=errors[state]) for state, value in answers[0].items()}
+    named = {state: replace(value, error=errors[state]) for state, value in answers[0].items()}
     counts = [finger.solver.counts.factorisations for finger in fingers]
     used = {tables.name: tables for finger in fingers for tables in (finger.uncharged, finger.charged)}.values()
     made_in = sum(tables.seconds for tables in used)
@@ -118,7 +121,7 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: 
             f"the skin touches over {least:.2g} ridges; fewer than {_FEW} stand apart, and this model spreads them: "
             "friction and contact length may be off by more than the error given"
         )
-    if "full_slip" not in found:
+    if "full_slip" not in named:
         notes.append(f"no full slip within {scene.slide_length:g} m of sliding")
     more: dict[str, Any] = {
         "table_seconds": made_in,
@@ -127,13 +130,13 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: 
     }
     size = fingers[0].solver.layout.global_size
     cost = Cost(processor_seconds=clock.seconds(), factorisations=sum(counts), unknowns=size, ranks=comm.size)
-    states = (None, found["charged"], found.get("full_slip"))
+    states = (None, named["charged"], named.get("full_slip"))
     more["laws"] = laws.used(scene)
     return Result(scene, "smooth", *states, cost=cost, notes=tuple(notes), record=more)
 
 
 def _solved(
-    scene: Scene, folder: Path, comm: MPI.Comm, stages: Stages
+    scene: Scene, folder: Path, comm: MPI.Comm, stages: Stages, interrupt: Interrupt
 ) -> tuple["_SmoothFinger", dict[str, ContactState]]:
     """Return the finger at the end of its loads, and its states by name.
 
@@ -145,7 +148,7 @@ def _solved(
     try:
         while True:
             try:
-                finger = _SmoothFinger(scene, folder, comm, stages, deeper)
+                finger = _SmoothFinger(scene, folder, comm, stages, deeper, interrupt)
                 _refuse_lost(scene, finger.charged.slip)
                 found = {"charged": at_rest(scene, finger.press())}
                 slip = finger.slide()
@@ -155,6 +158,8 @@ def _solved(
                 if deeper > _DEEPEST:
                     raise
                 stages.again(scene, folder, comm, deeper)
+    except Interrupted:
+        raise
     except StepFailed as error:
         raise SceneError(
             f"the model 'smooth' found no equilibrium with the ridge's tables at mesh.contact {scene.mesh.contact:g} "
@@ -235,13 +240,16 @@ class _TableEnds(StepFailed):
 class _SmoothFinger:
     """The smooth finger and its loads."""
 
-    def __init__(self, scene: Scene, folder: Path, comm: MPI.Comm, stages: Stages, deeper: int) -> None:
-        self.scene = scene
+    def __init__(
+        self, scene: Scene, folder: Path, comm: MPI.Comm, stages: Stages, deeper: int, interrupt: Interrupt
+    ) -> None:
+        self.scene, self.interrupt = scene, interrupt
+        pause = partial(interrupt.stop_if_asked, alone=True)
         tables = []
         for each in ridges(scene):
             size = f"facets of {each.mesh.contact * 1e6:.3g} µm"
             stages.begin(f"one ridge pressed, slid and lifted at {each.voltage:g} V, {size}")
-            tables.append(ridge_cell.tables(each, folder, comm, deeper))
+            tables.append(ridge_cell.tables(each, folder, comm, deeper, pause))
         self.charged, self.uncharged = charged, uncharged = tables[0], tables[-1]
         stages.begin(f"the smooth finger with the law of this ridge, {size}")
         finger = smoothed(scene.geometry)
@@ -278,7 +286,8 @@ class _SmoothFinger:
         return np.asarray(surface.per_ridge(y) / surface.per_ridge(np.ones_like(y)))
 
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
-        """Stop where the law ends."""
+        """Stop where the law ends, and after a signal."""
+        self.interrupt.stop_if_asked(self.walk.steps)
         comm = self.solver.layout.comm
         lowest = float(np.min(comm.allgather(float(self.walk.surface_state.y.min(initial=np.inf)))))
         if lowest < self.law.table.y[0]:
