@@ -53,8 +53,8 @@ class Fingertip(BaseModel):
     middle. *Assumption*: a sinusoid, since the measured profile of the paper is not published. Curves have 32
     points per ridge, enough for 16 harmonics."""
     ridge_count: Annotated[int, Field(ge=1, le=101)] = 55
-    """Number of ridges; odd, so that one ridge is centred on x = 0. *Assumption*: the ridges cover the palmar
-    half."""
+    """Number of ridges; odd, so that one ridge is centred on x = 0. A whole finger has 3 at least. *Assumption*: the
+    ridges cover the palmar half."""
     intermediate_ridge_height: Wave = 450e-6
     """Height of the epidermal ridge under a papillary ridge's centre (A2); at 1 nm the junction is flat."""
     limiting_ridge_height: Wave = 150e-6

@@ -1,6 +1,8 @@
 """Commands that print tables: closed form, microscale, keys, studies and models side by side."""
 
 import csv
+import errno
+import re
 
 import pytest
 
@@ -71,6 +73,35 @@ def test_picture_without_a_positive_voltage(command, voltage, tmp_path, capsys):
     assert (tmp_path / "plot.png").stat().st_size > 10_000
 
 
+@pytest.mark.parametrize(
+    ("argv", "words"),
+    [
+        (["--plot", "mu.txt"], "mu.txt is of no format of pictures; it must end with one of .png"),
+        (["--plot", "same.png", "--csv", "same.png"], "--plot and --csv are both same.png; give a file for each"),
+        (["demos/scenes/unload.toml"], "history is given; the model 'cylinders' answers for press, charge and slide"),
+    ],
+)
+def test_estimate_refuses_files_and_histories(capsys, argv, words):
+    assert words in refused(capsys, "estimate", *argv)
+
+
+def test_estimate_says_where_the_closure_ends(capsys):
+    assert main(["estimate", "--set", "roughness.h_rms=1e-7", "--f-ext", "25,75"]) == 0
+    assert "At 2 of 2 points the mean pressure of a ridge is beyond zero separation." in capsys.readouterr().out
+
+
+def test_file_that_cannot_be_written_is_named(capsys, tmp_path, monkeypatch):
+    """As on a disk that is full: in a sentence, after the table."""
+
+    def full(file, text):
+        raise OSError(errno.ENOSPC, "No space left on device", str(file))
+
+    monkeypatch.setattr("fingerpad.cli.tables.replace", full)
+    assert main(["estimate", "--csv", str(tmp_path / "mu.csv")]) == 2
+    said = capsys.readouterr()
+    assert "mu_app" in said.out and "mu.csv cannot be used: No space left on device" in said.err
+
+
 # -- microscale --------------------------------------------------------------------------------------------
 def test_real_area_is_the_bearing_area():
     """Half of the surface is above its mean, a sixth above one rms height (15.87 % of a Gaussian)."""
@@ -86,6 +117,14 @@ def test_microscale_table_is_the_closure():
         assert row["p_ext"] == pytest.approx(float(law.external_pressure(row["u_bar"], row["voltage"])), rel=1e-9)
         across = 8.854e-12 * row["voltage"] ** 2 / 2 / (scene.h_0 + row["d_eq"]) ** 2
         assert row["p_el"] == pytest.approx(across, rel=1e-9)
+
+
+def test_microscale_of_a_history(capsys):
+    """Its skin and screen, at voltages that are given: the default's is none of its own."""
+    file = "demos/scenes/sine_while_sliding.toml"
+    assert "name those wanted by --voltage" in refused(capsys, "microscale", file)
+    assert main(["microscale", file, "--voltage", "100", "--p", "61 kPa"]) == 0
+    assert re.search(r"^ +100 +61 ", capsys.readouterr().out, re.MULTILINE)
 
 
 def test_microscale_refuses(capsys):
@@ -213,6 +252,20 @@ def test_folder_of_a_sweep_that_is_a_file(tmp_path):
 
 
 # -- models side by side -----------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("length", "ridges", "words"),
+    [
+        ("1.58", "16", "--contact-length is 1580 mm, longer than 16 ridges, 7.73 mm"),
+        ("1.58 mm", "60", "--ridges is 60, and the finger has 55; count those that touch"),
+        ("1.58 N", "16", "1.58 N is not allowed"),
+    ],
+)
+def test_compare_refuses_lengths_of_no_finger(capsys, length, ridges, words):
+    """Such as one of mm without a unit."""
+    argv = ["--model", "cylinders", "--contact-length", length, "--ridges", ridges]
+    assert words in refused(capsys, "compare", *argv)
+
+
 def test_compare_prints_keys_and_notes(capsys):
     assert main(["compare", "--model", "cylinders", "--set", "f_ext=50", "--set", "voltage=0"]) == 0
     printed = capsys.readouterr().out

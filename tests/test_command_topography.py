@@ -101,3 +101,9 @@ def test_bad_height_map_of_a_scene(table, message):
 def test_height_map_and_its_numbers_are_refused():
     with pytest.raises(SceneError, match="roughness.h_rms is 3e-06 and roughness.topography is given too"):
         from_data({"roughness": {"h_rms": 3e-6, "topography": {"file": "skin.csv", "unit": "um"}}})
+
+
+@pytest.mark.parametrize(("name", "words"), [("none", "none is not there"), (".", "is a folder")])
+def test_file_that_is_none_is_named(name, words, tmp_path, capsys):
+    """Before a package for instruments' formats is asked for."""
+    assert words in refused(capsys, "topography", str(tmp_path / name))

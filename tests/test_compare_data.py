@@ -71,6 +71,10 @@ def test_units_are_converted(table):
         ("force (N/m), friction (1)\n1, nan\n", "line 3, column 2: the friction is nan; it must be finite and greater"),
         ("force (N/m), friction (1)\n1, -0.2\n", "the friction is -0.2; it must be finite and greater than 0"),
         ("voltage (V), friction (1)\ninf, 0.2\n", "the voltage is inf; it must be finite and 0 or more"),
+        ("force (N/m), friction (1)\n1, 1_0\n", "line 3, column 2: the friction is '1_0'; it must be a number"),
+        ("force (N/m); friction (1)\n1; 2\n", "line 2 is 'force (N/m); friction (1)'; columns must be separated by"),
+        ("# state: charged\nforce (N/m), friction (1)\n1, 2\n", "has friction at the state charged; before the"),
+        ("# State: Charged\nforce (N/m), friction force (N/m)\n1, 2\n", "has friction at the state charged; before"),
         ("force (N/m), friction (1)\n1, high\n", "line 3, column 2: the friction is 'high'; it must be a number"),
         ("force (N/m), friction (1)\n1, 0,2\n", "line 3 has 3 cells below 2 columns; decimals have points"),
         ("force (N/m), friction (1)\n", "has no rows of numbers below a header"),
@@ -234,6 +238,16 @@ def test_misfit_is_printed_and_drawn(folder, table, tmp_path, capsys):
 )
 def test_what_ours_does_not_have(folder, table, capsys, text, words):
     assert words in refused(capsys, "compare-data", str(table(text)), "--sweep", str(folder))
+
+
+def test_rows_where_ours_is_zero_are_told_apart(folder, table, capsys):
+    """They are within ours, and have no ratio."""
+    text = "force (N/m), voltage (V), attraction (N/m)\n25, 0, 3\n"
+    said = refused(capsys, "compare-data", str(table(text)), "--sweep", str(folder))
+    assert "ours has no attraction in any row" in said and "it is 0 there" in said
+    assert main(["compare-data", str(table(text + "25, 100, 3\n500, 100, 3\n")), "--sweep", str(folder)]) == 0
+    out = capsys.readouterr().out
+    assert "since ours has no result there: 1 of 3 rows." in out and "since ours is 0 there: 1 of 3 rows." in out
 
 
 def test_folders_are_told_apart(folder, table, tmp_path, capsys):

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from fingerpad.io import states
+from fingerpad.io.quantities import cell
 from fingerpad.scene import Load
 from variational.state import ContactState
 
@@ -298,3 +299,12 @@ def test_bone_that_moves_as_it_touches_has_no_normal_contact():
     history.x, history.f_ext = 50e-6, 1.0
     history.slide("slide", 0.5e-3)
     assert "charged" not in states.named(history.rows) and "full_slip" in states.named(history.rows)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "text"),
+    [("f_ext", 75.0, "75.00"), ("f_ext", 0.002, "0.002"), ("f_ext", 3e-15, "0.00"), ("mu_app", math.nan, "–")],
+)
+def test_small_numbers_keep_digits(key, value, text):
+    """What is not roundoff is not shown as zero."""
+    assert cell(key, value) == text

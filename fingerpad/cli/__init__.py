@@ -5,6 +5,7 @@ Each module has a function ``main(argv) -> int``. It returns the exit code: 0, 1
 """
 
 import importlib
+import io
 import os
 import sys
 from collections.abc import Sequence
@@ -38,6 +39,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         argv: words after ``fingerpad``; those of the process if None.
     """
     words = sys.argv[1:] if argv is None else list(argv)
+    for stream in (sys.stdout, sys.stderr):  # of terminals without µ and ²
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
     try:
         with needed_by(words[0] if words else "help"):
             return _call(words)
@@ -52,6 +56,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # of `fingerpad params | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
+    except OSError as error:  # as of a disk that is full, or was taken out
+        if error.filename is None:
+            raise
+        return refuse(f"{clip(str(error.filename), 80)} cannot be used: {error.strerror}")
 
 
 def refuse(message: str) -> int:

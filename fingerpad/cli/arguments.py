@@ -2,6 +2,7 @@
 
 import argparse
 import math
+import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Sequence
@@ -14,8 +15,11 @@ from fingerpad.model.check import check
 from fingerpad.scene import Scene, load, override
 from fingerpad.scene.keys import every
 from fingerpad.scene.messages import SceneError, clip
+from geometry.units import to_si
 
 _PETSC = "-fingerpad_"  # prefix of PETSc's options
+PICTURES = (".png", ".pdf", ".svg", ".jpg", ".jpeg", ".eps", ".tif", ".tiff", ".webp")
+"""Endings of the formats of pictures."""
 _NEAR = 0.6  # likeness, from 0 to 1, at which an option may have been meant
 
 
@@ -180,11 +184,29 @@ def positive(kind: type[int] | type[float]) -> Callable[[str], float]:
     return read
 
 
-def writable(file: Path | None) -> None:
+def length(text: str) -> float:
+    """Return a positive length in m, of a text with a unit or in m."""
+    try:
+        value = float(text)
+    except ValueError:
+        try:
+            value = to_si(text, "m")
+        except ValueError as error:
+            raise argparse.ArgumentTypeError(f"{clip(text)} is not allowed; {error}") from None
+    if not 0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{clip(text)} is not allowed; it must be greater than 0")
+    return value
+
+
+def writable(file: Path | None, picture: bool = False) -> None:
     """Refuse a file that cannot be written to; nothing is made.
 
+    Args:
+        file: to be written.
+        picture: whether it is one, of a format that its suffix names.
+
     Raises:
-        SceneError: its folder is not there, or it is a folder itself.
+        SceneError: its folder is not there or read-only, it is a folder itself or read-only, or of another format.
     """
     if file is None:
         return
@@ -193,6 +215,10 @@ def writable(file: Path | None) -> None:
         raise SceneError(f"{name} is a folder; give a name of a file")
     if not file.absolute().parent.is_dir():
         raise SceneError(f"{name} cannot be written, since its folder is not there; make it first")
+    if not os.access(file if file.exists() else file.absolute().parent, os.W_OK):
+        raise SceneError(f"{name} cannot be written, since it is read-only; give another one")
+    if picture and file.suffix.lower() not in PICTURES:
+        raise SceneError(f"{name} is of no format of pictures; it must end with one of {', '.join(PICTURES)}")
 
 
 def echo(text: str = "", end: str = "\n") -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from fingerpad.cli.arguments import Parser, echo, path, positive, scene_of
+from fingerpad.cli.arguments import Parser, echo, length, path, positive, scene_of
 from fingerpad.io.folder import check_folder
 from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
@@ -33,7 +33,7 @@ def main(argv: Sequence[str]) -> int:
         default=list(MODELS),
         help="models to compare (default: all; full takes minutes)",
     )
-    parser.add_argument("--contact-length", type=positive(float), metavar="M", help="cylinders: the length in contact")
+    parser.add_argument("--contact-length", type=length, metavar="M", help="cylinders: the length in contact, 1.6 mm")
     parser.add_argument("--ridges", type=positive(int), metavar="N", help="cylinders: on so many ridges")
     parser.add_argument("--run", type=path, metavar="DIR", help="cylinders: contact lengths of this full run")
     parser.add_argument("--quiet", action="store_true", help="print the table alone: no steps, no progress bar")
@@ -73,4 +73,12 @@ def _footprint(scene: Scene, length: float | None, ridges: int | None, run: Path
         return cylinders.from_run(scene, run)
     if (length is None) != (ridges is None):
         raise SceneError("one of --contact-length and --ridges is given without the other; give both or none")
-    return None if length is None or ridges is None else cylinders.given(length, ridges)
+    if length is None or ridges is None:
+        return None
+    finger = scene.geometry
+    if ridges > finger.ridge_count:
+        raise SceneError(f"--ridges is {ridges}, and the finger has {finger.ridge_count}; count those that touch")
+    if length > ridges * finger.ridge_wavelength:
+        whole = 1e3 * ridges * finger.ridge_wavelength
+        raise SceneError(f"--contact-length is {1e3 * length:g} mm, longer than {ridges} ridges, {whole:.3g} mm")
+    return cylinders.given(length, ridges)

@@ -40,7 +40,7 @@ def main(argv: Sequence[str]) -> int:
     which.add_argument("--sweep", type=path, metavar="DIR", help="folder of a sweep over f_ext, voltage or both")
     parser.add_out(None, "picture (PNG) of tables and ours")
     args = parser.read(argv)
-    writable(args.out)
+    writable(args.out, picture=True)
     tables = [read(file) for file in args.tables]
     found = ours.read(args.run or [args.sweep], sweep=args.sweep is not None)
     compared = [_Compared(table, ours.ours(found, table)) for table in tables]
@@ -61,11 +61,13 @@ class _Compared:
         self.measured, self.spread = np.array(table.values), np.array(table.spread)
         self.ours = known.at(self.force, self.voltage)
         self.ratio = self.ours / self.measured
-        if not self.within.any():
+        if np.isnan(self.ours).all():
             spans = ", ".join(
                 _span(axis, unit) for axis, unit in ((known.force, table.force_unit), (known.voltage, "V"))
             )
             raise SceneError(f"no row of {clip(str(table.file), 80)} is within ours, which has {spans}")
+        if not self.within.any():
+            raise SceneError(f"ours has no {table.quantity} in any row of {clip(str(table.file), 80)}: it is 0 there")
 
     @property
     def within(self) -> NDArray[np.bool_]:
@@ -105,7 +107,10 @@ class _Compared:
             near = np.abs(self.ours - self.measured)[self.within] <= self.spread[self.within]
             yield f"Within the spread: {near.sum()} of {count}."
         if count < len(self.ratio):
-            yield f"Not compared, since ours has no result there: {len(self.ratio) - count} of {len(self.ratio)} rows."
+            none, total = int(np.isnan(self.ours).sum()), len(self.ratio)
+            yield from [f"Not compared, since ours has no result there: {none} of {total} rows."] if none else []
+            zero = total - count - none
+            yield from [f"Not compared, since ours is 0 there: {zero} of {total} rows."] if zero else []
 
 
 def _span(axis: Array, unit: str) -> str:

@@ -1,13 +1,17 @@
 """``fingerpad estimate``: friction over force and voltage by the closed form, without finite elements."""
 
-from collections.abc import Mapping, Sequence
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from fingerpad.cli import ranges, tables
 from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.io.quantities import PER_LENGTH
+from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
+from fingerpad.reduced.answer import refuse_others
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError
 
@@ -44,13 +48,14 @@ def main(argv: Sequence[str]) -> int:
     args = parser.read(argv)
     tables.check_files(args)
     scene = scene_of(args, meshed=False)
+    refuse_others(scene, "cylinders")
     forces, voltages = (_axis(scene, key, getattr(args, key)) for key in ("f_ext", "voltage"))
     rows, lost = grid(scene, forces, voltages)
     echo("Friction at full slip by a closed form, every ridge in contact the same charged cylinder.")
     echo(f"Friction coefficient {scene.friction:g}.\n")
     echo(tables.text(_COLUMNS, rows))
     echo("\nmu_app is friction over force, at full slip; contact is the length of skin on the screen.")
-    for note in (PER_LENGTH, *_known(scene, rows), *lost):
+    for note in (PER_LENGTH, *_known(scene, rows), *_places(rows), *lost):
         echo(note)
     tables.write_files(args, _COLUMNS, rows, draw)
     return 0
@@ -79,14 +84,23 @@ def grid(scene: Scene, forces: Sequence[float], voltages: Sequence[float]) -> tu
         for voltage in voltages:
             row: dict[str, Any] = {"f_ext": f_ext, "voltage": voltage}
             try:
-                found = cylinders.solve(_with(scene, f_ext=f_ext, voltage=voltage)).full_slip
-                row |= {c.key: getattr(found, c.key) for c in _COLUMNS if c.key not in row}
+                found = cylinders.solve(_with(scene, f_ext=f_ext, voltage=voltage))
+                row |= {c.key: getattr(found.full_slip, c.key) for c in _COLUMNS if c.key not in row}
+                row["notes"] = found.notes
             except SceneError as error:
                 lost.append(f"At {f_ext:g} N/m and {voltage:g} V: {error}.")
             rows.append(row)
     if len(lost) == len(rows):
         raise SceneError(lost[0].partition(": ")[2].rstrip("."))
     return rows, lost
+
+
+def _places(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """Yield how many points are at an end of the closure."""
+    remark = re.compile(rf"{WORDS['full_slip']}: a mean pressure of .* is (.*)")
+    found = [remark.fullmatch(note) for row in rows for note in row.get("notes", ())]
+    for place, count in Counter(each[1] for each in found if each).items():
+        yield f"At {count} of {len(rows)} points the mean pressure of a ridge is {place}."
 
 
 def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:

@@ -46,7 +46,8 @@ WHOLE = {
 """The same of a table of a whole finger: one with a column in newtons, or of an area."""
 STATES = {"uncharged": "uncharged", "charged": "charged", "full slip": "full_slip"}
 """What ``# state:`` can be, and the name of ours."""
-_COMMENT = re.compile(r"#\s*(source|doi|url|people|state)\s*:\s*(.*?)\s*")
+_COMMENT = re.compile(r"#\s*([A-Za-z]+)\s*:\s*(.*?)\s*")
+_ABOUT = ("source", "doi", "url", "people", "state")
 _HEAD = re.compile(r"\s*(.*?)\s*\(\s*(.*?)\s*\)\s*")
 _NEWTONS = re.compile(r"(?:[a-zA-Zµμ]{0,2}N|[a-z]*newtons?)")
 _LARGEST = 1_000_000  # bytes of a file
@@ -118,10 +119,15 @@ def read(file: Path) -> Measured:
     about, rows = _parts(lines)
     if not about.get("source"):
         raise SceneError(f"{name} has no source; add a first line such as '# source: Surname 2020, Journal 1, 2-3'")
-    if (state := about.get("state", "full slip")) not in STATES:
+    if (state := about.get("state", "full slip").lower()) not in STATES:
         raise SceneError(f"{name}: state is {clip(repr(state))}; it must be one of {', '.join(STATES)}")
     if len(rows) < 2:
         raise SceneError(f"{name} has no rows of numbers below a header such as 'force (N/m), friction (1)'")
+    header = rows[0][1]
+    if len(header) == 1 and re.search(r"\).*[;\t].*\(", header[0]):
+        raise SceneError(f"{name}, line {rows[0][0]} is {clip(repr(header[0]))}; columns must be separated by commas")
+    if state != "full slip" and any(re.match(r"\s*friction\b", head, re.IGNORECASE) for head in header):
+        raise SceneError(f"{name} has friction at the state {state}; before the finger slides it has none")
     whole = any((parts := _HEAD.fullmatch(head)) and _of_whole(*parts.groups()) for head in rows[0][1])
     columns = _columns(name, *rows[0], whole)
     found = [_numbers(name, line, cells, columns) for line, cells in rows[1:]]
@@ -137,8 +143,9 @@ def _parts(lines: Sequence[str]) -> tuple[dict[str, str], list[tuple[int, list[s
     about, rows = {}, []
     for number, line in enumerate(lines, start=1):
         if line.lstrip().startswith("#"):
-            if comment := _COMMENT.fullmatch(line.strip()):
-                about[comment[1]] = comment[2]
+            comment = _COMMENT.fullmatch(line.strip())
+            if comment and comment[1].lower() in _ABOUT:
+                about[comment[1].lower()] = comment[2]
         elif line.strip():
             rows.append((number, [cell.strip() for cell in next(csv.reader(io.StringIO(line), skipinitialspace=True))]))
     return about, rows
@@ -207,7 +214,7 @@ def _numbers(name: str, line: int, cells: Sequence[str], columns: Sequence[_Colu
         if not text:
             raise SceneError(f"{where}: the {column.name} is missing; leave the row out or give the number")
         try:
-            value = float(text)
+            value = float(text if "_" not in text else "")
         except ValueError:
             raise SceneError(f"{where}: the {column.name} is {clip(repr(text))}; it must be a number") from None
         least = 0.0 if column.name in ("voltage", "spread") else None

@@ -22,8 +22,8 @@ def main(argv: Sequence[str]) -> int:
     parser.add_out("finger.msh", "file for gmsh (default: finger.msh)")
     parser.add_argument("--plot", type=path, metavar="PNG", help="picture of the mesh")
     args = parser.read(argv)
-    for file in (args.out, args.plot):
-        writable(file)
+    writable(args.out)
+    writable(args.plot, picture=True)
     if args.out.suffix != ".msh":
         raise SceneError(f"--out {args.out.name[:60]} does not end with .msh, the ending of the format of gmsh")
     scene = scene_of(args)

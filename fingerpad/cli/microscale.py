@@ -10,6 +10,7 @@ from fingerpad.cli import ranges, tables
 from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError
+from geometry.units import to_si
 
 _PRESSURES = "1e3:1e6:13:log"
 _COLUMNS = (
@@ -41,7 +42,9 @@ def main(argv: Sequence[str]) -> int:
     args = parser.read(argv)
     tables.check_files(args)
     scene = scene_of(args, meshed=False)
-    voltages = [scene.voltage] if args.voltage is None else _voltages(scene, args.voltage)
+    if args.voltage is None and scene.history is not None:
+        raise SceneError("history is given, whose loads have their own voltages; name those wanted by --voltage")
+    voltages = [scene.voltage] if args.voltage is None else _voltages(args.voltage)
     rows = table(scene, voltages, _pressures(args.p))
     closure = scene.roughness.bearing_area(scene.h_0)
     echo(
@@ -51,23 +54,28 @@ def main(argv: Sequence[str]) -> int:
     echo(tables.text(_COLUMNS, rows))
     echo("\npressure: mean contact pressure of the ridge; external: that less the attraction, what the finger presses")
     echo("with; separation: mean, of skin and screen; air gap: equivalent one; real area: of the nominal area.")
-    echo(f"The air gap is held below {scene.roughness.p_floor * 1e-3:g} kPa (roughness.p_floor); at zero separation")
-    echo(f"the pressure is {closure.full_pressure * 1e-3:.4g} kPa. A ridge would stick without any force from ", end="")
-    echo(f"{closure.threshold():.0f} V.")
+    echo(f"The air gap is held below {scene.roughness.p_floor * 1e-3:g} kPa (roughness.p_floor), and above that at")
+    echo(f"zero separation, {closure.full_pressure * 1e-3:.4g} kPa. ", end="")
+    echo(f"A ridge would stick without any force from {closure.threshold():.3g} V.")
     tables.write_files(args, _COLUMNS, rows, draw)
     return 0
 
 
-def _voltages(scene: Scene, text: str) -> list[float]:
-    return [from_data(scene.parameters() | {"voltage": v}).voltage for v in ranges.read("--voltage", text)]
+def _voltages(text: str) -> list[float]:
+    return [from_data({"voltage": value}).voltage for value in ranges.read("--voltage", text)]
 
 
 def _pressures(text: str) -> list[float]:
-    values = ranges.read("--p", text)
-    for value in values:
-        if not (isinstance(value, float) and value > 0):
+    found = []
+    for value in ranges.read("--p", text):
+        try:
+            p = to_si(value, "Pa") if isinstance(value, str) else float(value)
+        except ValueError as error:
+            raise SceneError(f"--p has the value {value}; {error}") from None
+        if not p > 0:
             raise SceneError(f"--p has the value {value}; pressures are numbers greater than 0, in Pa")
-    return [float(value) for value in values]
+        found.append(p)
+    return found
 
 
 def table(scene: Scene, voltages: Sequence[float], pressures: Sequence[float]) -> list[dict[str, Any]]:

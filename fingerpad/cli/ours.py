@@ -120,7 +120,7 @@ def _whole(found: Result, table: Measured) -> Iterator[tuple[tuple[float, float]
     """
     if found.finger is None:
         raise SceneError(
-            f"the run has no newtons, which {_name(table)} has; run a scene of press, charge and slide again"
+            f"the run has no newtons, which {_name(table)} has; run its scene, of press, charge and slide, with --force"
         )
     if table.state in found.finger.states:
         voltage = 0.0 if table.state == "uncharged" else abs(found.named[table.state].voltage)

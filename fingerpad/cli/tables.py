@@ -10,6 +10,7 @@ from typing import Any
 
 from fingerpad.cli.arguments import Parser, echo, path, writable
 from fingerpad.io.files import replace
+from fingerpad.scene.messages import SceneError, clip
 
 
 @dataclass(frozen=True)
@@ -59,10 +60,12 @@ def check_files(args: argparse.Namespace) -> None:
     """Refuse files of :func:`add_files` that cannot be written to.
 
     Raises:
-        SceneError: the first of them.
+        SceneError: the first of them, or both are one file.
     """
-    for file in (args.plot, args.csv):
-        writable(file)
+    writable(args.plot, picture=True)
+    writable(args.csv)
+    if args.plot and args.csv and args.plot.absolute() == args.csv.absolute():
+        raise SceneError(f"--plot and --csv are both {clip(str(args.csv), 80)}; give a file for each")
 
 
 def write_files(

@@ -43,7 +43,7 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--missing", metavar="MARK", help="mark of missing pixels, beside nan and empty places")
     parser.add_argument("--plot", type=path, metavar="PNG", help="picture of map, heights and spectrum")
     args = parser.read(argv)
-    writable(args.plot)
+    writable(args.plot, picture=True)
     found = _scan(args)
     flat = found.map.detrended("curvature")
     try:

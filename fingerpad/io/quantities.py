@@ -29,6 +29,7 @@ QUANTITIES = {
     "ridges_in_contact": Quantity("ridges in contact", "", 1.0, 0),
     "bone_height": Quantity("height of the bone", "mm", 1e3, 4),
 }
+_NOTHING = 1e-6  # in the units of tables: below it all is roundoff
 PER_LENGTH = (
     "N/m: force per metre of finger out of the plane of the cross-section; 75 N/m at the centre are about 0.5 N in all."
 )
@@ -47,7 +48,9 @@ def cell(key: str, value: float, error: float = math.nan) -> str:
     quantity = QUANTITIES[key]
     if not math.isnan(error) and error * quantity.scale >= 0.5 * 10.0**-quantity.digits:
         return plus_minus(value * quantity.scale, error * quantity.scale)
-    return f"{value * quantity.scale:.{quantity.digits}f}"
+    shown = value * quantity.scale
+    small = _NOTHING < abs(shown) < 0.5 * 10.0**-quantity.digits
+    return f"{shown:.2g}" if small else f"{shown:.{quantity.digits}f}"
 
 
 def in_words(key: str) -> str:

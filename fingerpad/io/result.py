@@ -265,7 +265,8 @@ class Result:
         found = [f"Not finished: {self.failure}"] if self.failure else []
         asked = any(load.until_full_slip or load.moves for load in self.scene.loads())
         if asked and self.full_slip is None and not self.failure:
-            found.append("No full slip was held over a further 0.2 mm.")
+            reached = any(load.full_slip_reached for load in self.loads)
+            found.append(f"Full slip was {'not held over a further 0.2 mm' if reached else 'not reached'}.")
         if any(state.error.known() for state in self.named.values()):
             found.append("±: estimated discretisation error, of the mesh alone.")
         share = math.nan if self.full_slip is None else self.full_slip.penalty.contact_length

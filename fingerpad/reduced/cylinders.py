@@ -49,6 +49,7 @@ INDENTATIONS = {  # m, how far the bone is lowered
     "full_slip": (0.1452e-3, 0.2239e-3, 0.3893e-3, 0.5842e-3, 0.7345e-3, 0.8569e-3, 0.9417e-3, 1.0510e-3),
 }
 _SHAPING = ("geometry", "materials", "contact")  # tables of a scene of which these lengths are a matter
+_ELSE = "use the model 'smooth', or compare with --contact-length and --ridges, or with the --run of a folder"
 
 
 @dataclass(frozen=True)
@@ -74,14 +75,11 @@ def fitted(scene: Scene) -> Footprint:
     if scene.laws.materials:
         raise SceneError(
             f"materials are given for {', '.join(scene.laws.materials)}, and a contact length is known of the default "
-            "finger alone; give a contact length and a number of ridges, a folder of a run, or use the model 'smooth'"
+            f"finger alone; {_ELSE}"
         )
     for name in _SHAPING:
         if getattr(scene, name) != getattr(default, name):
-            raise SceneError(
-                f"{name} is not that of the default finger, whose contact length is known; give a contact length and "
-                "a number of ridges, a folder of a run, or use the model 'smooth'"
-            )
+            raise SceneError(f"{name} is not that of the default finger, whose contact length is known; {_ELSE}")
     source = "uncharged contact length interpolated between full runs of the default finger"
     if not FORCES[0] <= scene.f_ext <= FORCES[-1]:
         source = f"uncharged contact length extrapolated from full runs at {FORCES[0]:g} to {FORCES[-1]:g} N/m"
@@ -134,6 +132,8 @@ def from_run(scene: Scene, folder: Path) -> Footprint:
         raise SceneError(f"run {folder} cannot be read: {error}") from None
     if "parameters" not in summary:  # a point of a sweep that was refused
         raise SceneError(f"run {folder} has no results: {summary.get('failure', 'summary.json is of another kind')}")
+    if (model := summary.get("model", "full")) != "full":
+        raise SceneError(f"run {folder} is one of the model {show(model)}; give a full run")
     for name, unit in (("f_ext", "N/m"), ("voltage", "V")):
         if not np.isclose(abs(summary[name]), abs(getattr(scene, name)), rtol=1e-6, atol=1e-9):
             raise SceneError(

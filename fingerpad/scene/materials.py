@@ -103,6 +103,8 @@ class Electric(Part):
 
 
 Length = Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)]
+LengthUnit = Literal["m", "cm", "mm", "um", "µm", "μm", "micron", "nm", "pm"]
+"""Units of a height map, those of :data:`variational.roughness.heightfile.UNITS`."""
 
 
 class Topography(Part):
@@ -110,14 +112,14 @@ class Topography(Part):
 
     file: str
     """File of the height map: text, NumPy or an instrument's format; a relative path starts at the scene file."""
-    unit: Literal["m", "cm", "mm", "um", "µm", "nm"] | None = None
+    unit: LengthUnit | None = None
     """Unit of the heights. Text and NumPy files need a unit; most files of instruments hold their own."""
     size: tuple[Length, Length] | None = None
     """Lengths of the map along x, from the first line of a matrix to the last, and y, along a line. A map without
     coordinates needs these lengths or those of a pixel."""
     pixel: tuple[Length, Length] | None = None
     """Lengths of a pixel along x and y, in place of the map's lengths."""
-    size_unit: Literal["m", "cm", "mm", "um", "µm", "nm"] | None = None
+    size_unit: LengthUnit | None = None
     """Unit of these lengths; by default the unit of the heights."""
     missing: str | None = None
     """Mark of missing pixels in a text, besides nan and empty places, or in a NumPy file, a number there."""

@@ -170,6 +170,8 @@ def _text(path: Path, missing: str | None) -> heighttext.Text:
 
 
 def _instrument(path: Path) -> _Read:
+    if not path.is_file():
+        raise FileNotFoundError(f"{path} is {'a folder' if path.is_dir() else 'not there'}")
     try:
         from SurfaceTopography import open_topography
         from SurfaceTopography.Exceptions import ReadFileError
@@ -178,8 +180,6 @@ def _instrument(path: Path) -> _Read:
             f"reading {path} needs SurfaceTopography; get it with: pip install fingerpad[topography], or in a clone "
             "environment/wheels"
         ) from None
-    if not path.is_file():
-        raise FileNotFoundError(f"{path} is not there")
     try:
         reader = open_topography(str(path))
         channel = reader.default_channel
