@@ -9,11 +9,16 @@
 #   sbatch demos/slurm_sweep.sh [SCENE.toml] [OPTION ...]    from the project's folder; options of fingerpad sweep
 #   demos/slurm_sweep.sh [SCENE.toml] [OPTION ...]           afterwards: the table of all voltages, without a run
 #
+# VOLTAGES="0 100 200" and OUT=DIR in the environment are other voltages, one for each task of --array, and another folder.
 # The tasks share a folder and keep each point by its parameters, so that no task waits for another. A task leaves the
 # table of its own point; the second command finds all points there, and computes those whose task failed.
 set -euo pipefail
 voltages=(${VOLTAGES:-0 50 100 150 200})
 if [ -n "${SLURM_ARRAY_TASK_ID:-}" ]; then
+    if [ "$SLURM_ARRAY_TASK_ID" -ge "${#voltages[@]}" ]; then
+        echo "task $SLURM_ARRAY_TASK_ID has no voltage: VOLTAGES has ${#voltages[@]}; give --array=0-$((${#voltages[@]} - 1))" >&2
+        exit 2
+    fi
     voltages=("${voltages[$SLURM_ARRAY_TASK_ID]}")
 fi
 over=$(IFS=,; echo "${voltages[*]}")

@@ -1,6 +1,7 @@
 """``fingerpad sweep``: a scene over values of its keys, each run in a process of its own and kept on disk."""
 
 import re
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -38,7 +39,11 @@ def main(argv: Sequence[str]) -> int:
     check_folder(args.out)
     base, axes = study(args.scene, args.set, args.over)
     scene = from_data(base)
-    found = sweep(scene, args.out, jobs=args.jobs, model=args.model, quiet=args.quiet, **axes)
+    try:
+        found = sweep(scene, args.out, jobs=args.jobs, model=args.model, quiet=args.quiet, **axes)
+    except KeyboardInterrupt:
+        print(f"fingerpad: stopped; points are kept in {args.out}, and the same command goes on", file=sys.stderr)
+        raise
     echo(str(found))
     files = [name for name in FILES if (args.out / name).exists()]
     echo(f"Written: {args.out / files[0]}, {', '.join(files[1:])}" if files[1:] else f"Written: {args.out / files[0]}")
