@@ -175,17 +175,18 @@ def _costs(points: Sequence[Point], reference: Reference, measure: str) -> str:
 
 def _panel(ax: Axes, points: Sequence[Point], quantity: str, bar: float) -> None:
     def at(some: Sequence[Point]) -> tuple[list[float], list[float]]:
-        return [p.cost(quantity) / own for p in some], [p.error(quantity) for p in some]
+        return [p.cost(quantity) / own for p in some], [max(p.error(quantity), 1.2 * lowest) for p in some]
 
     own = _default(points).cost(quantity)
+    shown = [p.error(quantity) for p in judged(points, quantity)]
+    lowest = max(0.5 * min(shown), bar / 5)
     ax.axhspan(1e-9, bar, color="0.9", lw=0)
     ax.step(*at(front(points, quantity)), "k-", where="post", lw=0.9, label="front")
     for words, (families, colour, marker) in _MARKS.items():
         some = [p for p in points if p.family in families and p.label != DEFAULT]
         ax.plot(*at(some), marker, color=colour, ms=6, label=words)
     ax.plot(*at([_default(points)]), "*", color=style.VERMILION, mec="black", mew=0.5, ms=14, label="default")
-    shown = [p.error(quantity) for p in judged(points, quantity)]
-    ax.set(yscale="log", title=_words(quantity), ylim=(max(0.5 * min(shown), bar / 5), 2 * max(shown)))
+    ax.set(yscale="log", title=_words(quantity), ylim=(lowest, 2 * max(shown)))
     harness.ticks(ax, (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0))
     ax.set_xlim(0.04, 9)
 
