@@ -6,7 +6,8 @@ python3 -m benchmarks.pages --stale                        also: make stale; nee
 A page is older than the code where a file that computes its numbers differs from that which made them: one of the
 packages (geometry, variational, fingerpad without what starts, reads, refuses, orders runs, writes and prints), or of
 the page's own program, without what only draws it. Comments and docstrings do not count, nor packages
-that were found to compute the same numbers (docs/same.json, by benchmarks/same.py). The commit that made numbers is
+that were found to compute the same numbers (docs/same.json, by benchmarks/same.py), or the same but for some that the
+page's program has no word of. The commit that made numbers is
 found by the hash of the packages' files that is kept with them; a program in benchmarks/ is compared with that of the
 commit that brought them into git. Numbers of files that are in no commit count as made by the commit that brought them,
 and so do older numbers, which have no hash.
@@ -21,9 +22,10 @@ import re
 import subprocess
 import sys
 import tarfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 # Each has a function draw(docs), which writes the page's files into a folder and returns the path of the page.
@@ -118,16 +120,13 @@ def program(name: str) -> list[str]:
     return [*(f"benchmarks/{name}.py" for name in shared), f"benchmarks/{path.name}"]
 
 
-def since(
-    commit: str, docs: Path, aside: tuple[str, ...], pairs: Sequence[Mapping[str, str]] | None = None
-) -> set[str]:
+def since(commit: str, aside: tuple[str, ...], pairs: Sequence[Mapping[str, Any]]) -> set[str]:
     """Return the files of the packages that compute something else since a commit.
 
     Args:
         commit: the older commit.
-        docs: folder of the commits that compute the same numbers.
         aside: beginnings of paths that do not count.
-        pairs: of these commits; all of them by default.
+        pairs: commits that compute the same numbers.
     """
 
     def differ(older: str, newer: str) -> set[str]:
@@ -136,14 +135,19 @@ def since(
 
     if not (found := differ(commit, "HEAD")):
         return set()
-    if pairs is None:
-        path = docs / "same.json"
-        pairs = json.loads(path.read_text(encoding="utf-8")) if path.exists() else []
     for pair in pairs:
         others = [other for other in pairs if other is not pair]
-        if not differ(commit, pair["before"]) and not since(pair["now"], docs, aside, others):
+        if not differ(commit, pair["before"]) and not since(pair["now"], aside, others):
             return set()
     return found
+
+
+def _same(docs: Path, texts: Iterable[bytes]) -> list[dict[str, Any]]:
+    """Return the pairs of commits that compute the same numbers for a program, by the texts of its files."""
+    path = docs / "same.json"
+    pairs = json.loads(path.read_text(encoding="utf-8")) if path.exists() else []
+    words = set(re.findall(r"[a-z]+", b" ".join(texts).decode()))
+    return [pair for pair in pairs if not words & set(pair.get("but", ()))]
 
 
 def stale(name: str, docs: Path) -> tuple[str, list[str]]:
@@ -156,9 +160,10 @@ def stale(name: str, docs: Path) -> tuple[str, list[str]]:
         before, states = git("rev-list", *options).decode().split(), made["source"].split(", ")
         found = [next((commit for commit in before if source(commit) == state), brought) for state in states]
     now = files("HEAD", own := program(name))
-    differ = {path for commit in found for path in since(commit, docs, (*_WITHOUT_NUMBERS, _REDUCED))}
+    pairs = _same(docs, now.values())
+    differ = {path for commit in found for path in since(commit, (*_WITHOUT_NUMBERS, _REDUCED), pairs)}
     if any(_REDUCED.replace("/", ".").encode() in text for text in now.values()):
-        differ |= {path for path in since(brought, docs, _WITHOUT_NUMBERS) if path.startswith(_REDUCED)}
+        differ |= {path for path in since(brought, _WITHOUT_NUMBERS, pairs) if path.startswith(_REDUCED)}
     differ |= {path for path in changed(files(brought, own), now) if not path.endswith("/page.py")}
     return f"version {made['version']} of {made['date']}, commit {', '.join(found)}", sorted(differ)
 
