@@ -87,13 +87,13 @@ def computes(text: bytes) -> str:
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node, clean=False):
             node.body = node.body[1:] or [ast.Pass()]
     drawing = _drawing(module)
-    module.body = [node for node in module.body if getattr(node, "name", "") not in drawing]
+    module.body = [node for node in module.body if _name(node) not in drawing]
     return ast.dump(module)
 
 
 def _drawing(module: ast.Module) -> set[str]:
-    """Return ``draw`` of a page's program and the private functions and classes that nothing else uses; or nothing."""
-    own = {node.name: node for node in module.body if isinstance(node, ast.ClassDef | ast.FunctionDef)}
+    """Return ``draw`` of a page's program and the private names that nothing else uses; or nothing."""
+    own = {name: node for node in module.body if (name := _name(node))}
     if "draw" not in own:
         return set()
     used, rest = set[str](), [node for node in module.body if node not in own.values()]
@@ -103,6 +103,14 @@ def _drawing(module: ast.Module) -> set[str]:
         used |= names
         rest += [own[name] for name in names]
     return {name for name in own if name.startswith("_")} - used | {"draw"}
+
+
+def _name(node: ast.stmt) -> str:
+    """Return the name that a statement of a module defines, empty where it does something else."""
+    if isinstance(node, ast.ClassDef | ast.FunctionDef):
+        return node.name
+    targets = node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, ast.AnnAssign) else []
+    return targets[0].id if len(targets) == 1 and isinstance(targets[0], ast.Name) else ""
 
 
 def changed(before: Mapping[str, bytes], now: Mapping[str, bytes]) -> set[str]:

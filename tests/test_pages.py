@@ -81,19 +81,24 @@ def test_page_is_older_where_its_code_computes_something_else(since):
 
 
 def test_what_only_draws_a_page_does_not_make_it_older(since):
-    """The function draw and private ones that it alone uses, in turn; not those which compute use too."""
+    """The function draw and private names that it alone uses, in turn; not those which compute use too."""
     old = """
+_WIDTH = 4
+_MESH = 5
 def _both(): return 1
 def _picture(): return 2
 def _words(): return _picture()
 def shared(): return 3
-def compute(): return _both()
-def draw(docs): return _words(), _both(), shared()
+def compute(): return _both(), _MESH
+def draw(docs): return _words(), _both(), shared(), _WIDTH
 main(compute, draw)
 """
     page = "benchmarks/chart.py"
     for value, older in ((1, [page]), (2, []), (3, [page])):
         new = old.replace(f"return {value}", "return 9")
+        assert since("chart", MADE, old={page: old.encode()}, new={page: new.encode()}) == older
+    for name, older in (("_WIDTH", []), ("_MESH", [page])):
+        new = old.replace(f"{name} = ", f"{name} = 9")
         assert since("chart", MADE, old={page: old.encode()}, new={page: new.encode()}) == older
     new = old.replace("_words(), _both()", "_words()").replace("main(compute", "main(compute2")
     assert since("chart", MADE, old={page: old.encode()}, new={page: new.encode()}) == [page]
@@ -123,6 +128,13 @@ def test_page_is_not_older_where_the_same_numbers_were_computed(since, tmp_path)
         assert since("chart", MADE, **commits) == ["benchmarks/chart.py", *older]
 
 
+def test_same_but_for_some_numbers_counts_where_the_program_has_no_word_of_them(since, tmp_path):
+    commits = {"old": OLD, "new": NEW | {"variational/x.py": b"x = 2"}}
+    for word, older in (("sed", []), ("x", ["variational/x.py"])):
+        harness.replace(tmp_path / "same.json", json.dumps([{"before": "old", "now": "new", "but": [word]}]))
+        assert since("chart", MADE, **commits) == older
+
+
 def test_results_differ_by_their_numbers_alone():
     """Not by seconds; a key that only the present result has is new."""
     before = {"mu": 0.5, "seconds_path": 3.0, "steps": [{"a": 1}, {"a": float("nan")}]}
@@ -130,6 +142,9 @@ def test_results_differ_by_their_numbers_alone():
     assert list(same.differences(before, before | {"more": 1})) == []
     now = before | {"mu": 0.5000000000000001, "steps": [{"a": 1}]}
     assert len(list(same.differences(before, now))) == 2
+    assert len(list(same.differences(before, now, but=["mu"]))) == 1
+    assert list(same.differences({"slip_mu_app": 0.0}, {"slip_mu_app": None})) == []
+    assert list(same.differences({"slip_mu_app": 0.1}, {"slip_mu_app": None}))
     assert list(same.differences(before, {})) and list(same.differences({"a": None}, {"a": 0.0}))
 
 
