@@ -3,6 +3,7 @@
 import csv
 import errno
 import re
+from pathlib import Path
 
 import pytest
 
@@ -93,10 +94,10 @@ def test_estimate_says_where_the_closure_ends(capsys):
 def test_file_that_cannot_be_written_is_named(capsys, tmp_path, monkeypatch):
     """As on a disk that is full: in a sentence, after the table."""
 
-    def full(file, text):
-        raise OSError(errno.ENOSPC, "No space left on device", str(file))
+    def full(file, data):
+        raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr("fingerpad.cli.tables.replace", full)
+    monkeypatch.setattr(Path, "write_bytes", full)
     assert main(["estimate", "--csv", str(tmp_path / "mu.csv")]) == 2
     said = capsys.readouterr()
     assert "mu_app" in said.out and "mu.csv cannot be used: No space left on device" in said.err

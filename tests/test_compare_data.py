@@ -244,7 +244,9 @@ def test_rows_where_ours_is_zero_are_told_apart(folder, table, capsys):
     """They are within ours, and have no ratio."""
     text = "force (N/m), voltage (V), attraction (N/m)\n25, 0, 3\n"
     said = refused(capsys, "compare-data", str(table(text)), "--sweep", str(folder))
-    assert "ours has no attraction in any row" in said and "it is 0 there" in said
+    assert "ours has no attraction above 0 in the 1 rows of" in said
+    said = refused(capsys, "compare-data", str(table(text + "500, 100, 3\n")), "--sweep", str(folder))
+    assert "in the 2 rows of" in said and said.rstrip().endswith("and 1 of them are not within ours")
     assert main(["compare-data", str(table(text + "25, 100, 3\n500, 100, 3\n")), "--sweep", str(folder)]) == 0
     out = capsys.readouterr().out
     assert "since ours has no result there: 1 of 3 rows." in out and "since ours is 0 there: 1 of 3 rows." in out

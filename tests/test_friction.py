@@ -129,6 +129,13 @@ def test_what_is_no_law_is_refused(law, sentence):
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.parametrize("scale", [2e3, 5e3, 1e4])
+def test_finite_slopes_are_laws(scale):
+    """Whatever roundoff leaves of them at small pressures, the advised form among them."""
+    for limit in (lambda p: 5e3 * (1 - np.exp(-p / scale)), lambda p: 2 * ((p + scale) ** 0.9 - scale**0.9)):
+        Formula(limit).check()
+
+
 def test_no_law_is_derived_from_coulombs():
     """Its coefficient would stand for the law where there are no pressures."""
     with pytest.raises(

@@ -238,8 +238,10 @@ def test_signal_ends_it_after_the_step(answer, tmp_path, kept, number, error):
         def phase(self, text, part):
             os.kill(os.getpid(), number)
 
-    with pytest.raises(error):
+    with pytest.raises(error) as stopped:
         smooth.solve(from_data(SCENE), answer[1] if kept else tmp_path, console=Stopping())
+    if number == signal.SIGINT:
+        assert str(stopped.value).startswith("stopped by SIGINT after step")
 
 
 def test_history_is_refused(tmp_path):

@@ -1,5 +1,6 @@
 """States of a path that can be solved again: kept on the way, restored on another mesh, solved for there."""
 
+import math
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -70,9 +71,13 @@ class Solve:
 
 
 def quantities(name: str, state: State) -> dict[str, float]:
-    """Return the quantities of interest of a named state, in SI; friction is that of full slip."""
+    """Return the quantities of interest of a named state, in SI; friction is that of full slip.
+
+    Without a force that presses the finger there is no coefficient.
+    """
     wanted = ("f_t", "mu_app", "contact_length") if name == "full_slip" else ("contact_length",)
-    found = {quantity: getattr(state.state, quantity) for quantity in wanted}
+    values = {quantity: float(getattr(state.state, quantity)) for quantity in wanted}
+    found = {quantity: value for quantity, value in values.items() if not math.isnan(value)}
     return found | {f"sed_{j}": value for j, value in state.sed.items()}
 
 

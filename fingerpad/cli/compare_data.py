@@ -67,7 +67,10 @@ class _Compared:
             )
             raise SceneError(f"no row of {clip(str(table.file), 80)} is within ours, which has {spans}")
         if not self.within.any():
-            raise SceneError(f"ours has no {table.quantity} in any row of {clip(str(table.file), 80)}: it is 0 there")
+            none = int(np.isnan(self.ours).sum())
+            rows = f"{len(self.ours)} rows of {clip(str(table.file), 80)}"
+            beyond = f", and {none} of them are not within ours" if none else ""
+            raise SceneError(f"ours has no {table.quantity} above 0 in the {rows}{beyond}")
 
     @property
     def within(self) -> NDArray[np.bool_]:

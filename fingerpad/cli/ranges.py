@@ -39,7 +39,7 @@ def _list(text: str) -> list[float]:
 
 
 def _number(text: str) -> float:
-    return int(text) if re.fullmatch(r"[-+]?\d{1,15}", text) else float(text)
+    return int(text) if re.fullmatch(r"[-+]?\d{1,300}", text) else float(text)
 
 
 def _range(name: str, text: str) -> list[float]:

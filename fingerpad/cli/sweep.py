@@ -91,5 +91,5 @@ def study(file: Path | None, given: Sequence[str], over: Sequence[str]) -> tuple
 def _words(text: str) -> list[Any]:
     """Return the values of a list of words, switches among them; empty where a part of it is none."""
     parts = [part.strip() for part in text.split(",")]
-    words = all(re.fullmatch(r"[A-Za-z][\w -]*", part) for part in parts)
+    words = all(re.fullmatch(r"[A-Za-z/~][\w ./~-]*", part) for part in parts)
     return [override(f"key={part}")[1] for part in parts] if words else []

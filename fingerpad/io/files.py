@@ -11,14 +11,18 @@ from uuid import uuid4
 
 
 def replace(file: Path, text: str | bytes) -> None:
-    """Write a file of text or bytes; what was there stays until all of it is written."""
+    """Write a file of text or bytes; what was there stays until all of it is written.
+
+    Raises:
+        OSError: it could not be written; with its name.
+    """
     part = file.with_name(f"{file.name}.{uuid4().hex[:8]}.part")  # another process may write the same file
     try:
         part.write_bytes(text.encode("utf-8") if isinstance(text, str) else text)
         part.replace(file)
-    except OSError:
+    except OSError as error:
         part.unlink(missing_ok=True)
-        raise
+        raise OSError(error.errno, error.strerror, str(file)) from error  # the system names no file of a full disk
 
 
 def replace_json(file: Path, data: Any) -> None:

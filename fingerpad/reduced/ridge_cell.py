@@ -12,6 +12,7 @@ model that uses the law has it.
 
 import hashlib
 import json
+import signal
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -91,13 +92,21 @@ def tables(
 
     Raises:
         StepFailed: the cell could not be pressed or slid.
+        Interrupted: ``pause`` raised it on a rank.
     """
     made_of, file = _place(scene, folder, comm, deeper)
     data = json.loads(file.read_text(encoding="utf-8")) if comm.rank == 0 and file.exists() else None
     data = comm.bcast(data)
     if data is None:
         # Every rank makes it by itself; what differs, if only the time it took, is rank 0's.
-        data = comm.bcast({"made_of": made_of} | _Cell(scene, made_of["f_max"], pause).tabulate())
+        number = 0
+        try:
+            data = {"made_of": made_of} | _Cell(scene, made_of["f_max"], pause).tabulate()
+        except Interrupted as stopped:
+            number = int(stopped.signal)
+        if number := comm.allreduce(number, op=MPI.MAX):  # a signal on any rank stops all
+            raise Interrupted(signal.Signals(number), 0)
+        data = comm.bcast(data)
         if comm.rank == 0:
             folder.mkdir(parents=True, exist_ok=True)
             replace_json(file, data)

@@ -14,6 +14,7 @@ The finger's own elements, a quarter of a ridge, have no part in it: halving all
 lengths by 0.1 % and the bone's height by 0.13 % (default finger, 15 and 75 N/m, 200 V).
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from functools import partial
@@ -104,8 +105,9 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: 
     half = scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"contact": scene.mesh.contact / 2})})
     stages = Stages((scene, half), folder, comm, console)
     with Interrupt(comm) as interrupt, interrupt.ends_the_program():
-        found = [_solved(one, folder, comm, stages, interrupt) for one in (scene, half)]
-    fingers, answers = zip(*found, strict=True)
+        first = _solved(scene, folder, comm, stages, interrupt, 1)
+        second = _solved(half, folder, comm, stages, interrupt, first[0].deeper)
+    fingers, answers = (first[0], second[0]), (first[1], second[1])
     errors = {state: estimated(answers[0][state], answers[1].get(state)) for state in answers[0]}
     _refuse_coarse(scene, answers[0], errors)
     named = {state: replace(value, error=errors[state]) for state, value in answers[0].items()}
@@ -118,8 +120,8 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: 
     least = min(finger.touching for finger in fingers)
     if least < _FEW:
         notes.append(
-            f"the skin touches over {least:.2g} ridges; fewer than {_FEW} stand apart, and this model spreads them: "
-            "friction and contact length may be off by more than the error given"
+            f"the skin touches over {math.floor(10 * least) / 10:g} ridges; fewer than {_FEW} stand apart, and this "
+            "model spreads them: friction and contact length may be off by more than the error given"
         )
     if "full_slip" not in named:
         notes.append(f"no full slip within {scene.slide_length:g} m of sliding")
@@ -136,15 +138,14 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: 
 
 
 def _solved(
-    scene: Scene, folder: Path, comm: MPI.Comm, stages: Stages, interrupt: Interrupt
+    scene: Scene, folder: Path, comm: MPI.Comm, stages: Stages, interrupt: Interrupt, deeper: int
 ) -> tuple["_SmoothFinger", dict[str, ContactState]]:
-    """Return the finger at the end of its loads, and its states by name.
+    """Return the finger at the end of its loads, and its states by name; its tables are so deep, or deeper.
 
     Raises:
         SceneError: the ridge could not be followed to where it lets go, less than a ridge touches, or no equilibrium
             was found.
     """
-    deeper = 1
     try:
         while True:
             try:
@@ -243,7 +244,7 @@ class _SmoothFinger:
     def __init__(
         self, scene: Scene, folder: Path, comm: MPI.Comm, stages: Stages, deeper: int, interrupt: Interrupt
     ) -> None:
-        self.scene, self.interrupt = scene, interrupt
+        self.scene, self.interrupt, self.deeper = scene, interrupt, deeper
         pause = partial(interrupt.stop_if_asked, alone=True)
         tables = []
         for each in ridges(scene):

@@ -67,7 +67,10 @@ def _head(result: Result) -> str:
     """Return the finding: the largest number of the page, and whether to rely on it."""
     kind, words = trust.verdict(trust.findings(result))
     slip, charged = result.full_slip, result.charged
-    if slip is not None:
+    if slip is not None and math.isnan(slip.mu_app):
+        number = f"f<sub>T</sub> = {html.text(cell('f_t', slip.f_t, slip.error.f_t))} N/m"
+        said = f"friction force at full slip, where no force presses the finger; {_conditions(result)}"
+    elif slip is not None:
         value = cell("mu_app", slip.mu_app, slip.error.mu_app)
         number = f"µ<sub>app</sub> = {html.text(value)}"
         friction = result.scene.friction if "laws" not in _parameters(result) else None
@@ -142,8 +145,11 @@ def _numbers(result: Result) -> str:
     if any(state.error.known() for state in result.named.values()):
         notes.append("±: estimated discretisation error, of the mesh alone.")
     if slip is not None and not math.isnan(slip.penalty.contact_length):
-        change = f"{slip.penalty.mu_app:+.2g}, and the contact length by {_MM * slip.penalty.contact_length:+.2g} mm"
-        notes.append(f"Contact is a penalty: a rigid screen would change µ_app at full slip by {change}.")
+        friction = f"µ_app at full slip by {slip.penalty.mu_app:+.2g}"
+        if math.isnan(slip.penalty.mu_app):
+            friction = f"f_T at full slip by {slip.penalty.f_t:+.2g} N/m"
+        length = f"the contact length by {_MM * slip.penalty.contact_length:+.2g} mm"
+        notes.append(f"Contact is a penalty: a rigid screen would change {friction}, and {length}.")
     heads = ("", *(WORDS[name] for name in result.named))
     return html.section("numbers", "Key numbers", html.table(heads, rows, "numbers"), html.items(notes))
 

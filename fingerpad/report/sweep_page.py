@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from collections.abc import Mapping
 from typing import Any
 
 from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
@@ -25,13 +26,17 @@ def page(table: Table) -> str:
 
 
 def _head(table: Table) -> str:
-    values = [value for row in table.rows if (value := _read(row.get("slip_mu_app"))) is not None]
-    if values:
-        number = f"µ<sub>app</sub> from {min(values):.3f} to {max(values):.3f}"
+    slid = [row for row in table.rows if _slid(row)]
+    read = ([_read(row.get(f"slip_{key}")) for row in slid] for key in ("mu_app", "f_t"))
+    mu, f_t = ([value for value in values if value is not None] for values in read)
+    if mu:
+        number = f"µ<sub>app</sub> from {min(mu):.3f} to {max(mu):.3f}"
+    elif f_t:
+        number = f"f<sub>T</sub> from {min(f_t):.3f} to {max(f_t):.3f} N/m"
     else:
         number = "No point reached full slip"
     failed = [row for row in table.rows if row["failure"]]
-    missing = len(table.rows) - len(values) - sum(1 for row in failed if _read(row.get("slip_mu_app")) is None)
+    missing = len(table.rows) - len(slid) - sum(1 for row in failed if not _slid(row))
     kind, mark, words = "holds", "✓ holds", "Every point was computed."
     if failed:
         kind, mark = "fails", "✗ fails"
@@ -44,6 +49,11 @@ def _head(table: Table) -> str:
         f'<h1>{number}</h1><p class="said">{html.text(said)}</p>'
         f'<p class="verdict {kind}"><b>{mark}</b> {html.text(words)}</p></header>'
     )
+
+
+def _slid(row: Mapping[str, Any]) -> bool:
+    """Return whether a point reached full slip; not all of these have a coefficient of friction."""
+    return _read(row.get("slip_contact_length")) is not None
 
 
 def _varied(table: Table) -> str:
@@ -71,7 +81,7 @@ def _points(table: Table) -> str:
         for key in _SHOWN:
             value, error = _read(row.get(f"slip_{key}")), _read(row.get(f"slip_{key}_error"))
             cells.append("–" if value is None else cell(key, value, math.nan if error is None else error))
-        state = "failed" if row["failure"] else "" if cells[0] != "–" else "no full slip"
+        state = "failed" if row["failure"] else "" if _slid(row) else "no full slip"
         first, *rest = (_plain(row[key]) for key in table.axes)
         rows.append((first, *rest, *cells, state))
     heads = [_head_of(key) for key in table.axes]

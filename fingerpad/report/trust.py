@@ -59,14 +59,17 @@ def _full_slip(result: Result) -> Iterator[Finding]:
         words = "Every point in contact slips one way, and the forces stayed the same over a further 0.2 mm."
         yield Finding("full slip", GOOD, words)
     elif result.full_slip is None and any(load.until_full_slip or load.moves for load in result.scene.loads()):
-        words = "No full slip was held over a further 0.2 mm, so there is no µ_app of full slip."
+        reached = any(load.full_slip_reached for load in result.loads)
+        how = "not held over a further 0.2 mm" if reached else "not reached"
+        words = f"Full slip was {how}, so there is no friction of full slip."
         yield Finding("full slip was not reached", BAD if result.failure else CARE, words)
 
 
 def _mesh(result: Result) -> Iterator[Finding]:
     state = result.full_slip or result.charged
-    key = "mu_app" if result.full_slip else "contact_length"
-    name = "µ_app" if result.full_slip else "the contact length"
+    key, name = "contact_length", "the contact length"
+    if result.full_slip:
+        key, name = ("f_t", "f_T") if math.isnan(result.full_slip.mu_app) else ("mu_app", "µ_app")
     if state is None:
         return
     error, value = getattr(state.error, key), getattr(state, key)

@@ -112,6 +112,7 @@ def sweep(
             fcntl.flock(lock, fcntl.LOCK_EX)  # another sweep may be at it
             if result(scenes[name], folder) is not None:
                 return End(0, "", "", "")
+            (place / "summary.json").unlink(missing_ok=True)  # of a run that says nothing of this one
             (place / "asked.json").write_text(json.dumps(scenes[name].parameters(), indent=1), encoding="utf-8")
             start = time.monotonic()
             end = run("fingerpad.runs.batch", [str(place / "asked.json"), str(place), str(limit), model], limit)

@@ -35,7 +35,7 @@ CONE_ROUNDOFF = 1e-8  # relative: a traction this near the limit counts as on it
 _PRESSURES = np.array([0.0, 1.0, 1e2, 1e4, 1e6])  # Pa, at which a law is examined
 _JUMP = 1e-6  # Pa, p_n at which the limit must be below _JUMPED
 _JUMPED = 1.0  # Pa
-_SMALL, _STEEPER = (1e-12, 1e-3), 1.05  # Pa, between which the limit over the pressure must not rise by more
+_SMALL, _STEEPER = (1e-6, 1.0), 1.5  # Pa, between which the limit over the pressure must not rise by more
 
 
 class Friction(Law, ABC):
