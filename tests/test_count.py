@@ -5,7 +5,6 @@ from functools import partial
 import pytest
 from mpi4py import MPI
 
-from fingerpad.accuracy.recompute import Solve
 from fingerpad.accuracy.refinement import Refinement
 from fingerpad.model import memory
 from fingerpad.model.check import check
@@ -14,6 +13,7 @@ from fingerpad.scene import Numerics, SceneError, from_data
 from geometry import count, fingertip
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
+from tests.test_accuracy import known
 
 FINE = {"contact": 10e-6, "receptor": 10e-6, "touching_half_arc": 1.0e-3}
 COARSE = {"contact": 30e-6, "receptor": 60e-6, "interface": 120e-6, "growth": 0.5, "touching_half_arc": 2.0e-3}
@@ -102,7 +102,7 @@ def test_refinement_ends_where_memory_does():
     scene = from_data({"accuracy": {"mu_app": 0.01}, "mesh": COARSE, "contact": {"formulation": "nitsche"}})
     numerics = scene.numerics.model_copy(update={"memory": 3e8})
     scene = scene.model_copy(update={"numerics": numerics})
-    path = Solve({"full_slip": None}, scene.mesh, 1, 1, 0.0)
-    search = Refinement(FingerModel(scene, plan(scene)), path, MPI.COMM_SELF, lambda line: None, lambda: None)
+    model = FingerModel(scene, plan(scene))
+    search = Refinement(model, known(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, lambda line: None, lambda: None)
     search.run()
     assert search.failure.startswith("the accuracy asked for could not be established: the mesh would have some ")

@@ -197,5 +197,6 @@ def test_without_the_optional_package(monkeypatch, tmp_path):
         return original(name, *args, **kwargs)
 
     monkeypatch.setattr(builtins, "__import__", missing)
+    (tmp_path / "scan.vk4").write_bytes(b"")
     with pytest.raises(ImportError, match=r"pip install fingerpad\[topography\]"):
         read(tmp_path / "scan.vk4")
