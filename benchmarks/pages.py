@@ -5,12 +5,11 @@ python3 -m benchmarks.pages --stale                        also: make stale; nee
 
 A page is older than the code where a file that computes its numbers differs from that which made them: one of the
 packages (geometry, variational, fingerpad without what starts, reads, refuses, orders runs, writes and prints), or of
-the page's own program, without what only draws it. Comments and docstrings do not count, nor packages
-that were found to compute the same numbers (docs/same.json, by benchmarks/same.py), or the same but for some that the
-page's program has no word of. The commit that made numbers is
-found by the hash of the packages' files that is kept with them; a program in benchmarks/ is compared with that of the
-commit that brought them into git. Numbers of files that are in no commit count as made by the commit that brought them,
-and so do older numbers, which have no hash.
+the page's own program, without what only draws it. Comments and docstrings do not count, nor packages that were found
+to compute the same numbers (docs/same.json, by benchmarks/same.py), or the same but for some that the page's program
+has no word of. The commit that made numbers is found by the hash of the packages' files that is kept with them; a
+program in benchmarks/ is compared with that of the commit that brought them into git. Numbers of files that are in no
+commit count as made by the commit that brought them, and so do older numbers, which have no hash.
 """
 
 import argparse

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import os
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -242,6 +243,23 @@ def test_foreign_configuration_is_not_read(tmp_path):
 def test_ranges(text, values):
     """Ends are exact and inner values rounded to 12 digits, so that 0.3 is 0.3."""
     assert ranges.read("x", text) == values
+
+
+def test_terminal_without_the_letters_gets_others():
+    """µ and ² are no letters of ASCII; the command prints a mark for each and goes on."""
+    command = [sys.executable, "-m", "fingerpad", "microscale", "--p", "1e4"]
+    environment = os.environ | {"PYTHONIOENCODING": "ascii"}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False, cwd=ROOT)
+    assert done.returncode == 0 and "rms roughness 3.1 ?m" in done.stdout
+
+
+def test_sweep_that_is_stopped_says_that_it_goes_on(capsys, monkeypatch, tmp_path):
+    def stopped(*args, **axes):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("fingerpad.cli.sweep.sweep", stopped)
+    assert main(["sweep", "--over", "voltage=0,100", "--out", str(tmp_path / "new")]) == 130
+    assert "new, and the same command goes on" in capsys.readouterr().err
 
 
 def test_whole_numbers_stay_whole():

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from fingerpad.cli import estimate, main, microscale, sweep
+from fingerpad.io import style
 from fingerpad.reduced import cylinders
 from fingerpad.runs.sweep import sweep as run_sweep
 from fingerpad.scene import Scene, SceneError, from_data, keys, load
@@ -66,18 +67,34 @@ def test_estimate_draws_a_curve_for_each_force(tmp_path):
     assert (tmp_path / "mu.png").stat().st_size > 10_000
 
 
-@pytest.mark.parametrize("voltage", ["0", "-100,-50"])
-@pytest.mark.parametrize("command", ["estimate", "microscale"])
-def test_picture_without_a_positive_voltage(command, voltage, tmp_path, capsys):
-    """The colours of voltages go up to the largest amount, which may be zero."""
-    main([command, f"--voltage={voltage}", "--plot", str(tmp_path / "plot.png")])
-    assert (tmp_path / "plot.png").stat().st_size > 10_000
+@pytest.mark.parametrize(
+    ("command", "voltages"),
+    [
+        (estimate, [0.0]),
+        (estimate, [-100.0]),
+        (microscale, [0.0]),
+        (microscale, [-100.0, 0.0]),
+        (microscale, [-100.0, -50.0]),
+    ],
+)
+def test_colours_of_voltages_go_up_to_the_largest_amount(command, voltages, tmp_path, monkeypatch):
+    """It may be zero or of a negative voltage; the sign does not change a colour."""
+    drawn, colour = [], style.voltage
+    monkeypatch.setattr(style, "voltage", lambda *args: drawn.append(args) or colour(*args))
+    if command is estimate:
+        rows, _ = estimate.grid(Scene(), [25.0, 75.0], voltages)
+    else:
+        rows = microscale.table(Scene(), voltages, [5e3, 5e4])
+    command.draw(tmp_path / "plot.png", rows)
+    assert [args[0] for args in drawn] == voltages
+    assert {abs(args[1]) for args in drawn} == {max(map(abs, voltages))}
+    assert [colour(*args) for args in drawn] == [colour(abs(a), max(map(abs, voltages)) or 1.0) for a in voltages]
 
 
 @pytest.mark.parametrize(
     ("argv", "words"),
     [
-        (["--plot", "mu.txt"], "mu.txt is of no format of pictures; it must end with one of .png"),
+        (["--plot", "mu.txt"], "mu.txt cannot be a picture; its name must end with one of .png"),
         (["--plot", "same.png", "--csv", "same.png"], "--plot and --csv are both same.png; give a file for each"),
         (["demos/scenes/unload.toml"], "history is given; the model 'cylinders' answers for press, charge and slide"),
     ],
@@ -207,7 +224,7 @@ def test_sweep_over_words_switches_and_whole_numbers(tmp_path, capsys):
     assert main(["sweep", *(f"--over={axis}" for axis in axes), "--model=cylinders", f"--out={tmp_path}"]) == 1
     lines = capsys.readouterr().out.splitlines()
     assert [sum(f" {word} " in f" {line}" for line in lines) for word in ("nitsche", "true", "55")] == [4, 4, 4]
-    assert sum("0.5170" in line for line in lines) == 2
+    assert sum("is not that of the default finger" in line for line in lines) == 6
 
 
 def test_sweep_head_has_units(tmp_path):
@@ -265,6 +282,15 @@ def test_compare_refuses_lengths_of_no_finger(capsys, length, ridges, words):
     """Such as one of mm without a unit."""
     argv = ["--model", "cylinders", "--contact-length", length, "--ridges", ridges]
     assert words in refused(capsys, "compare", *argv)
+
+
+def test_compare_takes_a_length_with_a_unit(capsys):
+    printed = []
+    for length in ("1.58 mm", "1.58e-3"):
+        assert main(["compare", "--model", "cylinders", "--contact-length", length, "--ridges", "16"]) == 0
+        printed.append([line for line in capsys.readouterr().out.splitlines() if "seconds" not in line])
+    assert any("contact length" in line and "1.5800" in line for line in printed[0])
+    assert [line for line in printed[0] if "time" not in line] == [line for line in printed[1] if "time" not in line]
 
 
 def test_compare_prints_keys_and_notes(capsys):

@@ -172,6 +172,16 @@ def test_dataset_of_a_result_that_was_read_back(folder):
     assert bytes(again.to_netcdf(engine="scipy", format="NETCDF3_64BIT")) == (folder / "result.nc").read_bytes()
 
 
+def test_laws_of_a_result_that_was_read_are_kept():
+    """They are objects of Python, of which a file has the names alone."""
+    laws = {"closure": {"law": "mine.Gap", "height": 2e-6}}
+    read = fp.Result(
+        fp.Scene(), "full", None, None, None, record={"parameters": fp.Scene().parameters() | {"laws": laws}}
+    )
+    found = dataset.attributes(read)
+    assert found["laws.closure.law"] == "mine.Gap" and json.loads(found["parameters"])["laws"] == laws
+
+
 def test_skin_that_was_read_back_is_that_of_the_run(folder, data):
     """Without what fills up the rows of a state on fewer facets."""
     for name, state in Result.load(folder).named.items():

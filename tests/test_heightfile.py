@@ -1,12 +1,14 @@
 """Height maps from files: formats, missing heights, and what is refused."""
 
 import builtins
+from typing import get_args
 
 import numpy as np
 import pytest
 
+from fingerpad.scene.materials import LengthUnit
 from tests.test_topography import grid, wave
-from variational.roughness.heightfile import read, scan
+from variational.roughness.heightfile import UNITS, read, scan
 from variational.roughness.heighttext import parse
 from variational.roughness.missing import filled
 
@@ -200,3 +202,7 @@ def test_without_the_optional_package(monkeypatch, tmp_path):
     (tmp_path / "scan.vk4").write_bytes(b"")
     with pytest.raises(ImportError, match=r"pip install fingerpad\[topography\]"):
         read(tmp_path / "scan.vk4")
+
+
+def test_units_of_a_scene_are_those_of_the_reader():
+    assert get_args(LengthUnit) == tuple(UNITS)

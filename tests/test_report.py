@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from fingerpad.cli import main
+from fingerpad.io.quantities import cell
 from fingerpad.io.result import Result
 from fingerpad.report import run_page, trust
 from fingerpad.report.write import NAME, write
@@ -200,6 +201,21 @@ def test_energy_of_jumps_is_told_where_it_is_known(folder, energy, words):
 def test_slide_without_full_slip_is_told(folder, failure, kind):
     found = trust.findings(replace(Result.load(folder), full_slip=None, failure=failure))
     assert {each.what: each.verdict for each in found}["full slip was not reached"] == kind
+
+
+def test_full_slip_without_a_coefficient_has_its_force(folder):
+    """As of a finger that slides while nothing presses it: no number is nan, and errors are known."""
+    result = Result.load(folder)
+    lost = {"mu_app": math.nan}
+    slip = result.full_slip
+    slip = replace(slip, **lost, error=replace(slip.error, **lost), penalty=replace(slip.penalty, **lost))
+    found = replace(result, full_slip=slip)
+    page = run_page.page(found)
+    text = re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)
+    assert f"f<sub>T</sub> = {cell('f_t', slip.f_t, slip.error.f_t)} N/m" in text
+    assert "would change f_T at full slip by" in text and not re.search(r"\bnan\b", text)
+    told = [each.what for each in trust.findings(found)]
+    assert "errors are not estimated" not in told and {"mesh", "the mesh is coarse"} & set(told)
 
 
 # -- folders -----------------------------------------------------------------------------------------------

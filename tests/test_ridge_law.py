@@ -1,9 +1,12 @@
 """The ridge law: its ramps, its tables from one cell, and a block on it."""
 
+import signal
+
 import numpy as np
 import pytest
 from mpi4py import MPI
 
+from fingerpad.io.interrupt import Interrupted
 from fingerpad.reduced import ridge_cell
 from fingerpad.scene import from_data
 from geometry import tags
@@ -96,6 +99,20 @@ def test_friction_is_the_cone_of_the_contact_force(slid):
 def cell(tmp_path_factory):
     folder = tmp_path_factory.mktemp("tables")
     return ridge_cell.tables(from_data(COARSE), folder), folder
+
+
+@pytest.mark.mpi
+def test_signal_on_one_rank_stops_all(tmp_path):
+    """The cell is made by each rank alone; a rank without the signal must not wait for one that has it."""
+    last = MPI.COMM_WORLD.rank == MPI.COMM_WORLD.size - 1
+
+    def pause():
+        if last:
+            raise Interrupted(signal.SIGTERM, 1)
+
+    with pytest.raises(Interrupted) as stopped:
+        ridge_cell.tables(from_data(COARSE), tmp_path, pause=pause)
+    assert stopped.value.signal == signal.SIGTERM and not list(tmp_path.iterdir())
 
 
 def test_table_spans_the_load_and_the_release(cell):

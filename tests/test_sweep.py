@@ -157,3 +157,12 @@ def test_two_processes_may_write_a_file_at_once(tmp_path):
         list(pool.map(lambda k: replace(tmp_path / "table.csv", f"{k}\n" * 1000), range(400)))
     lines = (tmp_path / "table.csv").read_text().splitlines()
     assert len(lines) == 1000 and len(set(lines)) == 1 and [file.name for file in tmp_path.iterdir()] == ["table.csv"]
+
+
+def test_failure_is_that_of_the_last_try(started, tmp_path):
+    """A point that had too little memory before, and crashes now."""
+    scene = from_data({"f_ext": 666})
+    (tmp_path / key(scene)).mkdir()
+    old = {"f_ext": 666, "failure": "found no equilibrium: MUMPS_OUT_OF_MEMORY"}
+    (tmp_path / key(scene) / "summary.json").write_text(json.dumps(old))
+    assert sweep({"point": scene}, tmp_path)["point"] == {"failure": "CRASH_-11: segmentation fault"}

@@ -19,7 +19,7 @@ from geometry.units import to_si
 
 _PETSC = "-fingerpad_"  # prefix of PETSc's options
 PICTURES = (".png", ".pdf", ".svg", ".jpg", ".jpeg", ".eps", ".tif", ".tiff", ".webp")
-"""Endings of the formats of pictures."""
+"""Endings of the names of pictures."""
 _NEAR = 0.6  # likeness, from 0 to 1, at which an option may have been meant
 
 
@@ -203,7 +203,7 @@ def writable(file: Path | None, picture: bool = False) -> None:
 
     Args:
         file: to be written.
-        picture: whether it is one, of a format that its suffix names.
+        picture: whether it is one, whose format the end of its name gives.
 
     Raises:
         SceneError: its folder is not there or read-only, it is a folder itself or read-only, or of another format.
@@ -218,7 +218,7 @@ def writable(file: Path | None, picture: bool = False) -> None:
     if not os.access(file if file.exists() else file.absolute().parent, os.W_OK):
         raise SceneError(f"{name} cannot be written, since it is read-only; give another one")
     if picture and file.suffix.lower() not in PICTURES:
-        raise SceneError(f"{name} is of no format of pictures; it must end with one of {', '.join(PICTURES)}")
+        raise SceneError(f"{name} cannot be a picture; its name must end with one of {', '.join(PICTURES)}")
 
 
 def echo(text: str = "", end: str = "\n") -> None:

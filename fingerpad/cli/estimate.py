@@ -1,6 +1,5 @@
 """``fingerpad estimate``: friction over force and voltage by the closed form, without finite elements."""
 
-import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -9,7 +8,6 @@ from typing import Any
 from fingerpad.cli import ranges, tables
 from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.io.quantities import PER_LENGTH
-from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.answer import refuse_others
 from fingerpad.scene import Scene, from_data
@@ -86,7 +84,7 @@ def grid(scene: Scene, forces: Sequence[float], voltages: Sequence[float]) -> tu
             try:
                 found = cylinders.solve(_with(scene, f_ext=f_ext, voltage=voltage))
                 row |= {c.key: getattr(found.full_slip, c.key) for c in _COLUMNS if c.key not in row}
-                row["notes"] = found.notes
+                row["place"] = scene.closure().state(found.record["slip_p_c"], voltage)
             except SceneError as error:
                 lost.append(f"At {f_ext:g} N/m and {voltage:g} V: {error}.")
             rows.append(row)
@@ -97,9 +95,8 @@ def grid(scene: Scene, forces: Sequence[float], voltages: Sequence[float]) -> tu
 
 def _places(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     """Yield how many points are at an end of the closure."""
-    remark = re.compile(rf"{WORDS['full_slip']}: a mean pressure of .* is (.*)")
-    found = [remark.fullmatch(note) for row in rows for note in row.get("notes", ())]
-    for place, count in Counter(each[1] for each in found if each).items():
+    places = Counter[str](row["place"] for row in rows if row.get("place"))
+    for place, count in places.items():
         yield f"At {count} of {len(rows)} points the mean pressure of a ridge is {place}."
 
 

@@ -214,7 +214,9 @@ def _numbers(name: str, line: int, cells: Sequence[str], columns: Sequence[_Colu
         if not text:
             raise SceneError(f"{where}: the {column.name} is missing; leave the row out or give the number")
         try:
-            value = float(text if "_" not in text else "")
+            if "_" in text:  # which Python takes for a mark between digits
+                raise ValueError
+            value = float(text)
         except ValueError:
             raise SceneError(f"{where}: the {column.name} is {clip(repr(text))}; it must be a number") from None
         least = 0.0 if column.name in ("voltage", "spread") else None

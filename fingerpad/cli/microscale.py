@@ -54,8 +54,8 @@ def main(argv: Sequence[str]) -> int:
     echo(tables.text(_COLUMNS, rows))
     echo("\npressure: mean contact pressure of the ridge; external: that less the attraction, what the finger presses")
     echo("with; separation: mean, of skin and screen; air gap: equivalent one; real area: of the nominal area.")
-    echo(f"The air gap is held below {scene.roughness.p_floor * 1e-3:g} kPa (roughness.p_floor), and above that at")
-    echo(f"zero separation, {closure.full_pressure * 1e-3:.4g} kPa. ", end="")
+    echo(f"The air gap stays constant below {scene.roughness.p_floor * 1e-3:g} kPa (roughness.p_floor) and above")
+    echo(f"{closure.full_pressure * 1e-3:.4g} kPa, the pressure at zero separation. ", end="")
     echo(f"A ridge would stick without any force from {closure.threshold():.3g} V.")
     tables.write_files(args, _COLUMNS, rows, draw)
     return 0

@@ -147,21 +147,16 @@ def _solved(
             was found.
     """
     try:
-        while True:
-            try:
-                finger = _SmoothFinger(scene, folder, comm, stages, deeper, interrupt)
-                _refuse_lost(scene, finger.charged.slip)
-                found = {"charged": at_rest(scene, finger.press())}
-                slip = finger.slide()
-                break
-            except _TableEnds:
-                deeper *= 2
-                if deeper > _DEEPEST:
-                    raise
-                stages.again(scene, folder, comm, deeper)
+        finger = _SmoothFinger(scene, folder, comm, stages, deeper, interrupt)
+        _refuse_lost(scene, finger.charged.slip)
+        found = {"charged": at_rest(scene, finger.press())}
+        slip = finger.slide()
     except Interrupted:
         raise
     except StepFailed as error:
+        if isinstance(error, _TableEnds) and deeper < _DEEPEST:
+            stages.again(scene, folder, comm, 2 * deeper)
+            return _solved(scene, folder, comm, stages, interrupt, 2 * deeper)
         raise SceneError(
             f"the model 'smooth' found no equilibrium with the ridge's tables at mesh.contact {scene.mesh.contact:g} "
             f"m: {error}; use another model"
