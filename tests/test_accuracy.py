@@ -277,15 +277,6 @@ def test_friction_without_full_slip_is_refused():
         Refinement(model, path, MPI.COMM_SELF, lambda text: None, lambda: None)
 
 
-def test_coefficient_without_a_force_is_refused():
-    """A finger that slides while nothing presses it has a friction force, and no coefficient to be within 1 %."""
-    model = model_of({"accuracy": {"mu_app": 0.01}})
-    path = known(model, {}, None)
-    change(path, mu_app=np.nan)
-    with pytest.raises(StepFailed, match="at full slip no force presses the finger.* ask for accuracy.f_t"):
-        Refinement(model, path, MPI.COMM_SELF, lambda text: None, lambda: None)
-
-
 # -- a small finger ----------------------------------------------------------------------------------------
 SMALL = {
     "f_ext": 1.0,

@@ -2,6 +2,7 @@
 
 import signal
 
+import numpy as np
 import pytest
 from mpi4py import MPI
 
@@ -13,7 +14,7 @@ from fingerpad.richardson import plus_minus
 from fingerpad.runs import attempt
 from fingerpad.runs.batch import key
 from fingerpad.scene import SceneError, from_data, load_names
-from tests.test_accuracy import known, model_of, search
+from tests.test_accuracy import change, known, model_of, search
 from variational.solvers.continuation import StepFailed
 from variational.solvers.failure import NotConverged
 
@@ -106,3 +107,29 @@ def test_interrupted_search_reached_nothing(monkeypatch):
             found.run()
         assert not found.failure and not found.summary()["reached"]
     assert search(monkeypatch, {"mu_app": 0.01}).summary()["reached"]
+
+
+# -- without a force that presses ---------------------------------------------------------------------------
+def test_errors_without_a_force_are_those_of_the_friction_force(monkeypatch):
+    """There is no coefficient then, and no line that says nan ± nan."""
+
+    def unpressed(model, states, comm, views=False):
+        solve = known(model, states, comm)
+        change(solve, mu_app=np.nan)
+        return solve
+
+    model, shown = model_of({"numerics": {"memory": 1e15}}), []
+    monkeypatch.setattr(solves, "solve_again", unpressed)
+    found = Refinement(model, unpressed(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, shown.append, lambda: None)
+    found.run()
+    assert "slip_f_t" in found.estimates() and "slip_mu_app" not in found.estimates()
+    assert any("friction force" in line for line in shown) and not any("nan" in line for line in shown)
+
+
+def test_coefficient_without_a_force_is_refused():
+    """A finger that slides while nothing presses it has a friction force, and no coefficient to be within 1 %."""
+    model = model_of({"accuracy": {"mu_app": 0.01}})
+    path = known(model, {}, None)
+    change(path, mu_app=np.nan)
+    with pytest.raises(StepFailed, match="at full slip no force presses the finger.* ask for accuracy.f_t"):
+        Refinement(model, path, MPI.COMM_SELF, lambda text: None, lambda: None)

@@ -75,6 +75,7 @@ def test_estimate_draws_a_curve_for_each_force(tmp_path):
         (microscale, [0.0]),
         (microscale, [-100.0, 0.0]),
         (microscale, [-100.0, -50.0]),
+        (microscale, [-100.0, 50.0]),
     ],
 )
 def test_colours_of_voltages_go_up_to_the_largest_amount(command, voltages, tmp_path, monkeypatch):
