@@ -238,6 +238,21 @@ class Prestressed(Mine):
 
 
 @dataclass(frozen=True)
+class TwiceAsStiff(Mine):
+    def energy(self, F):
+        return 2 * Mine.energy(self, F)
+
+
+@dataclass(frozen=True)
+class Fibres(Mine):
+    """A matrix of 1 kPa with fibres at an angle to x, which add up to 20 Pa in shear."""
+
+    def energy(self, F):
+        a = ufl.as_vector([np.cos(0.4), np.sin(0.4), 0.0])
+        return Mine.energy(Mine(1e3, 1.0), F) + 20.0 / 2 * (ufl.inner(F * a, F * a) - 1) ** 2
+
+
+@dataclass(frozen=True)
 class Failing(Mine):
     def energy(self, F):
         return self.shear_modulus * np.linalg.det(F)
@@ -275,6 +290,8 @@ class Changing(Material):
         (Mine(float("nan"), 1.0), "shear_modulus is nan; it must be a finite number"),
         (Mine("soft", 1.0), "shear_modulus is 'soft'; it must be a finite number"),
         (Prestressed(1.0, 1.0), "has a stress of 1 Pa unloaded; it must have none"),
+        (TwiceAsStiff(1e3, 1.0), "shear_modulus is 1000 Pa; it must be that of the unloaded energy, 2000 Pa"),
+        (Fibres(900.0, 1.0), "is 900 Pa; it must be that of the unloaded energy, 1000 to 1020 Pa"),
         (Failing(1.0, 1.0), "the energy of .* cannot be evaluated unloaded"),
         (Changing(), "Changing is a law; it must be a @dataclass"),
     ],
@@ -284,3 +301,8 @@ def test_what_is_no_solid_is_refused(square, solid, sentence):
     with pytest.raises(ValueError, match=sentence) as error:
         problem_of(square, {tags.STRATUM_CORNEUM: solid})
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("modulus", [1000.0, 1010.0, 1020.0])
+def test_shear_modulus_of_fibres_is_that_of_any_direction(modulus):
+    Fibres(modulus, 1.0).check()

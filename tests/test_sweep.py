@@ -3,7 +3,10 @@
 import contextlib
 import fcntl
 import json
+import os
+import signal
 import threading
+import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -13,6 +16,7 @@ from fingerpad.installed import source
 from fingerpad.io.files import replace
 from fingerpad.io.result import Result
 from fingerpad.runs import batch as module
+from fingerpad.runs import processes
 from fingerpad.runs.batch import key, result, sweep
 from fingerpad.runs.processes import End, Pool
 from fingerpad.runs.processes import run as run_module
@@ -134,6 +138,34 @@ def test_pool_reports_every_job_once():
     assert Pool[int, End](echo, jobs=2).run(range(5), lambda k, end, left: ends.append((k, left))) == 0
     assert sorted(k for k, _ in ends) == [0, 1, 2, 3, 4]
     assert sorted((left for _, left in ends), reverse=True) == [4, 3, 2, 1, 0]
+
+
+@pytest.mark.parametrize(("number", "error"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, SystemExit)])
+def test_signal_stops_the_jobs_too(capsys, number, error):
+    """Else they would go on without the program, or keep it."""
+    ends = []
+
+    def job(k):
+        ends.append(run_module("timeit", ["-n1", "-r1", "__import__('time').sleep(100)"], 100.0))
+        return ends[-1]
+
+    def send():
+        while len(processes._RUNNING) < 2:
+            time.sleep(0.01)
+        os.kill(os.getpid(), number)
+
+    usual = signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL
+    before = signal.signal(number, usual)  # a caller in the background may ignore it
+    try:
+        threading.Thread(target=send).start()
+        with pytest.raises(error) as stopped:
+            Pool[int, End](job, jobs=2).run(range(3), lambda *end: None)
+        assert signal.getsignal(number) == usual
+    finally:
+        signal.signal(number, before)
+    assert [end.code for end in ends] == [-signal.SIGTERM] * 2
+    assert number == signal.SIGINT or stopped.value.code == 128 + number
+    assert capsys.readouterr().err == "fingerpad: runs end after their present step: 2\n"
 
 
 def test_crash_says_its_last_words():

@@ -171,7 +171,8 @@ def _of_sweep(found: Table, table: Measured) -> Ours:
 
 def _curves(points: dict[tuple[float, float], float], table: Measured) -> Ours:
     if all(math.isnan(value) for value in points.values()):
-        raise SceneError(f"ours has no {table.quantity} of {WORDS[table.state]}, which {_name(table)} has")
+        quantity = "friction coefficient" if table.key == "mu_app" else table.quantity
+        raise SceneError(f"ours has no {quantity} of {WORDS[table.state]}, which {_name(table)} has")
     curves = []
     for voltage in sorted({u for _, u in points}):
         forces = sorted(f for f, u in points if u == voltage)

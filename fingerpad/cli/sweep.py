@@ -41,7 +41,7 @@ def main(argv: Sequence[str]) -> int:
     scene = from_data(base)
     try:
         found = sweep(scene, args.out, jobs=args.jobs, model=args.model, quiet=args.quiet, **axes)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, SystemExit):  # of signals
         print(f"fingerpad: stopped; points are kept in {args.out}, and the same command goes on", file=sys.stderr)
         raise
     echo(str(found))

@@ -2,7 +2,7 @@
 
 A job that is killed, crashes in the linear solver or takes too long costs that job and no other: a thread of the pool
 only waits for a fresh process, which, unlike a worker of a process pool, can be stopped by itself. Time is that of the
-processor, the same on a busy machine.
+processor, the same on a busy machine. A signal that ends the program stops its jobs, too: each gets SIGTERM.
 """
 
 import math
@@ -11,16 +11,20 @@ import resource
 import signal
 import subprocess
 import sys
+import threading
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from types import FrameType
 from typing import Generic, TypeVar
 
 _ROOT = Path(__file__).resolve().parents[2]
 _LAUNCHERS = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "MV2_")  # by whose variables MPI takes a process for a rank of theirs
 _STUCK = 20  # times its limit that a job may take by the clock
+_RUNNING = set[subprocess.Popen[str]]()  # of all pools: a signal is to the program
 Key = TypeVar("Key")
 Result = TypeVar("Result")
 
@@ -54,15 +58,51 @@ def run(module: str, arguments: Sequence[str], limit: float) -> End:
     alone = {name: value for name, value in os.environ.items() if not name.startswith(_LAUNCHERS)}
     env = alone | {"PYTHONPATH": path, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     command = [sys.executable, "-P", "-m", module, *arguments]  # -P: no modules of the current folder
+    process = subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    _RUNNING.add(process)
     try:
-        done = subprocess.run(command, env=env, capture_output=True, text=True, timeout=_STUCK * limit)
+        out, errors = process.communicate(timeout=_STUCK * limit)
     except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
         return End(-signal.SIGKILL, "STUCK", f"not done after {_STUCK * limit:g} s", "")
-    if done.returncode == -signal.SIGXCPU:
-        return End(done.returncode, "TIME_LIMIT", f"not done after {limit:g} s of processor time", done.stdout)
-    last = (done.stderr.strip().splitlines() or ["no message"])[-1]
-    reason = f"CRASH_{done.returncode}" if done.returncode else ""
-    return End(done.returncode, reason, last if reason else "", done.stdout)
+    finally:
+        _RUNNING.discard(process)
+    if process.returncode == -signal.SIGXCPU:
+        return End(process.returncode, "TIME_LIMIT", f"not done after {limit:g} s of processor time", out)
+    last = (errors.strip().splitlines() or ["no message"])[-1]
+    reason = f"CRASH_{process.returncode}" if process.returncode else ""
+    return End(process.returncode, reason, last if reason else "", out)
+
+
+@contextmanager
+def _stopped_by_signals() -> Iterator[None]:
+    """Send SIGTERM to the running jobs when a signal ends the block.
+
+    Raises:
+        KeyboardInterrupt: SIGINT came.
+        SystemExit: SIGTERM or SIGHUP came, which would end the program and leave its jobs; with 128 and its number.
+    """
+
+    def end(number: int, frame: FrameType | None) -> None:
+        raise SystemExit(128 + number)
+
+    main = threading.current_thread() is threading.main_thread()
+    taken = [n for n in (signal.SIGTERM, signal.SIGHUP) if main and signal.getsignal(n) == signal.SIG_DFL]
+    for number in taken:
+        signal.signal(number, end)
+    try:
+        yield
+    except BaseException:
+        running = tuple(_RUNNING)
+        for process in running:
+            process.terminate()
+        if running:
+            print(f"fingerpad: runs end after their present step: {len(running)}", file=sys.stderr, flush=True)
+        raise
+    finally:
+        for number in taken:
+            signal.signal(number, signal.SIG_DFL)
 
 
 @dataclass(frozen=True)
@@ -88,10 +128,14 @@ class Pool(Generic[Key, Result]):
 
         Returns:
             The number of jobs that were not started for want of time.
+
+        Raises:
+            KeyboardInterrupt: SIGINT, after the jobs that were running have ended.
+            SystemExit: SIGTERM or SIGHUP, likewise.
         """
         waiting, stop = list(keys), time.monotonic() + 3600 * self.hours
         running: dict[Future[Result], Key] = {}
-        with ThreadPoolExecutor(self.jobs) as pool:
+        with ThreadPoolExecutor(self.jobs) as pool, _stopped_by_signals():
             while running or (waiting and time.monotonic() < stop):
                 while waiting and len(running) < self.jobs and time.monotonic() < stop:
                     key = waiting.pop(0)

@@ -182,6 +182,8 @@ def sweep(
     Raises:
         SceneError: a key or a value that a scene cannot have, no values, a scene with laws of its own, which other
             processes cannot be given, more than one rank of MPI, or a folder that holds a run.
+        KeyboardInterrupt: Ctrl-C, after the present step of each running point; the same sweep goes on from there.
+        SystemExit: SIGTERM or SIGHUP, likewise.
     """
     scene = Scene() if scene is None else scene
     if terminal.ranks() > 1:

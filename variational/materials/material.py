@@ -35,6 +35,7 @@ from variational import kinematics
 from variational.coefficients import Law, said
 
 _NATURAL = 1e-8  # of the shear modulus: stress of the unloaded solid that is roundoff
+_SAME = 1e-6  # relative: a shear modulus that was written with seven digits is the energy's
 
 
 class Material(Law):
@@ -117,8 +118,8 @@ class Material(Law):
         """Refuse what is no solid.
 
         Raises:
-            ValueError: no energy, or one that is no number or leaves stress in the unloaded solid; numbers that are not
-                finite; moduli that are not positive. In one sentence.
+            ValueError: no energy, or one that is no number, leaves stress in the unloaded solid or has another initial
+                shear modulus; numbers that are not finite; moduli that are not positive. In one sentence.
         """
         self.refuse_numbers()
         kind = type(self)
@@ -144,26 +145,41 @@ class Material(Law):
 
     def _refuse_energy(self) -> None:
         try:
-            left = [abs(s) for s in (_unloaded if _hashable(self) else _unloaded.__wrapped__)(self)]
+            stress, shear = (_unloaded if _hashable(self) else _unloaded.__wrapped__)(self)
         except Exception as error:  # whatever the user's energy raises
             raise ValueError(
                 f"the energy of {self}, to be written with arithmetic and ufl's functions, cannot be evaluated "
                 f"unloaded: {said(error)}"
             ) from error
-        if not max(left) <= _NATURAL * float(self.shear_modulus):
+        left, given = max(map(abs, stress)), float(self.shear_modulus)
+        if not left <= _NATURAL * given:
             raise ValueError(
-                f"{self} has a stress of {max(left):.3g} Pa unloaded; it must have none, which an energy of "
+                f"{self} has a stress of {left:.3g} Pa unloaded; it must have none, which an energy of "
                 "the stretches of F / J^(1/3) has not"
+            )
+        least, largest = shear
+        if not (1 - _SAME) * least <= given <= (1 + _SAME) * largest:
+            found = f"{least:.7g}" + (f" to {largest:.7g}" if largest - least > _SAME * largest else "")
+            raise ValueError(
+                f"{self}: shear_modulus is {given:.7g} Pa; it must be that of the unloaded energy, {found} Pa"
             )
 
 
 @lru_cache(maxsize=64)  # UFL takes 0.1 s a law, and every mesh of a run has its laws checked
-def _unloaded(solid: Material) -> list[float]:
-    """Return the components of the stress (Pa) of the unloaded solid, without the volumetric part."""
+def _unloaded(solid: Material) -> tuple[list[float], list[float]]:
+    """Return stresses (Pa), and least and largest shear modulus in the plane (Pa), of the unloaded solid.
+
+    All are without the volumetric part. The shear modulus depends on the direction where the solid has fibres.
+    """
     F = ufl.variable(ufl.Identity(2) + 0 * ufl.Identity(2))
     P = ufl.diff(solid.distortion(kinematics.displacement_gradient(F)), F)
-    parts = [P[0, 0], P[0, 1], P[1, 0], P[1, 1], solid.distortion_zz(F)]
-    return [_value(part) for part in parts]
+    stress = [P[0, 0], P[0, 1], P[1, 0], P[1, 1], solid.distortion_zz(F)]
+    t = ufl.variable(ufl.as_ufl(0.0))
+    along, across = ufl.as_matrix([[0, t / 2], [t / 2, 0]]), ufl.as_matrix([[t / 2, 0], [0, -t / 2]])  # at 45 degrees
+    energies = [solid.distortion(H) for H in (along, across, along + across)]
+    one, other, both = (_value(ufl.diff(ufl.diff(W, t), t)) for W in energies)
+    mixed = (both - one - other) / 2
+    return [_value(s) for s in stress], [float(G) for G in np.linalg.eigvalsh([[one, mixed], [mixed, other]])]
 
 
 def _value(expression) -> float:
