@@ -253,12 +253,22 @@ def test_terminal_without_the_letters_gets_others():
     assert done.returncode == 0 and "rms roughness 3.1 ?m" in done.stdout
 
 
-def test_sweep_that_is_stopped_says_that_it_goes_on(capsys, monkeypatch, tmp_path):
+@pytest.mark.parametrize("words", [["params"], ["--help"]])
+def test_full_disk_under_the_output_is_told(words):
+    """Also where the output is so small that it waits until the program's end."""
+    command = [sys.executable, "-m", "fingerpad", *words]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(command, cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True)
+    assert (done.returncode, done.stderr) == (2, "fingerpad: the output cannot be written: No space left on device\n")
+
+
+@pytest.mark.parametrize(("stop", "code"), [(KeyboardInterrupt(), 130), (SystemExit(143), 143)])
+def test_sweep_that_is_stopped_says_that_it_goes_on(capsys, monkeypatch, tmp_path, stop, code):
     def stopped(*args, **axes):
-        raise KeyboardInterrupt
+        raise stop
 
     monkeypatch.setattr("fingerpad.cli.sweep.sweep", stopped)
-    assert main(["sweep", "--over", "voltage=0,100", "--out", str(tmp_path / "new")]) == 130
+    assert main(["sweep", "--over", "voltage=0,100", "--out", str(tmp_path / "new")]) == code
     assert "new, and the same command goes on" in capsys.readouterr().err
 
 

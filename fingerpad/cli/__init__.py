@@ -4,6 +4,7 @@ Each module has a function ``main(argv) -> int``. It returns the exit code: 0, 1
 128 and the number of the signal for a run that was stopped.
 """
 
+import errno
 import importlib
 import io
 import os
@@ -44,7 +45,9 @@ def main(argv: Sequence[str] | None = None) -> int:
             stream.reconfigure(errors="replace")
     try:
         with needed_by(words[0] if words else "help"):
-            return _call(words)
+            code = _call(words)
+        sys.stdout.flush()
+        return code
     except SceneError as error:
         return refuse(str(error))
     except ImportError as error:
@@ -54,12 +57,20 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:  # of `fingerpad params | head`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
         return 1
     except OSError as error:  # as of a disk that is full, or was taken out
+        if error.filename is None and error.errno in (errno.ENOSPC, errno.EDQUOT):  # of `fingerpad params > file`
+            _drop_output()
+            return refuse(f"the output cannot be written: {error.strerror}")
         if error.filename is None:
             raise
         return refuse(f"{clip(str(error.filename), 80)} cannot be used: {error.strerror}")
+
+
+def _drop_output() -> None:
+    """Write no more to the standard output, which Python would try at its end, too."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def refuse(message: str) -> int:
