@@ -116,6 +116,14 @@ def test_relative_moves_are_moves():
 
 
 @pytest.mark.mpi
+def test_load_may_have_the_name_of_the_first_touch():
+    """The first touch is no part of a load's way; the steps of a load of its name are."""
+    parts, asked = [], by_rule(scene(PRESS | {"name": "touch"}))
+    Simulation(FingerModel(asked, plan(asked)), MPI.COMM_WORLD, lambda step, done: parts.append(done)).run()
+    assert parts[0] == 0.0 and parts[-1] == 1.0 and parts == sorted(parts)
+
+
+@pytest.mark.mpi
 def test_move_after_full_slip_and_its_time():
     """It starts where the slide stopped; time passes with the way of the bone, at its speed."""
     slide = {"name": "slide", "bone_x": 2e-3, "until_full_slip": True, "speed": 0.02}

@@ -1,6 +1,7 @@
 """Means and spectra of curves over time, against closed forms."""
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -101,6 +102,15 @@ def test_spectrum_of_jumps_and_corners_at_odd_times():
     time = np.concatenate([[0, *inner, 0.5], [0.5, *(0.5 + inner), 1]])
     found = spectrum(time, np.where(np.arange(len(time)) < 7, 1.0, 0.0), 1.0, 1)
     assert found == pytest.approx([2 / np.pi, 0, 2 / 3 / np.pi, 0, 2 / 5 / np.pi, 0], abs=1e-9)
+
+
+def test_states_that_take_no_time_count_by_their_last():
+    """A lifted finger, without a coefficient, touches at the start of its press; then µ_app is 1 + t."""
+    air = [replace(states([(0.0, 0.0)], float)[0], mu_app=math.nan, contact_length=0.0)] * 2
+    press = [replace(state, mu_app=1.0 + t) for t in (0.0, 0.5, 1.0) for state in states([(t, 0.0)], float)]
+    mean = over_time([*air, *press], None).mean
+    assert mean["mu_app"] == pytest.approx(1.5, rel=1e-12)
+    assert mean["contact_length"] == pytest.approx(1e-3, rel=1e-12)
 
 
 def test_load_without_time_has_nothing_over_time():

@@ -1,9 +1,14 @@
 """Closures of one's own: what a run asks of them, and what is refused."""
 
+import csv
+
 import numpy as np
 import pytest
+from mpi4py import MPI
 
-from tests.test_laws import Held
+from fingerpad.runs import full
+from fingerpad.scene import from_data
+from tests.test_laws import SMALL, Held
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap, check
 from variational.solvers.coupling import Coupling
@@ -12,6 +17,11 @@ from variational.solvers.coupling import Coupling
 class Shape(Held):
     def __call__(self, p_c):
         return AirGap(np.array([1e-6, 1e-6]))
+
+
+class Telling(Held):
+    def state(self, p_c, voltage):
+        return repr(p_c)
 
 
 class Plain(Held):
@@ -51,3 +61,19 @@ def test_closures_of_the_package_are_closures():
     check(BearingArea(0.5e-6))
     check(Held())
     assert Held().state(1e4, 200.0) == ""
+
+
+def test_notes_are_of_the_pressures_that_the_closure_gets(tmp_path):
+    """Held air gaps make the forces the same whatever the length of Eq. 4 is; below them the skin is longer."""
+    history = [{"name": "press", "f_ext": 1.0}, {"name": "charge", "voltage": 100.0}]
+    data = {key: value for key, value in SMALL.items() if isinstance(value, dict)} | {"history": history}
+    told = {}
+    for length in ("pressure", "gap"):
+        scene = from_data(data | {"contact": {"length": length}}).with_laws(closure=Telling())
+        full.run(scene, tmp_path / length, MPI.COMM_SELF, lines=False)
+        with (tmp_path / length / "ridges.csv").open(encoding="utf-8") as file:
+            rows = [row for row in csv.DictReader(file) if float(row["p_c"]) > 0]
+        told[length] = np.array([[float(row["p_c"]), float(row["state"])] for row in rows])
+    np.testing.assert_array_equal(told["pressure"][:, 0], told["pressure"][:, 1])
+    np.testing.assert_array_equal(told["gap"][:, 0], told["pressure"][:, 0])
+    assert (told["gap"][:, 1] < 0.98 * told["gap"][:, 0]).all()

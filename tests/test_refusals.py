@@ -88,7 +88,7 @@ def refusal(path: Path | None = None, **overrides) -> str:
             "numerics.quadrature_points", 2,
             "numerics.quadrature_points is 2; it must be at least 3 for numerics.element 'P2'",
         ),
-        ("numerics.tolerance", 0, "numerics.tolerance is 0; it must be from 1e-12 to 0.001"),
+        ("numerics.tolerance", 0, "numerics.tolerance is 0; it must be from 1e-12 to 1e-07"),
         ("numerics.coupling_cap", 0, "numerics.coupling_cap is 0; it must be at least 1"),
         (
             "geometry.ridge_count", 54,
@@ -250,7 +250,7 @@ def test_odd_text(write, text, message):
         ("voltage", 2e14, "2e+14 V; it must be"),
         ("numerics.step_scale", 1e-9, "1e-09; it must be from 0.001 to 10$"),
         ("numerics.coupling_tolerance", 0.9, "0.9; it must be from 1e-12 to 0.001$"),
-        ("numerics.tolerance", 0.9, "0.9; it must be from 1e-12 to 0.001$"),
+        ("numerics.tolerance", 0.9, "0.9; it must be from 1e-12 to 1e-07$"),
         ("mesh.growth", 1e-9, "1e-09; it must be from 0.0001 to 1$"),
         ("mesh.coarsest", 1e-9, "1e-09 m; it must be from 1e-08"),
         ("mesh.touching_half_arc", 1e308, "1e+308 m; it must be from 1e-06 to 0.2 m$"),

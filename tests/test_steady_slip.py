@@ -5,7 +5,7 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.accuracy.recompute import StateRecorder
-from fingerpad.model import full_slip
+from fingerpad.model import balance, full_slip
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.model.touching import by_rule
@@ -42,7 +42,7 @@ def test_lengths_by_ridge_are_the_length(path):
 
 def test_slip_that_is_never_steady_ends_with_the_slide(monkeypatch):
     """The bone never goes back to where the slide should have ended."""
-    monkeypatch.setattr(full_slip, "_STEADY", -1.0)
+    monkeypatch.setattr(balance, "_STEADY", -1.0)
     scene, places = from_data(SCENE | {"slide_length": 0.9e-3}), []
     simulation = Simulation(
         FingerModel(scene, plan(scene)), MPI.COMM_WORLD, lambda step, done: places.append(step.state.bone_x)

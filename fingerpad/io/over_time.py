@@ -76,7 +76,8 @@ def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime
     start, seconds = float(times[0]), float(times[-1] - times[0])
     if not seconds > 0:  # also where no load is over time
         return None
-    time = times - start
+    last = int(np.flatnonzero(times <= start + _NEAR * seconds)[-1])  # of those that take no time, as a first touch
+    states, time = states[last:], times[last:] - start
     corners = [] if wave is None else wave.corners(seconds)
     values = {name: np.array([getattr(state, name) for state in states]) for name in QUANTITIES}
     mean = {

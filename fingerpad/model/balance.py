@@ -10,6 +10,7 @@ from variational.state import ContactState
 
 BALANCED = 1e-6
 """Largest part of f_ext that may be left at a node, and by which the reactions of bone and screen may differ."""
+_STEADY = 1e-6  # relative change of f_t that sliding on at full slip may cause, beside that of gaps not closed
 _DEFECT = "this is a defect of the program, please report it"
 
 
@@ -25,6 +26,19 @@ def force_error(unknowns: int, tolerance: float, force_scale: float) -> float:
         force_scale: force per length (N/m) in which residuals are measured.
     """
     return float(np.sqrt(unknowns)) * tolerance * force_scale
+
+
+def steady(tolerance: float, gap: float) -> float:
+    """Return the relative change of f_t that is not significant when the body slides on at full slip.
+
+    An augmented Lagrangian leaves gaps of up to its tolerance, which close further with each load; the attraction goes
+    with the inverse square of the air gap and the insulator behind it.
+
+    Args:
+        tolerance: of the formulation (m).
+        gap: least air gap with the insulator behind it (m), infinite without attraction.
+    """
+    return _STEADY + 2 * tolerance / gap
 
 
 def refuse_unbalanced(

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 import fingerpad.started  # noqa: F401
 from fingerpad.io.states import full_slip
-from fingerpad.model.balance import force_error
+from fingerpad.model.balance import force_error, steady
 from fingerpad.model.gathered import Nodes, Points
 from fingerpad.model.state import contact_state, step_record
 from fingerpad.scene.laws import refuse_thickness
@@ -47,7 +47,6 @@ Array = NDArray[np.float64]
 Quantity = float | str
 """A number in SI, or a text with a unit: ``"0.0044 N/mm"``."""
 _TOLERANCE = 1e-9  # of the solves, over the force scale
-_STEADY = 1e-6  # relative change of a force by sliding on at full slip that means nothing
 
 
 @dataclass(frozen=True)
@@ -243,7 +242,9 @@ class Body:
             load=self._load, load_number=self._loads, record=record, skin=self._points.gather(path.surface_state),
         )  # fmt: skip
         least = force_error(solver.layout.global_size, max(_TOLERANCE, solver.floor), solver.force_scale)
-        began, held = full_slip(self.states, found, _STEADY, least)
+        laws = self.problem.interface
+        gap = float(self._d_eq.min()) + laws.h_0 if found.voltage else np.inf
+        began, held = full_slip(self.states, found, steady(laws.formulation.tolerance, gap), least)
         return replace(found, slip_began=began, slip_held=held)
 
 

@@ -85,9 +85,13 @@ class Finger:
         """Return the skin, the bone's place and reaction, and the air gaps of the present state."""
         return self.continuation.surface_state, self.solver.bone, self.solver.reaction, self.coupling.d_eq
 
-    def ridge_loads(self) -> RidgeLoads:
-        """Return the resultants of all ridges that can touch, of the whole finger; collective."""
-        loads = self.observer.ridge_loads(self.continuation.surface_state)
+    def ridge_loads(self, by_gap: bool = False) -> RidgeLoads:
+        """Return the resultants of all ridges that can touch, of the whole finger; collective.
+
+        Args:
+            by_gap: see :meth:`variational.quantities.Observer.ridge_loads`.
+        """
+        loads = self.observer.ridge_loads(self.continuation.surface_state, by_gap)
         return loads if self.options.both_halves else symmetry.loads(loads)
 
     def check_balance(self, loads: RidgeLoads, load: str) -> float:
@@ -106,7 +110,7 @@ class Finger:
         return left
 
     def present(self, loads: RidgeLoads, load: str, number: int, attempt: Attempt | None = None) -> Step:
-        """Return the present state as a step without a record of energies and work.
+        """Return the present state as a step without a record of energies and work; collective.
 
         Args:
             loads: its :meth:`ridge_loads`.
@@ -117,7 +121,8 @@ class Finger:
         d_eq = self.coupling.d_eq
         if not self.options.both_halves:
             d_eq = np.array(symmetry.values(list(d_eq)))
-        notes = [self.closure.state(float(p), self.voltage) if self.closure else "" for p in loads.p_c]
+        p_c = self.ridge_loads(by_gap=True).p_c if self.coupling.by_gap else loads.p_c  # the closure's own
+        notes = [self.closure.state(float(p), self.voltage) if self.closure else "" for p in p_c]
         more = {"load": load, "load_number": number, "mesh_contact": self.contact_size}
         return Step(contact_state(self.continuation, loads, self.ridges, d_eq, **more), notes, attempt or Attempt())
 

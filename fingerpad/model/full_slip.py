@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 
 from fingerpad.io.states import SLIDE_ON, full_slip
+from fingerpad.model.balance import steady
 from fingerpad.model.finger import Finger
 from variational.solvers.continuation import Target
 from variational.state import ContactState
-
-_STEADY = 1e-6  # relative change of f_t that sliding on at full slip may cause, beside that of gaps not closed
 
 
 class FullSlip:
@@ -56,13 +55,6 @@ class FullSlip:
         return bool(np.all(np.abs(after - before) <= self._steady() * np.abs(before) + self._finger.force_error))
 
     def _steady(self) -> float:
-        """Return the relative change of f_t that is not significant.
-
-        An augmented Lagrangian leaves gaps of up to its tolerance, which close further with each load; the attraction
-        goes with the inverse square of the air gap and the insulator behind it.
-        """
-        finger = self._finger
-        laws = finger.problem.interface
-        left = laws.formulation.tolerance
+        finger, laws = self._finger, self._finger.problem.interface
         gap = float(finger.coupling.d_eq.min()) + laws.h_0 if finger.options.voltage else np.inf
-        return _STEADY + float(2 * left / gap)
+        return steady(laws.formulation.tolerance, gap)

@@ -186,7 +186,7 @@ class Simulation:
 
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> bool:
         """Check and report an accepted state; return whether the path must stop here."""
-        finger, touches = self.finger, target.name == "touch"
+        finger, touches = self.finger, target.touches
         loads = finger.ridge_loads()
         imbalance = finger.check_balance(loads, self._load)
         if attempt.jump:

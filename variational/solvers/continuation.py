@@ -41,6 +41,8 @@ class Target:
     bone_x: float | None = None
     until_full_slip: bool = False
     """Stop as soon as every point in contact slips one way."""
+    touches: bool = False
+    """Lower the bone from the air to the screen, before a load by a force."""
     continues: bool = False
     """A short piece of a longer way: the bone moves on as before, and the voltage changes as little as the piece is
     short. It is reached in one step where that is possible."""
@@ -199,7 +201,7 @@ class Continuation:
             # To a depth at which the screen bears it whatever the roundoff, also where it comes from above.
             clearance = self._clearance()
             depth += self.touch_depth + (clearance if clearance > self.touch_depth / 2 else 0.0)
-            if not self._reach(Target("touch", bone_height=start - depth)):
+            if not self._reach(Target("touch", bone_height=start - depth, touches=True)):
                 return False
         self.solver.control.y = None
         self.solver.control.force = float(self.solver.reaction[1])
