@@ -20,6 +20,7 @@ from fingerpad.io.result import Result
 from fingerpad.runs import sweep_dataset
 from fingerpad.scene import from_data
 from tests.runs import run
+from variational.roughness.closure import AirGap, Closure
 from variational.state import Skin
 
 SCENE = {
@@ -166,6 +167,27 @@ def test_parameters_are_attributes(folder, data):
     assert data.attrs["roughness.h_rms"] == scene["roughness"]["h_rms"]
 
 
+class Odd(Closure):
+    """A closure with attributes of any kind."""
+
+    def __init__(self, **fields):
+        vars(self).update(fields)
+
+    def __call__(self, p_c):
+        return AirGap(2e-6 + 0 * np.asarray(p_c, dtype=float))
+
+
+def test_laws_of_any_fields_are_attributes(tmp_path):
+    """What NetCDF has no attribute for is JSON; numbers are kept as they are."""
+    table = [[0.0, 5e-6], [1e4, 4e-6]]
+    fields = {"points": np.array(table), "names": ("a", "b"), "none": (None, 1.0), "empty": ()}
+    fp.run(fp.Scene(), closure=Odd(**fields, numbers=(1, 2.5), on=True), model="cylinders", out=tmp_path)
+    found = xarray.load_dataset(tmp_path / "result.nc").attrs
+    as_json = {name: json.loads(found[f"laws.closure.{name}"]) for name in (*fields, "on")}
+    assert as_json == {"points": table, "names": ["a", "b"], "none": [None, 1], "empty": [], "on": True}
+    assert found["laws.closure.numbers"].tolist() == [1, 2.5]
+
+
 def test_dataset_of_a_result_that_was_read_back(folder):
     """The same file, to the last byte."""
     again = Result.load(folder).to_xarray()
@@ -273,6 +295,13 @@ def test_full_disk_loses_the_dataset_alone(tmp_path, monkeypatch):
     assert json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["notes"] == [note]
     assert note in (tmp_path / "run.log").read_text(encoding="utf-8")
     assert rows_of(tmp_path, "steps") and not (tmp_path / "result.nc").exists()
+
+
+def test_what_netcdf_cannot_hold_loses_the_dataset_alone(tmp_path, monkeypatch):
+    monkeypatch.setattr(dataset, "attributes", lambda result: {"table": [[1.0]]})
+    found = fp.run(fp.Scene(), model="cylinders", out=tmp_path)
+    assert found.notes[-1].startswith("result.nc was not written: NetCDF cannot hold it (")
+    assert (tmp_path / "summary.json").exists() and not (tmp_path / "result.nc").exists()
 
 
 def test_full_disk_loses_no_table_of_a_sweep(tmp_path, monkeypatch):

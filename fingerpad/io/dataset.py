@@ -113,6 +113,8 @@ def write(file: Path, make: "Callable[[], xarray.Dataset]") -> str:
         return f"{file.name} was not written: {error}; pip install xarray"
     except OSError as error:
         return f"{file.name} was not written: {error.strerror or error}; all other files are complete"
+    except (ValueError, TypeError, KeyError) as error:  # of what NetCDF cannot hold
+        return f"{file.name} was not written: NetCDF cannot hold it ({error}); all other files are complete"
     return ""
 
 
@@ -124,9 +126,15 @@ def attributes(result: "Result") -> dict[str, Any]:
     found |= {"notes": "\n".join(result.notes)} if result.notes else {}
     versions = result.record.get("provenance", {})
     found |= {"provenance": json.dumps(versions, default=str)} if versions else {}
-    given = {key: str(value).lower() if isinstance(value, bool) else value for key, value in flat(parameters).items()}
-    given = {key: value for key, value in given.items() if value is not None}  # which attributes cannot hold
+    given = {key: _attribute(value) for key, value in flat(parameters).items() if value is not None}
     return found | {"parameters": json.dumps(parameters)} | given
+
+
+def _attribute(value: Any) -> Any:
+    """Return a parameter as NetCDF can hold it: a number, a text or a list of numbers; all else as JSON."""
+    numbers = value if isinstance(value, list) else [value]
+    plain = all(type(each) is float or (type(each) is int and abs(each) < 2**31) for each in numbers)
+    return value if isinstance(value, str) or (numbers and plain) else json.dumps(value)
 
 
 def states(named: Mapping[str, ContactState]) -> Variables:
