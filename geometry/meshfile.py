@@ -14,6 +14,7 @@ of facets are
 The rest of the outline is free. ``docs/mesh.md`` has an example.
 """
 
+import hashlib
 import re
 from difflib import get_close_matches
 from pathlib import Path
@@ -47,17 +48,18 @@ Numbers = NDArray[np.int64]
 
 
 @shape((tags.BONE_RIM,))
-def file(path: str | Path) -> float:
+def file(path: str | Path, sha256: str = "") -> float:
     """Return the body of a gmsh file.
 
     Args:
         path: of a ``.msh`` file, see :mod:`geometry.meshfile`; read on rank 0, when the shape is meshed.
+        sha256: hash that the file must have; without one any will do.
 
     Raises:
-        GeometryError: the file is none, or holds no such body.
+        GeometryError: the file is none, has changed, or holds no such body.
     """
     path = Path(path)
-    _open(path)
+    _open(path, sha256)
     try:
         _rename()
         _check_mesh()
@@ -66,14 +68,15 @@ def file(path: str | Path) -> float:
     return 1.0
 
 
-def _open(path: Path) -> None:
+def _open(path: Path, sha256: str) -> None:
     """Read a file into the current gmsh session."""
     try:
-        with path.open("rb") as stream:
-            start = stream.read(len(_START))
+        content = path.read_bytes()
     except OSError as error:
         raise GeometryError(f"{path}: the mesh file cannot be read: {error.strerror}") from error
-    if start != _START or path.suffix != ".msh":
+    if sha256 and hashlib.sha256(content).hexdigest() != sha256:
+        raise GeometryError(f"{path} has changed since the scene was made; make the scene again")
+    if not content.startswith(_START) or path.suffix != ".msh":
         # gmsh tells kinds of files by their ends, and takes an unknown one for a script of its own, which it runs.
         raise GeometryError(f"{path} is no mesh of gmsh; it must be a .msh file of version 2.2 or 4.1")
     try:

@@ -167,6 +167,17 @@ def test_parameters_are_attributes(folder, data):
     assert data.attrs["roughness.h_rms"] == scene["roughness"]["h_rms"]
 
 
+def test_tables_are_the_results_own_in_another_folder(folder, tmp_path, monkeypatch):
+    """A result of a relative folder keeps it, where the program goes to another one and the name is there, too."""
+    monkeypatch.chdir(folder.parent)
+    found = Result.load(folder.name)
+    ours = found.to_xarray()
+    (tmp_path / folder.name).mkdir()
+    monkeypatch.chdir(tmp_path)
+    xarray.testing.assert_identical(found.to_xarray(), ours)
+    assert "ridge_f_contact" in ours
+
+
 class Odd(Closure):
     """A closure with attributes of any kind."""
 

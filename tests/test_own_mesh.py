@@ -116,6 +116,18 @@ def test_file_stays_with_other_keys_and_changes_with_its_own(tmp_path):
         given.replace(geometry={"width": 0.021})
 
 
+def test_mesh_is_that_of_the_scene(place, tmp_path, monkeypatch):
+    """Also where the program goes to another folder that has a file of its name; a file that changed is refused."""
+    write(place, finger(2e-3))
+    monkeypatch.chdir(place.parent)
+    given = scene().with_laws(mesh=place.name)
+    monkeypatch.chdir(tmp_path.parent)
+    assert given.replace(friction=0.1).laws.mesh == place
+    write(place, finger(1e-3))
+    with pytest.raises(fp.SceneError, match=r"mine\.msh has changed since the scene was made; make the scene again"):
+        fp.run(given)
+
+
 def test_scene_is_kept_with_its_mesh(tmp_path):
     """For processes and for going on; a mesh that was changed since is refused."""
     file = write_text(tmp_path / "one.msh", "one")

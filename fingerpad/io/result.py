@@ -74,11 +74,16 @@ class Result:
     record: dict[str, Any] = field(default_factory=dict)
     """Further content of ``summary.json``: omissions, restarts, refinement, laws, provenance."""
     folder: Path | None = None
-    """Folder of tables, plots and fields; None where nothing was written."""
+    """Folder of tables, plots and fields, an absolute path; None where nothing was written."""
     drawing: "Drawing | None" = None
     """Data of the pictures; None for a model without them."""
     finger: "WholeFinger | None" = None
     """The whole finger in N and mm²; None where a history or a model does not give it."""
+
+    def __post_init__(self) -> None:
+        """Keep the folder where the program may go to another one, in which the same name is another run's."""
+        if self.folder is not None:
+            object.__setattr__(self, "folder", self.folder.absolute())
 
     @property
     def named(self) -> dict[str, ContactState]:

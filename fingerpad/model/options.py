@@ -100,6 +100,7 @@ class FingerModel:
         geometry: shape of the finger.
         mesh: element sizes, and how many ridges can touch.
         mesh_file: file of a mesh, in the place of one with these sizes.
+        mesh_sha256: hash of that file, as it was when the scene was given it.
         solids: material of each layer's tag.
         contact: formulation of the contact.
         friction: law of friction; None without friction.
@@ -120,7 +121,7 @@ class FingerModel:
         self.options = options
         self.geometry: Fingertip = scene.geometry
         self.mesh: MeshSize = scene.mesh
-        self.mesh_file = scene.laws.mesh
+        self.mesh_file, self.mesh_sha256 = scene.laws.mesh, scene.laws.mesh_sha256
         self.solids = scene.solids()
         self.contact: Contact = scene.contact
         self.friction = scene.friction_law()

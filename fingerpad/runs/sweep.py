@@ -46,9 +46,14 @@ class Sweep:
     """Values by key, in SI."""
     results: tuple[Result, ...]
     folder: Path | None
-    """Of the results, each in a folder of its own, of ``table.csv`` and of ``sweep.nc``."""
+    """Of the results, each in a folder of its own, of ``table.csv`` and of ``sweep.nc``, an absolute path."""
     notes: tuple[str, ...] = ()
     """Remarks on the files of the sweep."""
+
+    def __post_init__(self) -> None:
+        """Keep the folder where the program may go to another one."""
+        if self.folder is not None:
+            object.__setattr__(self, "folder", self.folder.absolute())
 
     def __len__(self) -> int:
         """Return the number of points."""

@@ -49,12 +49,12 @@ class Laws:
     friction: Friction | None = None
     """Law of friction, in the place of Coulomb's."""
     mesh: Path | str | None = None
-    """File of a mesh, in the place of that of ``geometry`` and ``mesh``."""
+    """File of a mesh, in the place of that of ``geometry`` and ``mesh``; kept as an absolute path."""
     mesh_sha256: str = field(default="", init=False, repr=False)
     """Hash of that file, as it was when it was given."""
 
     def __post_init__(self) -> None:
-        """Check every law; a mesh becomes a path."""
+        """Check every law; a mesh becomes an absolute path."""
         try:
             if self.closure is not None:
                 closures.check(self.closure)
@@ -83,7 +83,7 @@ class Laws:
                 content = Path(self.mesh).read_bytes()
             except OSError as error:
                 raise SceneError(f"mesh is {show(str(self.mesh))}, which cannot be read: {error.strerror}") from None
-            object.__setattr__(self, "mesh", Path(self.mesh))
+            object.__setattr__(self, "mesh", Path(self.mesh).absolute())
             object.__setattr__(self, "mesh_sha256", hashlib.sha256(content).hexdigest())
         self.parameters()  # reads the sources of the user's code, which may be edited while a run is on
 
