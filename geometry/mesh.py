@@ -1,6 +1,7 @@
 """From a gmsh model, built on rank 0, to a distributed dolfinx mesh in metres. The only dolfinx code here."""
 
 from collections.abc import Callable, Iterable
+from contextlib import nullcontext
 from dataclasses import dataclass
 
 import dolfinx
@@ -16,6 +17,7 @@ except ImportError:
 
 from geometry import tags
 from geometry.profiles import GeometryError
+from geometry.session import session
 from geometry.shape import Shape
 
 
@@ -64,24 +66,18 @@ def load(comm: MPI.Comm, build: Callable[[], float], needed: Iterable[int] = ())
         GeometryError: what ``build`` or gmsh refuses, on every rank; or a needed tag without any entity.
     """
     unit, failure = 1.0, None
-    if comm.rank == 0:
-        gmsh.initialize(interruptible=False)
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.model.add("body")
-        try:
-            unit = build()
-        except Exception as error:  # whatever it is, the other ranks must not wait for a mesh
-            plain = type(error) is Exception  # gmsh's own, which are of no other kind
-            failure = GeometryError(f"gmsh cannot mesh the body: {error}; try smaller elements") if plain else error
-    failure = comm.bcast(failure)
-    try:
+    with session("body") if comm.rank == 0 else nullcontext():
+        if comm.rank == 0:
+            try:
+                unit = build()
+            except Exception as error:  # whatever it is, the other ranks must not wait for a mesh
+                plain = type(error) is Exception  # gmsh's own, which are of no other kind
+                failure = GeometryError(f"gmsh cannot mesh the body: {error}; try smaller elements") if plain else error
+        failure = comm.bcast(failure)
         if failure is not None:
             raise failure
         unit = comm.bcast(unit)
         mesh, cell_tags, facet_tags = gmshio.model_to_mesh(gmsh.model, comm, 0, gdim=2)[:3]
-    finally:
-        if comm.rank == 0:
-            gmsh.finalize()
     mesh.geometry.x[:] *= unit
     for tag in (*needed, *(build.needed if isinstance(build, Shape) else ())):
         count = comm.allreduce(int(np.sum(cell_tags.values == tag)) + int(np.sum(facet_tags.values == tag)))

@@ -57,6 +57,13 @@ def test_pypi(project):
     assert found == {name: _column(3, name) for name in ("fem", "test", "docs", "topography")}
 
 
+def test_conda_and_pypi_ask_for_the_same_versions(conda, project):
+    """Of pydantic 2.0 to 2.4 have no Discriminator, or check the numbers of a scene wrongly."""
+    pypi = _split(project["project"]["dependencies"])
+    assert {name: conda[name] for name in pypi if name in conda} == {n: v for n, v in pypi.items() if n in conda}
+    assert pypi["pydantic"] == ">=2.5"
+
+
 def test_wheel_of_dolfinx_is_pinned(project):
     """The version of the extra is the one whose content environment/wheel.txt fixes, and a dolfinx of ours."""
     lines = (ROOT / "environment/wheel.txt").read_text().splitlines()

@@ -57,12 +57,10 @@ def meshed(scene: Scene, receptors: bool, half: bool) -> Iterator[Any]:
     import gmsh
 
     from geometry import fingertip
+    from geometry.session import session
 
     scene = by_rule(scene)
-    gmsh.initialize(interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.model.add("finger")
+    with session("finger"):
         try:
             fingertip.build(scene.geometry, scene.mesh, receptors, half)
         except GeometryError as error:
@@ -72,8 +70,6 @@ def meshed(scene: Scene, receptors: bool, half: bool) -> Iterator[Any]:
                 raise
             raise SceneError(f"gmsh cannot mesh the finger: {error}; try smaller elements") from None
         yield gmsh
-    finally:
-        gmsh.finalize()
 
 
 def section(scene: Scene, needed: ModelOptions) -> Section:
@@ -92,16 +88,13 @@ def _of_file(file: Path) -> Section:
     import gmsh
 
     from geometry import meshfile
+    from geometry.session import session
 
-    gmsh.initialize(interruptible=False)
     try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.model.add("file")
-        return _read(gmsh, meshfile.file(file)())
+        with session("file"):
+            return _read(gmsh, meshfile.file(file)())
     except GeometryError as error:
         raise SceneError(f"mesh: {error}") from None
-    finally:
-        gmsh.finalize()
 
 
 def write(scene: Scene, file: Path) -> Section:
