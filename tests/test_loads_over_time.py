@@ -1,5 +1,6 @@
 """A small finger under voltages over time: as by loads by hand, and what is the same whatever the sign or the place."""
 
+import math
 import tomllib
 from itertools import pairwise
 from pathlib import Path
@@ -113,6 +114,24 @@ def test_relative_moves_are_moves():
     absolute = [{"name": f"{k}", "bone_x": x} for k, x in enumerate(places)]
     relative = [{"name": f"{k}", "bone_x_by": x} for k, x in enumerate(moves)]
     assert same(follow(PRESS, *absolute), follow(PRESS, *relative))
+
+
+@pytest.mark.parametrize(
+    "wave", [WAVE, {"waveform": "file", "times": [0, 1 / 60], "voltages": [0, 100]}], ids=["sine", "file"]
+)
+def test_every_state_is_at_the_voltage_of_its_time(wave):
+    """Also where the bone moves so far between two samples that steps are cut. Tolerance: roundoff of the square."""
+    states = follow(PRESS, {"name": "wave", "bone_x_by": 4e-3, "duration": 1 / 60, "voltage": wave})
+    states = [state for state in states if state.time > 0]  # a jump takes no time
+    assert len(states) > 1.25 * SAMPLES
+
+    def voltage(time: float) -> float:
+        if wave["waveform"] == "sine":
+            return 20 + 80 * math.sin(2 * math.pi * 60 * time)
+        return 100 * 60 * time
+
+    for state in states:
+        assert state.voltage == pytest.approx(voltage(state.time), rel=1e-9, abs=1e-6)
 
 
 @pytest.mark.mpi

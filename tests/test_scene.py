@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from fingerpad.model.check import check
-from fingerpad.scene import Load, Scene
+from fingerpad.scene import Load, Scene, SceneError
 from fingerpad.scene import scene as scenes
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.nitsche import Nitsche
@@ -135,3 +135,11 @@ def test_formulation(given, law):
 def test_package_imports_nothing():
     code = "import sys; import fingerpad; sys.exit(any(m in sys.modules for m in ('numpy', 'pydantic', 'gmsh')))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_copies_of_the_standard_library_are_checked():
+    """``copy.replace`` of Python 3.13 calls this method."""
+    assert Scene().__replace__(f_ext=5.0, mesh={"contact": 10e-6}).mesh.receptor == Scene().mesh.receptor
+    for changes in ({"f_exxt": 5.0}, {"f_ext": -5.0}):
+        with pytest.raises(SceneError, match=r"f_exxt|f_ext is -5 N/m"):
+            Scene().__replace__(**changes)

@@ -6,15 +6,21 @@ its speed. All other loads take none, since the model is quasi-static.
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from itertools import pairwise
 
 from fingerpad.scene import Load
-from fingerpad.scene.waveform import Waveform
+from fingerpad.scene.waveform import Sample, Waveform
 from variational.solvers.continuation import Target
 
 _BEGIN = 60e-6  # m, with which a slide begins
 Piece = tuple[Target, float, float]
 """What to reach, from when to when (s) in its load."""
+
+
+def _voltage(wave: Waveform, before: Sample, after: Sample, part: float) -> float:
+    """Return the voltage (V) at a part of the time between two samples."""
+    return wave.between(before, after, before[0] + part * (after[0] - before[0]))
 
 
 class Course:
@@ -60,13 +66,16 @@ class Course:
         """Return the pieces of a voltage over time; the bone goes from x to a place (m), or stays."""
         samples = wave.samples(self._whole, self._step_scale)
         found = [(Target(load, voltage=samples[0][1]), 0.0, 0.0)]
-        for (before, _), (time, voltage) in pairwise(samples):
+        for sample, after in pairwise(samples):
+            (before, _), (time, voltage) = sample, after
             aim = place
             if place is not None and time < self._whole:
                 aim = x + time / self._whole * (place - x)
             begins = len(found) == 1 and aim is not None and abs(aim - x) > self._step_scale * _BEGIN
             continues = time > before and not begins  # what jumps, or begins with a long slide, is cut into steps
-            found.append((Target(load, voltage=voltage, bone_x=aim, continues=continues), before, time))
+            inside = partial(_voltage, wave, sample, after) if time > before else None
+            target = Target(load, voltage=voltage, bone_x=aim, voltage_at=inside, continues=continues)
+            found.append((target, before, time))
         return found
 
     def time(self, target: Target, part: float, x: float) -> float:

@@ -119,6 +119,10 @@ class Scene(Part):
         refuse_unread(self, found)
         return found._checked()
 
+    def __replace__(self, **changes: Any) -> "Scene":
+        """Return :meth:`replace` of changes, as ``copy.replace`` does from Python 3.13 on."""
+        return self.replace(**changes)
+
     @property
     def h_0(self) -> float:
         """Effective insulator thickness (m)."""

@@ -4,11 +4,11 @@ r"""A voltage over time: sine, square, triangle or a table of a file, with the s
 
 Time starts with the load. The model is quasi-static: the frequency only sets how far the finger slides in a period.
 
-Between two samples the square of the voltage, which the attraction goes with, follows a straight line. Turning points,
-jumps and zeros are always among the samples. A period has 24 of them: friction has twice the frequency of the voltage,
-so that 12 are in each of its periods and 6 in each of its second harmonic's. The square of a sine is off its straight
-lines by 1.7 % of the peak at most, and not at all at the samples; a table's pieces are cut as short. Fewer or more of
-them follow from ``numerics.step_scale``, as for all steps.
+Turning points, jumps and zeros are always among the samples. A period has 24 of them: friction has twice the frequency
+of the voltage, so that 12 are in each of its periods and 6 in each of its second harmonic's. The attraction goes with
+the square of the voltage; that of a sine is off straight lines between the samples by 1.7 % of the peak at most. A
+table's pieces are cut as short. States between two samples, where a step must be shorter, are at the waveform's own
+voltage. Fewer or more samples follow from ``numerics.step_scale``, as for all steps.
 """
 
 import csv
@@ -155,13 +155,16 @@ class Waveform(Part):
             elif time < seconds - near:
                 found += [(time, value) for value in dict.fromkeys(values)]
             else:
-                (t0, u0), u1 = before, values[0]
-                part = min((seconds - t0) / (time - t0), 1.0) if time - seconds > near else 1.0
-                inside = u0 + part * (u1 - u0) if self.waveform != "sine" or part == 1.0 else self._sine(seconds)
-                found.append((seconds, inside))
+                cut = time - seconds > near
+                found.append((seconds, self.between(before, (time, values[0]), seconds) if cut else values[0]))
                 break
             before = time, values[-1]
         return found
+
+    def between(self, before: Sample, after: Sample, time: float) -> float:
+        """Return the voltage (V) at a time (s) between two samples, one next to the other."""
+        (t0, u0), (t1, u1) = before, after
+        return self._sine(time) if self.waveform == "sine" else u0 + min((time - t0) / (t1 - t0), 1.0) * (u1 - u0)
 
     def corners(self, seconds: float) -> list[float]:
         """Return the times (s) at which the voltage bends sharply, up to some seconds; jumps are not among them."""

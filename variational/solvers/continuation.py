@@ -41,6 +41,8 @@ class Target:
     bone_x: float | None = None
     until_full_slip: bool = False
     """Stop as soon as every point in contact slips one way."""
+    voltage_at: Callable[[float], float] | None = None
+    """Voltage (V) at a part of the way before its end; by default its square goes evenly."""
     touches: bool = False
     """Lower the bone from the air to the screen, before a load by a force."""
     continues: bool = False
@@ -109,6 +111,8 @@ class _Way:
             # equal steps of the root: nearly equal steps of the indentation
             f0 = max(a.control.force, 0.0)
             c.y, c.force = None, (np.sqrt(f0) + part * (np.sqrt(target.f_ext) - np.sqrt(f0))) ** 2
+        if target.voltage_at is not None and part < 1:
+            return c, target.voltage_at(part)
         # equal steps of U^2, which the attraction follows; a sign that changes does so at once, which changes no force
         amount = np.sqrt(a.voltage**2 + part * (u1**2 - a.voltage**2))
         return c, float(np.copysign(amount, u1 or a.voltage)) + 0.0
