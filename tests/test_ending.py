@@ -1,6 +1,7 @@
 """How a run ends that is killed, asked to stop, alone in trouble, or out of room: nothing written before is lost."""
 
 import json
+import logging
 import os
 import resource
 import signal
@@ -14,6 +15,7 @@ from mpi4py import MPI
 
 from fingerpad.io.files import Table, replace_json
 from fingerpad.io.interrupt import Interrupt, Interrupted
+from fingerpad.io.writing import Writer
 from tests.measures import accepted
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -93,6 +95,18 @@ def test_signals_that_mpirun_passes_on(tmp_path):
     assert "stopped by SIGINT after step" in out
     summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
     assert summary["interrupted"] == "SIGINT" and summary["ranks"] == 2
+
+
+def test_logs_of_the_caller_are_the_callers():
+    """A program may have a log of its own for this package; the run's log is another one."""
+    mine, handler = logging.getLogger("fingerpad"), logging.NullHandler()
+    mine.addHandler(handler)
+    level = mine.level
+    log = Writer(None, MPI.COMM_SELF).log
+    try:
+        assert mine.handlers == [handler] and mine.level == level and handler not in log.handlers
+    finally:
+        mine.removeHandler(handler)
 
 
 def test_a_second_signal_acts_at_once(monkeypatch):

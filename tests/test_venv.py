@@ -25,9 +25,9 @@ esac
 
 @pytest.fixture
 def variables(tmp_path) -> dict[str, str]:
-    """Variables under which the stand-in is the Python to take."""
-    script(tmp_path / "bin" / "python", PYTHON)
-    more = {"PYTHON": str(tmp_path / "bin" / "python"), "TOLD": str(tmp_path / "told"), "SUITE": "pip"}
+    """Variables under which the stand-in, in a folder with a space in its name, is the Python to take."""
+    script(tmp_path / "my bin" / "python", PYTHON)
+    more = {"PYTHON": str(tmp_path / "my bin" / "python"), "TOLD": str(tmp_path / "told"), "SUITE": "pip"}
     return {**os.environ, "XDG_CACHE_HOME": str(tmp_path / "cache"), **more}
 
 

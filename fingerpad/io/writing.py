@@ -34,9 +34,8 @@ class Writer:
         self.folder = None if place is None else place.folder
         self._tables: dict[str, Table] = {}
         self._fields: Fields | None = None
-        self.log = logging.getLogger("fingerpad")
+        self.log = logging.Logger("fingerpad", logging.INFO)  # of this run alone, apart from those of the caller
         self.log.handlers = [logging.handlers.MemoryHandler(1000, logging.CRITICAL, flushOnClose=False)]
-        self.log.setLevel(logging.INFO)
 
     def take(self, problem: Problem) -> None:
         """Open the log and the fields where that has not been done, the files of an earlier run gone; collective."""

@@ -190,11 +190,11 @@ class Continuation:
             StepFailed: the load reached and why the next step was not.
         """
         if target.f_ext is not None and self._now.control.y is not None:
-            if not self._touch(target):
+            if not self._touch():
                 return
         self._reach(target)
 
-    def _touch(self, target: Target) -> bool:
+    def _touch(self) -> bool:
         """Lower the bone by displacement until the screen bears it: without contact, force control is singular.
 
         Returns:
