@@ -3,7 +3,8 @@
 import pytest
 
 from fingerpad.model import balance
-from variational.state import ContactState
+from variational.solvers.continuation import StepFailed
+from variational.state import ContactState, StepRecord
 
 SLIP = {"f_contact": 100.0, "f_electrostatic": 25.0, "f_ext": 75.0, "f_t": -25.0, "voltage": 200.0, "mu_app": 1 / 3}
 
@@ -27,3 +28,23 @@ def test_balance_and_cone(change, words):
 def test_friction_of_another_law_is_not_compared_with_coulomb_s():
     slip = ContactState(**(SLIP | {"ridges_in_contact": 3, "contact_length": 1e-3, "f_t": 30.0}))
     assert balance.broken(slip, 1e-4, None) == ""
+
+
+def record(stored: float) -> StepRecord:
+    return StepRecord(
+        penetration=0.0, imbalance=0.0, floor=0.0, stored=stored, dissipation=0.0, energy_released=0.0,
+        released_error=0.0, newton_iterations=1, factorisations=1, coupling_iterations=0, cutbacks=0, jump=False,
+    )  # fmt: skip
+
+
+def state(ridges: int, stored: float) -> ContactState:
+    return ContactState(**(SLIP | {"ridges_in_contact": ridges, "contact_length": 1e-3, "record": record(stored)}))
+
+
+def test_body_without_loads_stores_nothing():
+    """Nitsche's method may keep a tenth of the energy; 1e-30 J/m are roundoff, as is all before the first contact."""
+    in_air, pressed = state(0, 1e-40), state(2, 1e-5)
+    balance.refuse_strained("step 3 (lift)", record(1e-30), [in_air, pressed])
+    balance.refuse_strained("step 2 (lower)", record(1e-30), [in_air])
+    with pytest.raises(StepFailed, match=r"^step 3 \(lift\): nothing loads .*, and it stores 1e-06 J/m; .*gamma_0"):
+        balance.refuse_strained("step 3 (lift)", record(1e-6), [in_air, pressed])

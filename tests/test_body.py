@@ -7,6 +7,7 @@ import pytest
 from mpi4py import MPI
 
 import geometry
+from fingerpad.model import balance
 from fingerpad.model.body import Body
 from geometry import tags
 from geometry.mesh import load
@@ -168,6 +169,15 @@ def test_lifted_body_bears_nothing():
     assert body.energy.stored == pytest.approx(0.0, abs=1e-12)
     assert body.energy.dissipated > 0
     assert np.abs(body.displacement - [20e-6, 5e-6]).max() < 1e-10
+
+
+def test_energy_of_a_lifted_body_is_checked(monkeypatch):
+    """The body stays in the state before."""
+    monkeypatch.setattr(balance, "_AT_REST", -1.0)
+    body = ridge(MPI.COMM_SELF).press(height=-20e-6)
+    with pytest.raises(StepFailed, match=r"\(lift\): nothing loads the body"):
+        body.lift(5e-6)
+    assert body.state.ridges_in_contact == 1 and body.states[-1] is body.state
 
 
 def test_press_by_height_and_by_force_agree():

@@ -5,6 +5,7 @@ import itertools
 import pytest
 from mpi4py import MPI
 
+from fingerpad.model import balance
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.model.touching import by_rule
@@ -77,6 +78,16 @@ def test_finger_that_was_lifted_comes_down_at_once(voltage):
     first = next(state for state in reversed(path.states) if state.load == "press")
     if not voltage:
         assert down[-1].contact_length == pytest.approx(first.contact_length, rel=1e-3)
+
+
+def test_energy_of_a_lifted_finger_is_checked(monkeypatch):
+    monkeypatch.setattr(balance, "_AT_REST", -1.0)
+    loads = [{"name": "press", "f_ext": 1.0}, {"name": "lift", "bone_height": 1e-3}]
+    scene = small().replace(history=loads)
+    path = Simulation(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_WORLD)
+    with pytest.raises(StepFailed, match=r"\(lift\): nothing loads the body, and it stores"):
+        path.run()
+    assert path.states[-1].ridges_in_contact > 0
 
 
 def test_skin_from_above_is_pressed_in_before_force_takes_over():

@@ -1,16 +1,20 @@
 """What must hold of accepted states: the balance of forces in each, and friction at its limit in full slip."""
 
+import math
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import NDArray
 
 from variational.contact.friction import CONE_ROUNDOFF
 from variational.quantities import RidgeLoads
 from variational.solvers.continuation import StepFailed
-from variational.state import ContactState
+from variational.state import ContactState, StepRecord
 
 BALANCED = 1e-6
 """Largest part of f_ext that may be left at a node, and by which the reactions of bone and screen may differ."""
 _STEADY = 1e-6  # relative change of f_t that sliding on at full slip may cause, beside that of gaps not closed
+_AT_REST = 1e-6  # part of the energy stored under loads that is roundoff where nothing loads the body
 _DEFECT = "this is a defect of the program, please report it"
 
 
@@ -69,6 +73,27 @@ def refuse_unbalanced(
         raise StepFailed(
             f"{where}: the bone bears {bone[worst]:.9g} N/m {('sideways', 'downwards')[worst]} and the screen "
             f"{screen[worst]:.9g} N/m; {remedy}"
+        )
+
+
+def refuse_strained(where: str, record: StepRecord, before: Iterable[ContactState]) -> None:
+    """Refuse a state that stores energy although nothing loads the body: Nitsche's method has such equilibria.
+
+    They come where the method is not coercive, and Newton's method may go on to them while the body is loaded.
+
+    Args:
+        where: step and load.
+        record: of the state, in which nothing touches and there is no voltage.
+        before: states before it.
+
+    Raises:
+        StepFailed: the energy is above roundoff of the largest one stored in contact before.
+    """
+    loaded = (state.record.stored for state in before if state.record and state.ridges_in_contact)
+    if record.stored > _AT_REST * max(loaded, default=math.inf):
+        raise StepFailed(
+            f"{where}: nothing loads the body, and it stores {record.stored:.3g} J/m; Nitsche's method has such "
+            "equilibria where gamma_0 is too small, so try a larger one"
         )
 
 

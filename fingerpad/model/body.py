@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 import fingerpad.started  # noqa: F401
 from fingerpad.io.states import full_slip
-from fingerpad.model.balance import force_error, steady
+from fingerpad.model.balance import force_error, refuse_strained, steady
 from fingerpad.model.gathered import Nodes, Points
 from fingerpad.model.state import contact_state, step_record
 from fingerpad.scene.laws import refuse_thickness
@@ -227,13 +227,16 @@ class Body:
     def _accepted(self, target: Target, part: float, attempt: Attempt) -> None:
         solver = self._made.solver
         balance = self._book.step(self._made.continuation.surface_state, solver.bone, solver.reaction, self._d_eq)
+        record = step_record(self._made.continuation, balance, solver.imbalance(), attempt)
+        state = self._present(record)
+        if not (state.ridges_in_contact or state.voltage):
+            refuse_strained(f"step {state.step} ({self._load})", record, self.states)
         self.energy = Energy(
             balance.stored, self.energy.dissipated + balance.dissipation, self.energy.released + balance.released
         )
         self.displacement = self._nodes.gather(self.problem)
-        record = step_record(self._made.continuation, balance, solver.imbalance(), attempt)
-        self.state = self._present(record)
-        self.states.append(self.state)
+        self.state = state
+        self.states.append(state)
 
     def _present(self, record: StepRecord | None) -> ContactState:
         path, solver = self._made.continuation, self._made.solver

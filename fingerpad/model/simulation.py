@@ -7,6 +7,7 @@ import numpy as np
 from mpi4py import MPI
 
 from fingerpad.io.states import SLIDE_ON
+from fingerpad.model.balance import refuse_strained
 from fingerpad.model.contact_zone import ContactZone, FingerExceeded
 from fingerpad.model.course import Course
 from fingerpad.model.finger import Finger, Step
@@ -196,6 +197,8 @@ class Simulation:
         step = self.present(loads, attempt, touches)
         energy = self.energy.step(*finger.surface_and_bone())
         record = step_record(finger.continuation, energy, imbalance, attempt)
+        if not (loads.f_contact.any() or finger.voltage):
+            refuse_strained(f"step {finger.continuation.steps} ({self._load})", record, self.states)
         probe = part >= 1 and not target.until_full_slip and not self._course.over_time
         state = self._slip.placed(self.states, step.state, probe)
         state = replace(state, record=record, time=self._course.time(target, part, state.bone_x))

@@ -212,7 +212,8 @@ class Contact(Part):
     formulation: Literal["penalty", "nitsche", "augmented"] = "penalty"
     """Penalty (springs of the screen), Nitsche's method or an augmented Lagrangian; see
     :mod:`variational.contact.formulation`. The augmented Lagrangian is a method for comparison: it takes several times
-    the factorisations of the penalty and finds full slip in fewer scenes (``docs/stability.md``)."""
+    the factorisations of the penalty, finds full slip in fewer scenes (``docs/stability.md``), and its friction at full
+    slip depends a little on the load path."""
     eps_n: Annotated[Finite, within(1e7, 1e17, "Pa/m")] = 1.5e12
     """Normal stiffness of the penalty and of the augmented Lagrangian (Pa/m of reference area). *Assumption*: the
     default keeps the penetration below a tenth of d_eq. The augmented Lagrangian's default is ten times as large,
@@ -228,7 +229,8 @@ class Contact(Part):
     """Nitsche's stiffness, divided by the skin's constrained modulus per facet length. With 10 no equilibrium was
     found while the default finger was pressed (``docs/chart.md``)."""
     theta: Literal[-1, 0, 1] = 0
-    """Variant of Nitsche's method. Variants 1 and -1 compile for longer; variant 1 needs a larger gamma_0."""
+    """Variant of Nitsche's method. Variants 1 and -1 compile for longer. Variant 1 needs a larger gamma_0: below it the
+    skin may keep stresses that no load explains, which a run finds where the finger is lifted."""
     length: Literal["pressure", "gap"] = "pressure"
     """Ridge length L_R of Eq. 4: ``"pressure"`` is the length under contact pressure, ``"gap"`` the length where
     the gap is below d_eq. *Assumption*: the former; the domain printed in Eq. 4 is the whole boundary. Tables have the

@@ -7,7 +7,8 @@ in :mod:`~variational.contact.formulation`, the multipliers kept at the Gauss po
 until the skin neither penetrates nor, where it sticks, has moved by more than a tolerance (Simo and Laursen 1992, doi
 10.1016/0045-7949(92)90540-G). Each solve is one of the penalty's, and the stiffness decides how fast the iteration
 contracts, not what it ends in. It is slow for tractions that the displacement hardly depends on: a facet has more Gauss
-points than displacements of its own.
+points than displacements of its own. These tractions stay undetermined, and friction goes with them: at full slip it
+depends on the load path and creeps as the body slides on, less on finer facets.
 
 The slip of a step counts from the accepted place :math:`x_n`, so that
 :math:`t^{tr} = \lambda_t - \epsilon_t (x - x_n) = -\epsilon_t (x - a)`: :math:`\lambda_t` is folded into the anchor,
