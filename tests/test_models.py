@@ -1,5 +1,6 @@
 """The comparison of models: numbers of an answer, errors against the full model, and the page."""
 
+import numpy as np
 import pytest
 
 from benchmarks import harness, models
@@ -21,6 +22,17 @@ def test_lengths_in_the_program_are_the_runs():
             depth = cylinders.INDENTATIONS[state][k]
             assert depth == pytest.approx(-run[f"{PREFIXES[state]}_bone_height"], abs=0.5e-7)
             assert cylinders.RIDGES[state][k] == run[f"{PREFIXES[state]}_ridges_in_contact"]
+
+
+def test_lengths_between_known_forces_are_a_power_law():
+    """Halfway on logarithmic axes, between each force and the next; beyond the last as between the two before."""
+    forces = cylinders.FORCES
+    for k, between in enumerate(np.sqrt(np.array(forces[1:]) * np.array(forces[:-1]))):
+        lengths = cylinders.LENGTHS["charged"][k : k + 2]
+        assert cylinders._interpolate(between, cylinders.LENGTHS["charged"]) == pytest.approx(np.sqrt(np.prod(lengths)))
+    ratio = cylinders.LENGTHS["charged"][1] / cylinders.LENGTHS["charged"][0]
+    below = cylinders._interpolate(forces[0] ** 2 / forces[1], cylinders.LENGTHS["charged"])
+    assert below == pytest.approx(cylinders.LENGTHS["charged"][0] / ratio)
 
 
 def test_kept_answers_are_those_of_the_program():

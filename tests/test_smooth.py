@@ -222,6 +222,12 @@ def test_less_than_a_ridge_is_refused(tmp_path):
         smooth.solve(light, tmp_path)
 
 
+def test_contact_beyond_the_fine_skin_is_refused(answer):
+    narrow = from_data(SCENE).replace(mesh={"touching_half_arc": 0.6e-3})
+    with pytest.raises(SceneError, match=r"the skin touches beyond mesh\.touching_half_arc, which must be larger"):
+        smooth.solve(narrow, answer[1])
+
+
 def test_few_ridges_are_told(answer):
     """Of a flat finger with skin that touches over three and over two of them."""
     light = smooth.solve(from_data(SCENE | {"f_ext": 0.5}), answer[1])

@@ -168,6 +168,14 @@ def test_signal_stops_the_jobs_too(capsys, number, error):
     assert capsys.readouterr().err == "fingerpad: runs end after their present step: 2\n"
 
 
+def test_jobs_are_no_ranks_of_a_launcher(monkeypatch):
+    """Else MPI would take each for the rank of the sweep itself, as in a batch system's job."""
+    monkeypatch.setenv("OMPI_COMM_WORLD_RANK", "1")
+    monkeypatch.setenv("PMIX_RANK", "1")
+    code = "import os; print([name for name in os.environ if name.startswith(('OMPI_COMM', 'PMIX'))])"
+    assert run_module("timeit", ["-n1", "-r1", code], 10.0).stdout.startswith("[]\n")
+
+
 def test_crash_says_its_last_words():
     end = run_module("fingerpad.runs.batch", ["no scene.json", "nowhere", "5", "full"], 5.0)
     assert end.reason == "CRASH_1"
