@@ -68,7 +68,7 @@ class MeshParameter:
         """Return the estimated part of a quantity's error that is this parameter's, at the size in use, in its unit."""
         change = self.changes[-1][name]
         if len(self.changes) > 1:
-            change = max(change, self.changes[-2][name] / 4)
+            change = max(change, self.changes[-2].get(name, 0.0) / 4)
         return change / (2 ** self.order(name) - 1)
 
     def order(self, name: str) -> int:

@@ -46,6 +46,14 @@ def test_accidentally_small_change_is_not_believed(name, left):
     assert found.share(name) == pytest.approx(left, rel=1e-12)
 
 
+def test_quantity_that_is_new_has_its_last_change_alone():
+    """A site whose ridge touches on the finer meshes only."""
+    found = MeshParameter()
+    found.record({}, {"slip_sed_3": 1.0})
+    found.record({"slip_sed_3": 1.3}, {"slip_sed_3": 1.0})
+    assert found.share("slip_sed_3") == pytest.approx(0.1, rel=1e-12)
+
+
 def test_ridges_that_change_both_ways_do_not_cancel():
     """Sixteen that go up and down by 0.1, a sum that does not change: 0.4, as if their signs were random."""
     found = MeshParameter()

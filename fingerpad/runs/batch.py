@@ -48,7 +48,7 @@ def result(scene: Scene, folder: Path) -> Summary | None:
 def _summary(scene: Scene, folder: Path) -> Summary | None:
     try:
         return dict(json.loads((folder / key(scene) / "summary.json").read_text(encoding="utf-8")))
-    except (OSError, json.JSONDecodeError):
+    except (OSError, ValueError, TypeError):  # no file, or one that was damaged
         return None
 
 
