@@ -25,8 +25,13 @@ def default(scene: Scene, *args: Any, **more: Any) -> fingerpad.Sweep:
     return SWEEP(Scene(), *args, **more)
 
 
-SWEEP = fingerpad.sweep
+def beside(scene: Scene, *args: Any, out: str | None = None, **more: Any) -> fingerpad.Result:
+    """Run a scene into a folder beside that of the script, which may hold the default finger."""
+    return RUN(scene, *args, out=None if out is None else f"{out}_small", **more)
+
+
+RUN, SWEEP = fingerpad.run, fingerpad.sweep
 if __name__ == "__main__":
-    fingerpad.Scene, fingerpad.sweep = small, default  # type: ignore[misc,assignment]
+    fingerpad.Scene, fingerpad.run, fingerpad.sweep = small, beside, default  # type: ignore[misc,assignment]
     sys.argv = sys.argv[1:]
     runpy.run_path(sys.argv[0], run_name="__main__")

@@ -46,6 +46,8 @@ def test_demo(demo, tmp_path):
     printed = run(demo, tmp_path)
     if demo.stem == "first_run":
         assert printed
+        # results/mine may hold the default finger of the README
+        assert {folder.name for folder in (tmp_path / "results").iterdir()} == {"mine_small", "sweep"}
         return
     kept = OUTPUT / f"{demo.stem}.txt"
     assert alike(*(re.sub(r"[\d.]+ s$", "s", text, flags=re.M) for text in (kept.read_text("utf-8"), printed)), 0.02)
