@@ -161,7 +161,8 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     """Return the answer of the cylinders; without a footprint it is the default finger's.
 
     Raises:
-        SceneError: a scene with a history, another finger than the footprint's, or ridges that do not stay.
+        SceneError: a scene with a history, another finger than the footprint's, ridges that do not stay, or that would
+            touch over more than their width.
     """
     clock = Stopwatch()
     refuse_others(scene, "cylinders")
@@ -174,6 +175,12 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
             ridge = _ridge(scene, footprint, state)
         except NoEquilibriumError as error:
             raise SceneError(f"{WORDS[state]} of the model 'cylinders': {error}") from None
+        width = scene.geometry.ridge_wavelength
+        if ridge.length > width and not footprint.charged:  # that of a run has been computed
+            raise SceneError(
+                f"{WORDS[state]} of the model 'cylinders': f_ext is {scene.f_ext:g} N/m, under which a ridge of "
+                f"{1e3 * width:.3g} mm would touch over {1e3 * ridge.length:.3g} mm; give less"
+            )
         n = footprint.ridges[state]
         contact = {
             "f_contact": n * ridge.f_contact,
