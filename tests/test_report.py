@@ -182,10 +182,22 @@ def test_contacts_of_enough_facets_and_other_formulations_are_not_told(folder):
 )
 def test_size_of_the_error_is_told(folder, error, what, words):
     result = Result.load(folder)
-    state = replace(result.full_slip, mu_app=1.0, error=replace(result.full_slip.error, mu_app=error))
+    errors = replace(result.full_slip.error, mu_app=error, contact_length=0.0)
+    state = replace(result.full_slip, mu_app=1.0, error=errors)
     found = {each.what: each for each in trust.findings(replace(result, full_slip=state))}
     assert words in found[what].words
     assert found[what].verdict == (trust.GOOD if error < 0.02 else trust.CARE)
+
+
+@pytest.mark.parametrize(("value", "error"), [(1e-15, 1e-10), (0.25, 1e-12), (0.25, 0.025)])
+def test_larger_error_is_told_and_roundoff_of_friction_is_not(folder, value, error):
+    """Without friction, without voltage, and with an error of 10 % in µ_app; the contact length has 20 %."""
+    result = Result.load(folder)
+    slip = result.full_slip
+    errors = replace(slip.error, mu_app=error, contact_length=0.2 * slip.contact_length)
+    found = trust.findings(replace(result, full_slip=replace(slip, mu_app=value, error=errors)))
+    told = {each.what: each.words for each in found}["the mesh is coarse"]
+    assert told.startswith("The estimated discretisation error of the contact length is 20 % of its value.")
 
 
 @pytest.mark.parametrize(("energy", "words"), [(1e-3, "released 0.001 J/m"), (1e-7, "released less than 1e-06 J/m")])

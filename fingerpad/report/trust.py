@@ -10,7 +10,7 @@ from variational.state import ContactState
 
 GOOD, CARE, BAD = "holds", "care", "fails"
 _SMALL, _LARGE = 0.02, 0.1
-"""Relative errors of µ_app below which it is small, and above which the mesh is too coarse for more than a trend."""
+"""Relative errors below which an error is small, and above which the mesh is too coarse for more than a trend."""
 
 _FEW = 4
 """Facets in contact on a ridge below which the effect of a rigid screen is doubtful: at two or three,
@@ -66,24 +66,42 @@ def _full_slip(result: Result) -> Iterator[Finding]:
 
 
 def _mesh(result: Result) -> Iterator[Finding]:
+    """Judge the errors of friction and contact length, and tell the larger one."""
     state = result.full_slip or result.charged
-    key, name = "contact_length", "the contact length"
-    if result.full_slip:
-        key, name = ("f_t", "f_T") if math.isnan(result.full_slip.mu_app) else ("mu_app", "µ_app")
     if state is None:
         return
-    error, value = getattr(state.error, key), getattr(state, key)
-    if math.isnan(error) or not value:
+    shares = _shares(result, state)
+    if any(math.isnan(share) for share in shares.values()):
         yield Finding("errors are not estimated", CARE, "This run has no estimate of its discretisation error.")
         return
     yield from _facets(result, state)
-    share = error / abs(value)
+    name = max(shares, key=lambda each: shares[each])
+    share = shares[name]
     words = f"The estimated discretisation error of {name} is {100 * share:.2g} % of its value."
     if share <= _SMALL:
         yield Finding("mesh", GOOD, words)
     else:
         more = "good for trends" if share <= _LARGE else "too coarse for more than a trend"
         yield Finding("the mesh is coarse", CARE, f"{words} The mesh is {more}; a smaller mesh.contact reduces it.")
+
+
+def _shares(result: Result, state: ContactState) -> dict[str, float]:
+    """Return the relative errors of friction and contact length by name; NaN of one that is not estimated.
+
+    A friction whose error is below the roundoff of the forces does not depend on the mesh, and is left out.
+    """
+    found = {"the contact length": _share(state.error.contact_length, state.contact_length)}
+    if result.full_slip:
+        error, value, name = state.error.mu_app * abs(state.f_ext), state.mu_app * abs(state.f_ext), "µ_app"
+        if math.isnan(state.mu_app):
+            error, value, name = state.error.f_t, state.f_t, "f_T"
+        if not error <= result.record.get("force_error", 0.0):
+            found[name] = _share(error, value)
+    return found
+
+
+def _share(error: float, value: float) -> float:
+    return error / abs(value) if value else math.nan
 
 
 def _facets(result: Result, state: ContactState) -> Iterator[Finding]:
