@@ -37,8 +37,13 @@ for (const option of ridges.options) {
 }
 const charts = [...document.querySelectorAll(".chart")].map((c) => [c.id, c.querySelectorAll("svg.main-svg").length]);
 const fetched = performance.getEntriesByType("resource").map((e) => e.name).filter((n) => !n.startsWith("data:"));
+const chart = document.getElementById("friction");
+const gaps = ["y", "y2"].map((name) => {
+  const left = [...chart.querySelectorAll(`.${name}tick text`)].map((tick) => tick.getBoundingClientRect().left);
+  return Math.min(...left) - chart.querySelector(`.g-${name}title text`).getBoundingClientRect().right;
+});
 const root = document.documentElement;
-return { seen, values, charts, fetched, wide: root.scrollWidth, width: root.clientWidth };
+return { seen, values, gaps, charts, fetched, wide: root.scrollWidth, width: root.clientWidth };
 """
 TEXT = """
 const hidden = [...document.querySelectorAll(".needs-js")].every((e) => getComputedStyle(e).display === "none");
@@ -81,6 +86,7 @@ def test_browser_opens_it_and_steps_through_the_states(page, tmp_path, size):
     assert any("air gap" in words for words in found["values"])
     assert {name for name, drawn in found["charts"] if drawn} >= {"body", "skin", "one", "friction", "work"}
     assert all(drawn for _, drawn in found["charts"])
+    assert all(gap > 5 for gap in found["gaps"]), "the title of an axis touches its numbers"
 
 
 def test_key_numbers_fit_a_phone(page, tmp_path):
@@ -160,6 +166,13 @@ def test_worst_finding_leads(folder):
     found = trust.findings(replace(Result.load(folder), failure="the load slide was not reached"))
     kind, words = trust.verdict(found)
     assert kind == trust.BAD and "the load slide was not reached" in words
+
+
+def test_end_by_a_signal_is_told_once(folder):
+    failure = "stopped by SIGTERM after step 5; the same command goes on from there"
+    found = trust.findings(replace(Result.load(folder), failure=failure, interrupted="SIGTERM"))
+    assert found[0].words == "Stopped by SIGTERM after step 5; the same command goes on from there."
+    assert trust.verdict(found)[1].count("SIGTERM") == 1
 
 
 def test_contacts_of_enough_facets_and_other_formulations_are_not_told(folder):

@@ -12,6 +12,7 @@ import pytest
 
 from fingerpad.cli import main
 from fingerpad.cli import sweep as cli_sweep
+from fingerpad.installed import version
 from fingerpad.report import parameters, source
 from fingerpad.report.write import NAME, write
 from fingerpad.runs.sweep import sweep
@@ -47,6 +48,18 @@ def test_browser_opens_a_sweep(table, tmp_path, size):
     found = asked(page, program, tmp_path, width=width, height=height)
     assert found["drawn"] == [2, 2, 2], "a curve for each force, in three charts"
     assert found["wide"] <= width
+
+
+def test_swept_key_has_its_own_unit_and_the_page_its_version(tmp_path):
+    """A friction coefficient has none; a page of a folder that has no version names none."""
+    sweep(Scene(), tmp_path, model="cylinders", friction=[0.2, 0.3], **{"mesh.contact": [5e-6]})
+    page = write(tmp_path).read_text(encoding="utf-8")
+    assert '<th scope="col">friction</th><th scope="col">mesh.contact (m)</th>' in page
+    assert "over friction: 0.2, 0.3; mesh.contact (m): 5e-06" in page
+    assert f"<blockquote>fingerpad {version()}: two-scale" in page
+    kept = json.loads((tmp_path / "sweep.json").read_text(encoding="utf-8"))
+    (tmp_path / "sweep.json").write_text(json.dumps({key: kept[key] for key in ("model", "parameters")}))
+    assert "<blockquote>fingerpad: two-scale" in write(tmp_path).read_text(encoding="utf-8")
 
 
 def test_failed_points_are_listed_with_their_reason(table):

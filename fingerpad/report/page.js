@@ -50,7 +50,7 @@
     const shapes = x.filter((_, k) => jump[k]).map((at) => ({ type: "line", x0: at, x1: at, y0: 0, y1: 1, yref: "paper",
       line: { color: GREY, width: 1, dash: "dot" }, layer: "below" }));
     draw("friction", traces, layout(520, { shapes, margin: { l: 60, r: 12, t: 60, b: 44 },
-      yaxis: axis("µ_app", { domain: [0.54, 1] }), yaxis2: axis("L_R (mm)", { domain: [0, 0.46] }),
+      yaxis: axis("µ_app", { domain: [0.54, 1] }), yaxis2: axis("L_R (mm)", { domain: [0, 0.46], title: { text: "L_R (mm)", standoff: 8 } }),
       xaxis: axis("sideways displacement of the bone (mm)", { anchor: "y2" }) }));
   }
 

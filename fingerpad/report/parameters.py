@@ -81,10 +81,15 @@ def again(parameters: Mapping[str, Any], model: str, asked: Mapping[str, Any] | 
     return f"<pre><code>{text(f'fingerpad run{options}{option} --out results/again')}</code></pre>"
 
 
-def cite() -> str:
-    """Return what is cited."""
-    return paragraph("Please cite the program, by its version above, and the paper whose model it implements:") + (
-        f"<blockquote>fingerpad: two-scale finite element model of a fingertip under electroadhesion.</blockquote>"
+def cite(version: str) -> str:
+    """Return what is cited.
+
+    Args:
+        version: of the program that computed the results; empty where it is not known.
+    """
+    name = f"fingerpad {version}" if version else "fingerpad"
+    return paragraph("Please cite the program with its version, and the paper whose model it implements:") + (
+        f"<blockquote>{text(name)}: two-scale finite element model of a fingertip under electroadhesion.</blockquote>"
         f"<blockquote>{text(PAPER)}</blockquote>"
     )
 

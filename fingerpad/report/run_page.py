@@ -303,7 +303,7 @@ def _reproduce(result: Result) -> str:
         "How to reproduce and cite",
         parameters.again(_parameters(result), result.model, result.record.get("asked")),
         html.folded("Versions", html.table(("program", "version"), rows)) if rows else "",
-        parameters.cite(),
+        parameters.cite(str(versions.get("fingerpad", ""))),
     )
 
 

@@ -28,6 +28,8 @@ class Table:
     parameters: dict[str, Any] | None
     """Every parameter of the scene that it varies; None of a sweep by an earlier version, whose folder has none."""
     model: str = "full"
+    version: str = ""
+    """Of the program that made the table; empty where it is not known."""
 
 
 def read(folder: Path) -> Result | Table:
@@ -97,7 +99,7 @@ def _sweep(folder: Path) -> Table:
         raise SceneError(f"table.csv in {name} is cut short; give the command of the sweep again to write it anew")
     try:
         asked = dict(json.loads((folder / "sweep.json").read_text(encoding="utf-8")))
-        return Table(folder, axes, rows, dict(asked["parameters"]), str(asked["model"]))
+        return Table(folder, axes, rows, dict(asked["parameters"]), str(asked["model"]), str(asked.get("version", "")))
     except FileNotFoundError:
         return Table(folder, axes, rows, None)
     except (OSError, ValueError, KeyError, TypeError) as error:

@@ -9,6 +9,7 @@ from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
 from fingerpad.report import page as html
 from fingerpad.report import parameters
 from fingerpad.report.source import Table
+from fingerpad.runs.sweep_dataset import described
 
 _SHOWN = ("mu_app", "f_t", "contact_length", "f_electrostatic", "ridges_in_contact")
 _CHARTS = {
@@ -132,7 +133,7 @@ def _cite(table: Table) -> str:
         note = "Loads of its own, and other lists of the scene, are not in this line."
     return html.section(
         "reproduce", "How to reproduce and cite", f"<pre><code>{html.text(code)}</code></pre>",
-        html.paragraph(note, "note") if note else "", parameters.cite(),
+        html.paragraph(note, "note") if note else "", parameters.cite(table.version),
     )  # fmt: skip
 
 
@@ -171,7 +172,10 @@ def _curves(table: Table) -> dict[str, Any]:
 
 def _head_of(key: str) -> str:
     quantity = QUANTITIES.get(key)
-    return f"{quantity.words} ({quantity.unit})" if quantity else f"{key} (SI)"
+    if quantity:
+        return f"{quantity.words} ({quantity.unit})"
+    meant = described(key)
+    return f"{key} ({meant.unit})" if meant is not None and meant.unit else key
 
 
 def _read(text: str | None) -> float | None:

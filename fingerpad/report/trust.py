@@ -47,10 +47,9 @@ def verdict(found: list[Finding]) -> tuple[str, str]:
 
 
 def _end(result: Result) -> Finding:
-    if result.interrupted:
-        return Finding("the run was stopped", BAD, f"{result.interrupted} ended the run. {result.failure}".strip())
     if result.failure:
-        return Finding("the run did not finish", BAD, result.failure)
+        words = result.failure[0].upper() + result.failure[1:] + "." if result.interrupted else result.failure
+        return Finding("the run did not finish", BAD, words)
     return Finding("end of the run", GOOD, "Every load was reached.")
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.installed import source
+from fingerpad.installed import source, version
 from fingerpad.io import terminal
 from fingerpad.io.files import replace, replace_json
 from fingerpad.io.folder import check_folder
@@ -209,7 +209,7 @@ def sweep(
     done = Sweep(values, tuple(found), folder)
     for name in FILES[1:]:  # else that of an earlier sweep may stay beside this one's table
         (folder / name).unlink(missing_ok=True)
-    replace_json(folder / FILES[-1], {"model": model, "parameters": scene.parameters()})
+    replace_json(folder / FILES[-1], {"version": version(), "model": model, "parameters": scene.parameters()})
     done.to_csv(folder / FILES[0])
     notes = tuple(filter(None, (sweep_dataset.save(done), _older(done, folder / model))))
     attempt(folder)
