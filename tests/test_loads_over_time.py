@@ -1,6 +1,7 @@
 """A small finger under voltages over time: as by loads by hand, and what is the same whatever the sign or the place."""
 
 import math
+import re
 import tomllib
 from itertools import pairwise
 from pathlib import Path
@@ -239,7 +240,18 @@ def test_results_of_a_run(tmp_path):
     assert np.isnan(data.load_f_t_mean.sel(load="slide")) and data.time.attrs["units"] == "s"
     assert data.harmonic.size == 6 and data.load_frequency.attrs["units"] == "Hz"
     shown = page(found)
+    mu, mean = wave.extremes["mu_app"], wave.over_time.mean["mu_app"]
+    most = np.argmax(wave.over_time.f_t_amplitude)
+    amplitude = f"amplitude of f_T at {60 * (most + 1)} Hz {wave.over_time.f_t_amplitude[most]:.3f} N/m"
+    assert f"  wave: µ_app {mu.min:.4f} to {mu.max:.4f}, mean {mean:.4f}; {amplitude}\n" in str(found)
     assert "Loads over time" in shown and "sine of 80 V about 20 V at 60 Hz" in shown and NOTE in shown
+
+
+def test_line_of_a_load_over_time_without_friction():
+    """Of a press that takes time; its friction force is roundoff."""
+    found = str(result(PRESS | {"duration": 0.1}))
+    length = re.search(r"^  press: L_R (\S+) to (\S+) mm, mean (\S+) mm$", found, re.MULTILINE)
+    assert length and float(length[1]) <= float(length[3]) <= float(length[2])
 
 
 def test_run_without_time_has_none(tmp_path):

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 _STABILITY = ("stable", "lambda_min", "gain")
 _CHANGES = ("error", "penalty")
+_ROUNDOFF = 1e-9  # of a friction force over the external force; N/m
 KINDS = ("surface", "finger", "history", "footprint", "time")
 """Pictures of a result."""
 
@@ -253,6 +254,7 @@ class Result:
             for first, *rest in rows:
                 cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
                 lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
+        lines += [f"  {_in_time(load)}" for load in self.loads if load.over_time is not None]
         lines += [f"  {note}" for note in self._remarks()]
         return "\n".join([*lines, *([f"{self.finger}"] if self.finger is not None else [])])
 
@@ -280,6 +282,23 @@ class Result:
                 f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm."
             )
         return [*found, *([PER_LENGTH] if self.named else []), *self.notes]
+
+
+def _in_time(load: LoadResult) -> str:
+    """Return range and mean of friction in a load over time, and its largest amplitude; of L_R without friction."""
+    passed, f_t = load.over_time, load.extremes["f_t"]
+    assert passed is not None
+    key = "mu_app" if "mu_app" in load.extremes else "f_t"
+    rubs = max(abs(f_t.min), abs(f_t.max)) > _ROUNDOFF * max(abs(load.end.f_ext), _ROUNDOFF)
+    key = key if rubs else "contact_length"
+    quantity, ends, mean = QUANTITIES[key], load.extremes[key], passed.mean[key]
+    unit = f" {quantity.unit}" if quantity.unit else ""
+    words = f"{load.name}: {quantity.words.split()[-1]} {cell(key, ends.min)} to {cell(key, ends.max)}{unit}"
+    words += "" if math.isnan(mean) else f", mean {cell(key, mean)}{unit}"
+    if not (rubs and passed.periods):
+        return words
+    most, frequency = max(zip(passed.f_t_amplitude, passed.frequency, strict=True))
+    return f"{words}; amplitude of f_T at {frequency:.4g} Hz {cell('f_t', most)} N/m"
 
 
 def _loads(steps: Sequence[ContactState], scene: Scene, summary: Mapping[str, Any]) -> Iterator[LoadResult]:
