@@ -315,6 +315,7 @@ def draw(docs: Path) -> Path:
         "mu_app": middle["mu_app"], "centre": middle["centre"], "by_20_mm": middle["by_20_mm"],
         "narrow": 1e3 * widths(numbers)[0], "wide": 1e3 * widths(numbers)[1],
         "low": 100 * lower(numbers)[0], "high": 100 * lower(numbers)[1],
+        "size": 1e6 * SIZE, "default": 1e6 * Scene().mesh.contact,
         "light": FORCES[0], "continued": 100 * middle["continued"],
         "most_continued": 100 * at(numbers, RADII[1], HIGH)[0]["continued"],
         "estimate": 100 * worst, "lost": -100 * min(lost), "same": 100 * max(same),

@@ -50,8 +50,8 @@ def run(
             one ridge (seconds, half a minute the first time); ``"cylinders"``, a closed form (at once).
         force: external force on the whole finger, in N or as a text such as ``"0.5 N"``, in place of the scene's
             ``f_ext``. The result's ``finger`` is then summed over traces of the model (:mod:`fingerpad.slices.traces`),
-            three runs of the full one. The other states of the result are at the end of the full model's last trace,
-            and of the other models at the force on the centre.
+            three runs of the full one. States in N/m: for the full model, those at the end of its last trace; for
+            other models, those under the force on the centre slice.
         closure: microscale model in place of the bearing area model, see :mod:`variational.roughness.closure`.
         materials: materials by layer (``{"dermis": NeoHooke(2.5e3)}``), see :mod:`variational.materials.material`.
         friction: friction law, see :mod:`variational.contact.friction`.
