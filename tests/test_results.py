@@ -82,7 +82,7 @@ def test_charged_while_it_slides(tmp_path, titles):
     assert slide["stable"] is press["stable"] is True
     assert end["extremes"]["mu_app"]["max_step"] == summary["slip_step"]
     assert "$U$ = 100 V, bone at $x$ = 0.6 mm" in titles["finger_charge_while_sliding"]
-    assert "$U$ = 0 V" in titles["Charged normal contact"] and "$U$ = 100 V" in titles["Full slip"]
+    assert "$U$ = 0 V" in titles["Normal contact"] and "$U$ = 100 V" in titles["Full slip"]
     assert "$f_{ext}$ = 1 N/m, $U$ = 0 to 100 V" in titles["history"] and "$U$ = 0 to 100 V" in titles["surface"]
 
 

@@ -1,6 +1,7 @@
 """Newtons from runs: at the end of a run for nothing, from traces of the full model, and full slip by two paths."""
 
 import html
+import re
 import signal
 from dataclasses import replace
 
@@ -18,6 +19,7 @@ from fingerpad.slices.estimate import with_newtons
 from fingerpad.slices.traces import history, points
 from tests.runs import no_pictures
 from tests.small_finger import small
+from variational.state import Errors
 
 SMALL = {"output": {"receptors": False, "errors": False}, "slices": {"radius": 6e-3, "length": 8e-3}}
 FORCE = 2e-3  # N
@@ -151,6 +153,22 @@ def test_run_has_newtons_for_nothing():
     turned = [replace(state, f_t=-1e-15) if state.load == "press" else state for state in result.steps]
     again = with_newtons(replace(result, steps=tuple(turned), finger=None)).finger
     assert again.states["full_slip"].totals == slip.totals, "sideways roundoff leaves no state of the press out"
+
+
+def test_run_that_was_never_charged_has_one_normal_contact():
+    """A run that ended before its voltage, and one at 0 V: one state, with one area, and no word of a charge."""
+    whole = fp.run(small(**SMALL))
+    still = whole.uncharged
+    for voltage in (100.0, 0.0):
+        scene = whole.scene.replace(voltage=voltage)
+        cut = replace(whole, scene=scene, charged=replace(still, error=Errors(contact_length=1e-6)), full_slip=None)
+        found = with_newtons(replace(cut, finger=None))
+        assert found.finger.values("charged") == found.finger.values("uncharged")
+        assert found.finger.error["charged"] == found.finger.error["uncharged"]
+        page = html.unescape(run_page.page(found))
+        assert "contact length in normal contact; 1 N/m, 0 V" in page
+        assert not re.search(r"(?<!un)charged(?! cylinders)", str(found))
+        assert not re.search(r"(?<!un)charged normal contact", page, re.IGNORECASE)
 
 
 def test_newtons_of_the_closed_form():

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from fingerpad.io import finger_picture, history_picture, skin_picture, time_picture, titles
 from fingerpad.io.skin_picture import SurfaceProfile
-from fingerpad.io.states import PREFIXES, WORDS, before_sliding, named, partial_slip
+from fingerpad.io.states import PREFIXES, WORDS, before_sliding, called, named, partial_slip
 from fingerpad.io.views import Profile, View
 from variational.state import ContactState
 
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from variational.output import Snapshot
 
 _PATH, _FINAL = "path on the starting mesh", "final mesh"
-_TITLES = {name: words.capitalize() for name, words in WORDS.items()}
 
 
 class End(NamedTuple):
@@ -154,10 +153,9 @@ class Drawing:
     def _final(self, path: Path | None, name: str) -> Figure:
         view = self.finer[name]
         assert view.snapshot is not None
-        note = _note(_FINAL, view.mesh.contact)
-        return self._finger(
-            path, _TITLES[name], view.state, view.snapshot, view.merkel, note, _places(view.profile, view.state)
-        )
+        title, note = _title(name, view.state), _note(_FINAL, view.mesh.contact)
+        ridges = _places(view.profile, view.state)
+        return self._finger(path, title, view.state, view.snapshot, view.merkel, note, ridges)
 
     def _finger(
         self,
@@ -179,11 +177,11 @@ class Drawing:
     def _shown(self) -> "dict[str, tuple[str, ContactState, View | None]]":
         """Return the states along whose skin is drawn: title, state, and its view on the final mesh if there is one."""
         found, partial = named(self.states), partial_slip(self.states)
-        shown = {"normal": (_TITLES["charged"], found["charged"])} if "charged" in found else {}
+        shown = {"normal": (_title("charged", found["charged"]), found["charged"])} if "charged" in found else {}
         if partial is not None:
             shown["partial"] = ("Partial slip", partial)
         if "full_slip" in found:
-            shown["slip"] = _TITLES["full_slip"], found["full_slip"]
+            shown["slip"] = _title("full_slip", found["full_slip"]), found["full_slip"]
         elif self._slides():
             shown["slip"] = "Last state", self.states[-1]
         final = {PREFIXES[name]: view for name, view in self.finer.items() if view.profile is not None}
@@ -212,6 +210,10 @@ class Drawing:
 def _keep(path: Path, snapshot: "Snapshot", sites: NDArray[np.float64] | None) -> None:
     shown: dict[str, Any] = {} if sites is None else {"merkel": sites}
     np.savez_compressed(path, **shown, **vars(snapshot))
+
+
+def _title(name: str, state: ContactState) -> str:
+    return called(name, state.voltage).capitalize()
 
 
 def _note(mesh: str, contact_size: float) -> str:

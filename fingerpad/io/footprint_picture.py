@@ -6,7 +6,6 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fingerpad.io import style
-from fingerpad.io.states import WORDS
 from fingerpad.slices.finger import WholeFinger
 
 _MM = 1e3
@@ -30,13 +29,13 @@ def footprint(finger: WholeFinger, path: Path | None = None) -> Figure:
         widest = max(float(each.columns["gross_width"].max(initial=0)) for each in finger.states.values())
         longest = max(float(np.abs(each.z).max(initial=0)) for each in finger.states.values())
         middle = 0.0
-        for axis, (name, total) in zip(axes, finger.states.items(), strict=False):
+        for axis, head, (name, total) in zip(axes, finger.heads(), finger.states.items(), strict=False):
             z, colour = _MM * total.z, style.STATE[name]
             gross, touching = (_MM * total.columns[key] / 2 for key in ("gross_width", "contact_length"))
             axis.fill_betweenx(z, -gross, gross, color=colour, alpha=0.25, lw=0)
             axis.fill_betweenx(z, -touching, touching, color=colour, lw=0)
             area, ridges = (1e6 * total.totals[key] for key in ("gross_area", "contact_area"))
-            words = WORDS[name].replace(" normal", "\nnormal")
+            words = head.replace(" normal", "\nnormal")
             axis.set_title(f"{words}\n{area:.1f} mm² gross,\nridges {ridges:.2f} mm²", color=colour)
             half, end = 0.55 * _MM * widest, 1.1 * _MM * longest
             axis.set(xlim=(-half, half), ylim=(-end, end), xlabel="x (mm)")

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from fingerpad.io import style
-from fingerpad.io.states import WORDS
+from fingerpad.io.states import called
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
@@ -74,7 +74,7 @@ def _draw_errors(ax: Axes, named: Mapping[str, ContactState], quantity: str, uni
         if np.isfinite(error) and np.isfinite(state.bone_x) and not (quantity == "f_t" and name != "full_slip"):
             ax.errorbar(
                 _MM * state.bone_x, unit * getattr(state, quantity), unit * error, fmt="D", ms=6, capsize=5,
-                color=style.STATE[name], label=f"{WORDS[name]} ± discretisation error", zorder=4,
+                color=style.STATE[name], label=f"{called(name, state.voltage)} ± discretisation error", zorder=4,
             )  # fmt: skip
 
 

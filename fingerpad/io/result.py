@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from fingerpad.io import terminal
 from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
-from fingerpad.io.states import PREFIXES, STATES, WORDS, LoadResult, load_results
+from fingerpad.io.states import PREFIXES, STATES, LoadResult, called, load_results
 from fingerpad.scene import Scene, SceneError, from_data
 from fingerpad.scene.laws import coefficient
 from fingerpad.scene.messages import clip
@@ -58,7 +58,7 @@ class Result:
     """Uncharged normal contact; None where a history or a model does not have this state, as for the next two. All
     three are defined in :mod:`fingerpad.io.states`."""
     charged: ContactState | None
-    """Charged normal contact, the last state in contact before the bone moves sideways."""
+    """Charged normal contact, the last state in contact before the bone moves sideways; of a run at 0 V uncharged."""
     full_slip: ContactState | None
     """Full slip, held over a further 0.2 mm."""
     steps: tuple[ContactState, ...] = ()
@@ -241,7 +241,7 @@ class Result:
         shown = self.named
         lines = ["Result" + (f" (model '{self.model}')" if self.model != "full" else "")]
         if shown:
-            heads = [WORDS[name].split(" normal") for name in shown]
+            heads = [called(name, state.voltage).split(" normal") for name, state in shown.items()]
             rows = [
                 ["", *(head[0] for head in heads)],
                 ["", *(("normal" + head[1]) if head[1:] else "" for head in heads)],

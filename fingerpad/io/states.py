@@ -3,8 +3,8 @@
 * *uncharged* (uncharged normal contact): the last state in contact before a voltage is switched on and before the bone
   first moves sideways,
 * *charged* (charged normal contact, in short normal contact): the last state in contact before the bone first moves
-  sideways with skin on the screen, at the voltage of that state. Sideways motion without contact does not count, nor
-  does a later return of the bone,
+  sideways with skin on the screen, at the voltage of that state; at 0 V it is called normal contact. Sideways motion
+  without contact does not count, nor does a later return of the bone,
 * *full_slip*: full slip. Every point in contact slips one way, with the same forces while the bone slides a further
   0.2 mm. A full slip begins at its first state. Of several full slips the last one that was held counts.
 """
@@ -33,6 +33,16 @@ _UNLOADED = ContactState(
     contact_length=0.0, time=0.0,
 )  # fmt: skip
 """Where a run begins."""
+
+
+def called(name: str, charge: float) -> str:
+    """Return a named state in words.
+
+    Args:
+        name: of :data:`STATES`.
+        charge: its voltage or its attraction, 0 where the finger is not charged.
+    """
+    return "normal contact" if name == "charged" and charge == 0 else WORDS[name]
 
 
 def before_sliding(rows: Sequence[ContactState]) -> Sequence[ContactState]:

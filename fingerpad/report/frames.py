@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from fingerpad.io.finger_picture import interfaces
 from fingerpad.io.result import Result
-from fingerpad.io.states import WORDS, partial_slip
+from fingerpad.io.states import WORDS, called, partial_slip
 from variational.state import ContactState
 
 Array = NDArray[np.float64]
@@ -85,9 +85,9 @@ def _listed(result: Result) -> Iterator[_Frame]:
     for name, prefix in (("charged", "normal"), ("full_slip", "slip")):
         stem = f"finger_{_file(WORDS[name])}"
         if result.folder is not None and (result.folder / f"{stem}.npz").is_file():
-            yield _Frame(
-                f"{WORDS[name]}, final mesh", getattr(result, name), stem, "surface", prefix, "ridges_final", name
-            )
+            state = result.named[name]
+            words = f"{called(name, state.voltage)}, final mesh"
+            yield _Frame(words, state, stem, "surface", prefix, "ridges_final", name)
 
 
 def _file(words: str) -> str:

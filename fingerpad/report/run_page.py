@@ -7,7 +7,7 @@ from typing import Any
 
 from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
 from fingerpad.io.result import Result
-from fingerpad.io.states import WORDS, before_sliding
+from fingerpad.io.states import before_sliding, called
 from fingerpad.report import over_time, parameters, trust
 from fingerpad.report import page as html
 from fingerpad.report.frames import frames
@@ -79,7 +79,7 @@ def _head(result: Result) -> str:
     elif charged is not None:
         value = cell("contact_length", charged.contact_length, charged.error.contact_length)
         number = f"L<sub>R</sub> = {html.text(value)} mm"
-        said = f"contact length in charged normal contact; {_conditions(result)}"
+        said = f"contact length in {called('charged', charged.voltage)}; {_conditions(result)}"
     else:
         number, said = "No contact state was kept", _conditions(result)
     where = "" if result.folder is None else f" · {html.text(result.folder.resolve().name)}"
@@ -150,7 +150,7 @@ def _numbers(result: Result) -> str:
             friction = f"f_T at full slip by {slip.penalty.f_t:+.2g} N/m"
         length = f"the contact length by {_MM * slip.penalty.contact_length:+.2g} mm"
         notes.append(f"Contact is a penalty: a rigid screen would change {friction}, and {length}.")
-    heads = ("", *(WORDS[name] for name in result.named))
+    heads = ("", *(called(name, state.voltage) for name, state in result.named.items()))
     return html.section("numbers", "Key numbers", html.table(heads, rows, "numbers"), html.items(notes))
 
 
@@ -329,7 +329,7 @@ def _errors(result: Result) -> list[dict[str, Any]]:
     """Return the named states with an error, for the charts of sliding."""
     return [
         {
-            "name": WORDS[name],
+            "name": called(name, state.voltage),
             "x": _number(_MM * state.bone_x),
             "mu_app": _number(state.mu_app) if name == "full_slip" else None,
             "mu_app_error": _number(state.error.mu_app),

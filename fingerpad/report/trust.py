@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from fingerpad.io.result import Result
-from fingerpad.io.states import WORDS
+from fingerpad.io.states import called
 from variational.state import ContactState
 
 GOOD, CARE, BAD = "holds", "care", "fails"
@@ -134,12 +134,13 @@ def _stability(result: Result) -> Iterator[Finding]:
     if not known:
         yield Finding("stability is not examined", CARE, "The stability of the named states was not examined.")
         return
-    unstable = [WORDS[name] for name, stable in known.items() if not stable]
+    words_of = {name: called(name, result.named[name].voltage) for name in known}
+    unstable = [words_of[name] for name, stable in known.items() if not stable]
     if unstable:
         words = f"Unstable: {', '.join(unstable)}. A finger would leave such a state by itself."
         yield Finding("a state is unstable", BAD, words)
     else:
-        words = f"Examined and stable: {', '.join(WORDS[name] for name in known)}. A small disturbance dies out."
+        words = f"Examined and stable: {', '.join(words_of.values())}. A small disturbance dies out."
         yield Finding("stability", GOOD, words)
 
 

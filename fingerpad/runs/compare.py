@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from fingerpad.io.quantities import QUANTITIES, cell
 from fingerpad.io.result import Result
-from fingerpad.io.states import WORDS
+from fingerpad.io.states import called
 from fingerpad.reduced.answer import STATES
 from variational.state import RESULTS
 
@@ -26,7 +26,8 @@ def table(results: Sequence[Result]) -> str:
             unit = f" ({quantity.unit})" if quantity.unit else ""
             states = [getattr(result, name) for result in results]
             cells = ["–" if s is None else cell(key, getattr(s, key), getattr(s.error, key, math.nan)) for s in states]
-            rows.append([f"{WORDS[name]}: {quantity.words}{unit}", *cells])
+            words = called(name, results[0].scene.voltage)
+            rows.append([f"{words}: {quantity.words}{unit}", *cells])
     rows.append(["processor time (s)", *(f"{result.cost.processor_seconds:.2f}" for result in results)])
     rows.append(["factorisations", *(str(result.cost.factorisations) for result in results)])
     rows.append(["unknowns", *(str(result.cost.unknowns) for result in results)])

@@ -55,6 +55,8 @@ def estimate(scene: Scene, press: Sequence[ContactState], named: Mapping[str, Co
     finger, count, wavelength = profile(scene.slices), scene.slices.count, scene.geometry.ridge_wavelength
     pressed = _thinned(press)
     traces = {name: _scaled(scene, pressed, name, state, wavelength) for name, state in named.items()}
+    if "uncharged" in named and "charged" in named and named["charged"].voltage == 0:  # one state, with one trace
+        traces["uncharged"], named = traces["charged"], {**named, "uncharged": named["charged"]}
     # At one indentation the states bear other forces: the least is one that every trace reaches.
     force = min(at_indentation(finger, each, deepest(finger, each), count).totals["f_ext"] for each in traces.values())
     found = {name: at_force(finger, each, force * (1 - 1e-9), count) for name, each in traces.items()}
@@ -75,7 +77,7 @@ def _scaled(scene: Scene, press: Sequence[ContactState], name: str, end: Contact
     """Return the trace of a named state: the press changed as the cylinders are, and scaled to the state itself."""
     if name == "uncharged":
         return trace(press, wavelength)
-    states = [_charged(scene, state, name) for state in press]
+    states = [_charged(scene, state, name, end.voltage) for state in press]
     law, now = scene.friction_law(), states[-1]
     shape = {key: _ratio(getattr(end, key), getattr(now, key)) for key in ("f_electrostatic", "contact_length")}
     shape["bone_height"] = _ratio(end.bone_height, now.bone_height)
@@ -90,14 +92,14 @@ def _scaled(scene: Scene, press: Sequence[ContactState], name: str, end: Contact
     return Trace(made.depth, made.columns | {"gross_width": width * made.columns["gross_width"]})
 
 
-def _charged(scene: Scene, state: ContactState, name: str) -> ContactState:
-    """Return a state of the press as the cylinders charge it."""
-    if scene.voltage == 0:
+def _charged(scene: Scene, state: ContactState, name: str, voltage: float) -> ContactState:
+    """Return a state of the press as the cylinders charge it to a voltage (V)."""
+    if voltage == 0:
         return state
     length, ridges = {name: state.contact_length}, {name: state.ridges_in_contact}
     for other in set(cylinders.STATES) - {name}:
         length[other], ridges[other] = state.contact_length, state.ridges_in_contact
-    here = scene.model_copy(update={"f_ext": state.f_ext})
+    here = scene.model_copy(update={"f_ext": state.f_ext, "voltage": voltage})
     footprint = cylinders.Footprint(length, ridges, False, "press of a run")
     found = getattr(cylinders.solve(here, footprint), name)
     return replace(state, f_electrostatic=found.f_electrostatic, contact_length=found.contact_length)

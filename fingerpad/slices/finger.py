@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fingerpad.io.states import STATES, WORDS
+from fingerpad.io.states import STATES, called
 from fingerpad.richardson import plus_minus
 from fingerpad.slices import AREA_ERROR_AT_FORCE, FORCE_ERROR
 from fingerpad.slices.total import Total
@@ -103,7 +103,7 @@ class WholeFinger:
 
     def heads(self) -> list[str]:
         """Return the words of the states."""
-        return [WORDS[name] for name in self.states]
+        return [called(name, total.totals["f_electrostatic"]) for name, total in self.states.items()]
 
     def remarks(self) -> list[str]:
         """Return what a reader of the numbers must be told."""
