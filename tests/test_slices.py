@@ -195,6 +195,10 @@ def test_footprint_has_a_panel_for_each_state(tmp_path):
     area = 1e6 * finger.states["full_slip"].totals["gross_area"]
     assert len(drawn.axes) == 2 and f"full slip\n{area:.1f} mm² gross" in drawn.axes[0].get_title()
     assert (tmp_path / "footprint.png").stat().st_size > 1000
+    state, along = drawn.axes
+    assert along.get_ylabel() == state.get_ylabel() and along.get_ylim() == state.get_ylim()
+    bands = [text.get_text() for text in drawn.legends[0].get_texts()]
+    assert [words.partition(" ")[0] for words in bands] == ["light:", "dark:"] and "ridges lie apart" in bands[1]
 
 
 # -- in three dimensions ---------------------------------------------------------------------------------

@@ -20,7 +20,7 @@ _LINKS = {
     "parameters": "Parameters", "reproduce": "Reproduce",
 }  # fmt: skip
 _SAID = {
-    "footprint.png": "Gross and ridge contact of the whole finger, slice by slice, and the pressure along it",
+    "footprint.png": "Gross contact (light), sum of the ridges' contact lengths (dark) and pressure, slice by slice",
     "time.png": "Voltage, friction force and contact length over time",
     "history.png": "Friction force, contact length and ridges in contact over sliding",
     "surface.png": "Pressure, shear traction, attraction and gap along the skin in the named states",
