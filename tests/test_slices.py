@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pint
 import pytest
 from numpy.testing import assert_allclose
 
@@ -270,6 +271,8 @@ def test_tables_are_refused(table, words):
         (float("nan"), "force is nan N"),
         (500.0, "did you mean 0.5?"),
         ([1.0], "force is list"),
+        (np.array([1.0]), "force is ndarray; it must be a number in N or a text such as '0.5 N'"),
+        (True, "force is True; it must be a number in N"),
     ],
 )
 def test_forces_are_refused(force, words):
@@ -279,7 +282,8 @@ def test_forces_are_refused(force, words):
 
 
 def test_force_as_text():
-    assert newtons("500 mN") == newtons(0.5) == 0.5
+    assert newtons("500 mN") == newtons(0.5) == newtons(np.float64(0.5)) == 0.5
+    assert newtons(pint.UnitRegistry()("500 mN")) == 0.5
 
 
 def test_default_table_changes_no_parameters():

@@ -11,6 +11,7 @@ import pytest
 import fingerpad as fp
 from fingerpad.io.place import full_scene
 from fingerpad.model.simulation import Simulation
+from fingerpad.reduced.answer import TooLight
 from fingerpad.report import parameters, run_page
 from fingerpad.runs import solve
 from fingerpad.scene import SceneError
@@ -82,8 +83,9 @@ def test_trace_that_was_too_short_is_made_again(tmp_path, monkeypatch, constant,
     assert {path.name for path in out.iterdir() if path.is_dir()} >= {"uncharged", "charged"}
     assert [each.finger.states["full_slip"].totals["f_ext"] for each in found] == pytest.approx(2 * [FORCE], rel=1e-9)
     assert fp.Result.load(out).scene == found[-1].scene
-    for other in ({"force": 1.1 * FORCE}, {}):
-        with pytest.raises(SceneError, match="holds the results of another scene"):
+    for other, now in (({"force": 1.1 * FORCE}, "0.0022 N"), ({}, "None")):
+        words = rf"holds the results of another scene \(its force was 0.002 N, and is {now} now\)"
+        with pytest.raises(SceneError, match=words):
             fp.run(scene, out=out, **other)
 
 
@@ -176,6 +178,45 @@ def test_newtons_of_the_closed_form():
     finger = fp.run(force="0.5 N", model="cylinders").finger
     assert finger.states["full_slip"].mu_app == pytest.approx(0.6014, rel=0.02)
     assert np.ptp([total.totals["f_ext"] for total in finger.states.values()]) < 1e-9
+
+
+def test_folder_of_another_force_is_refused_in_newtons(tmp_path):
+    """Of a model without a path, too, whose state in N/m nobody gave; the same force is taken again."""
+    for force in ("0.5 N", 0.5):
+        fp.run(force=force, model="cylinders", out=tmp_path)
+    with pytest.raises(SceneError, match=r"another scene \(its force was 0.5 N, and is 0.6 N now\)"):
+        fp.run(force=0.6, model="cylinders", out=tmp_path)
+
+
+class Stop(Exception):
+    """Stops at the first scene."""
+
+
+def test_least_force(tmp_path):
+    """Every scene of its traces is one that can be run; where that of the centre is none, the force is named."""
+    given = []
+
+    def solve(scene, name):
+        given.append(scene)
+        raise Stop
+
+    for model in ("full", "smooth"):
+        with pytest.raises(Stop):
+            traces.whole(fp.Scene(), 1e-5, model, solve)
+    assert all(load.f_ext >= 1e-3 for scene in given for load in scene.loads() if load.f_ext is not None)
+    finger = fp.run(force=1e-5, model="cylinders").finger
+    assert finger.states["full_slip"].totals["f_ext"] == pytest.approx(1e-5, rel=1e-9)
+    straight = fp.Scene(slices={"z": [-50e-3, 50e-3], "height": [0.0, 0.0]})
+    with pytest.raises(SceneError, match=r"^force is 1e-05 N, under which the centre of the finger bears 0.0001 N/m"):
+        fp.run(straight, force=1e-5, model="cylinders")
+
+
+def test_force_that_is_too_small_for_a_model_is_named():
+    def solve(scene, name):
+        raise TooLight("f_ext is 0.7 N/m, under which the finger touches over less than a ridge")
+
+    with pytest.raises(SceneError, match=r"^force is 0.03 N, and in its trace f_ext is 0.7 N/m, under which"):
+        traces.whole(fp.Scene(), 0.03, "smooth", solve)
 
 
 def test_scene_with_a_history_has_no_newtons():

@@ -9,6 +9,7 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.reduced import ridge_cell, smooth, stages
+from fingerpad.reduced.answer import TooLight
 from fingerpad.richardson import ONCE
 from fingerpad.scene import SceneError, from_data, load
 from geometry.parameters import Fingertip
@@ -218,7 +219,7 @@ def test_table_goes_deeper(tmp_path):
 def test_less_than_a_ridge_is_refused(tmp_path):
     """Spread evenly over its width, a ridge of a sharply curved finger that touches by a part of it is too stiff."""
     light = load(SMALL).replace(f_ext=0.3, voltage=0.0, mesh={"contact": 10e-6})
-    with pytest.raises(SceneError, match="touches over 0.* mm, less than a ridge of 0.483 mm"):
+    with pytest.raises(TooLight, match="touches over 0.* mm, less than a ridge of 0.483 mm"):
         smooth.solve(light, tmp_path)
 
 

@@ -136,8 +136,8 @@ class Place:
         same = kept is not None and kept.get(TRACE, "") == self._parameters.get(TRACE)
         if kept is not None and kept != self._parameters and not same:
             raise PlaceError(
-                f"{_short(self.folder)} holds the results of another scene ({difference(kept, self._parameters)}); "
-                "choose another folder, or delete the folder"
+                f"{_short(self.folder)} holds the results of another scene "
+                f"({difference(_given(kept), _given(self._parameters))}); choose another folder, or delete the folder"
             )
 
     def _kept(self) -> dict[str, Any] | None:
@@ -183,6 +183,15 @@ def full_scene(folder: Path) -> Scene:
             "and resume=True"
         )
     return from_kept(kept)
+
+
+def _given(parameters: dict[str, Any]) -> dict[str, Any]:
+    """Return what a user gave: of a trace the force and the scene that it is of."""
+    asked = parameters.get(TRACE)
+    if asked is None:
+        return parameters
+    model = {key: parameters[key] for key in ("model",) if key in parameters}
+    return {"force": f"{asked['force']:g} N"} | asked["parameters"] | model
 
 
 def difference(old: Mapping[str, Any], new: Mapping[str, Any], table: str = "") -> str:

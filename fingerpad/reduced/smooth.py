@@ -31,7 +31,7 @@ from fingerpad.io.result import Cost, Result
 from fingerpad.io.states import WORDS
 from fingerpad.model.touching import by_rule
 from fingerpad.reduced import ridge_cell
-from fingerpad.reduced.answer import Stopwatch, at_rest, at_slip, refuse_others
+from fingerpad.reduced.answer import Stopwatch, TooLight, at_rest, at_slip, refuse_others
 from fingerpad.reduced.stages import Stages, ridges
 from fingerpad.richardson import MeshParameter
 from fingerpad.scene import Scene, SceneError, laws
@@ -300,7 +300,7 @@ class _SmoothFinger:
         width = float(surface.per_ridge(np.asarray(self.law.table.at(y)[2] > 0, dtype=float)).sum())
         self.touching = min(self.touching, width / period)
         if width < period:
-            raise SceneError(
+            raise TooLight(
                 f"f_ext is {self.scene.f_ext:g} N/m, under which the finger of the model 'smooth' touches over "
                 f"{1e3 * width:.2g} mm, less than a ridge of {1e3 * period:.3g} mm, which it spreads evenly over that "
                 "length; use the model 'full'"

@@ -48,10 +48,11 @@ def run(
         out: folder for tables, pictures, fields and ``summary.json``; without it nothing is written.
         model: ``"full"``, every ridge along the whole path (minutes); ``"smooth"``, a smooth finger with the law of
             one ridge (seconds, half a minute the first time); ``"cylinders"``, a closed form (at once).
-        force: external force on the whole finger, in N or as a text such as ``"0.5 N"``, in place of the scene's
-            ``f_ext``. The result's ``finger`` is then summed over traces of the model (:mod:`fingerpad.slices.traces`),
-            three runs of the full one. States in N/m: for the full model, those at the end of its last trace; for
-            other models, those under the force on the centre slice.
+        force: external force on the whole finger, in N, as a text such as ``"0.5 N"`` or as a quantity of pint, in
+            place of the scene's ``f_ext``. The result's ``finger`` is then summed over traces of the model
+            (:mod:`fingerpad.slices.traces`): three runs of the full one, some 25 scenes of the others. States in N/m:
+            for the full model, those at the end of its last trace; for other models, those under the force on the
+            centre slice.
         closure: microscale model in place of the bearing area model, see :mod:`variational.roughness.closure`.
         materials: materials by layer (``{"dermis": NeoHooke(2.5e3)}``), see :mod:`variational.materials.material`.
         friction: friction law, see :mod:`variational.contact.friction`.
@@ -201,14 +202,20 @@ def _whole(
     if out is None or rank != 0:
         return found
     if model != "full":
-        return kept(found, out, Serial())
+        return kept(found, out, Serial(), asked)
     replace_json(out / "summary.json", found.to_dict())
     missing = dataset.save(found)
     return replace(found, notes=(*found.notes, missing)) if missing else found
 
 
-def kept(result: Result, out: Path | None, comm: "MPI.Comm | Serial") -> Result:
+def kept(result: Result, out: Path | None, comm: "MPI.Comm | Serial", asked: Mapping[str, Any] | None = None) -> Result:
     """Return the result of a model without a path, its summary written into a folder if there is one; collective.
+
+    Args:
+        result: of the model.
+        out: folder of results.
+        comm: communicator of the model.
+        asked: the force on the whole finger that the result is of, see :class:`fingerpad.io.place.Place`.
 
     Raises:
         PlaceError: the folder is in use, holds results of another scene or model, or cannot be written to.
@@ -216,7 +223,7 @@ def kept(result: Result, out: Path | None, comm: "MPI.Comm | Serial") -> Result:
     if out is None:
         return result
     result = replace(result, folder=out)
-    with Place(out, result.scene.parameters(), comm, result.model) as place:
+    with Place(out, result.scene.parameters(), comm, result.model, asked) as place:
         place.take()
         if comm.rank == 0:
             replace_json(out / "summary.json", result.to_dict())

@@ -9,14 +9,17 @@ forces. A trace that ends before the force is reached is made again to a larger 
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
+from fingerpad.reduced.answer import TooLight
 from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.messages import show
+from fingerpad.scene.reading import plain
 from fingerpad.slices.finger import WholeFinger, errors, in_order
 from fingerpad.slices.profile import Profile, profile
 from fingerpad.slices.total import BeyondTrace, at_force
@@ -36,7 +39,8 @@ FORCES = 8
 """Points of a trace of the models "smooth" and "cylinders"."""
 LIGHT = 1 / 30
 """Force under which a finger is charged, and slid to full slip, over the largest of its trace."""
-_LARGEST = 5e3  # N/m, of a scene
+_SMALLEST, _LARGEST = 1e-3, 5e3  # N/m, of a scene
+_SHORTEST = 1.01 * _SMALLEST / LIGHT  # N/m, largest force of a trace whose light one a scene can have
 _TRIES = 4  # of a trace, each time to a larger force
 _MORE, _MARGIN = 1.8, 1.1  # factors on the largest force: of the next try, and beyond the expected one
 # A finger of the default's width bears some 0.53 N where its centre bears 75 N/m; forces grow as F^0.77.
@@ -51,20 +55,25 @@ class Traced(NamedTuple):
     result: Result
 
 
-def newtons(force: "float | str") -> float:
-    """Return a force on a whole finger (N), given as a number or as a text with a unit.
+def newtons(force: Any) -> float:
+    """Return a force on a whole finger (N), given as a number, a text with a unit, or a quantity of pint.
 
     Raises:
-        SceneError: it is neither, or out of range.
+        SceneError: it is none of these, or out of range.
     """
-    try:
-        value = to_si(force, "N") if isinstance(force, str) else float(force)
-    except (TypeError, ValueError) as error:
-        given = repr(force) if isinstance(force, str) else type(force).__name__
-        why = str(error) if isinstance(force, str) else "it must be a number in N or a text such as '0.5 N'"
-        raise SceneError(f"force is {given}; {why}") from None
+    given = plain(force, ("force",))
+    if isinstance(given, str):
+        try:
+            value = to_si(given, "N")
+        except ValueError as error:
+            raise SceneError(f"force is {show(given)}; {error}") from None
+    elif isinstance(given, bool) or not isinstance(given, int | float):
+        shown = given if isinstance(given, bool) else type(force).__name__
+        raise SceneError(f"force is {shown}; it must be a number in N or a text such as '0.5 N'")
+    else:
+        value = float(given)
     if value not in NEWTONS:
-        raise SceneError(f"force {NEWTONS.words(value, slip=not isinstance(force, str))}")
+        raise SceneError(f"force {NEWTONS.words(value, slip=not isinstance(given, str))}")
     return value
 
 
@@ -98,6 +107,11 @@ def whole(scene: Scene, force: float, model: str, solve: "Solve") -> Result:
     last = list(found.values())[-1].result
     if model != "full":
         f_ext = list(totals.values())[-1].centre / finger.centre_scale()
+        if f_ext < _SMALLEST:
+            raise SceneError(
+                f"force is {force:.4g} N, under which the centre of the finger bears {f_ext:.2g} N/m, and the model "
+                f"{model!r} must have at least {_SMALLEST:g} N/m; give a larger force or a shorter finger"
+            )
         last = solve(scene.model_copy(update={"f_ext": f_ext}), "")
     return replace(last, finger=WholeFinger(in_order(totals), source, known))
 
@@ -145,7 +159,7 @@ class _Reach:
             SceneError: it could not be made so long.
         """
         for tries in range(_TRIES):
-            top = min(self._top, _LARGEST)
+            top = min(max(self._top, _SHORTEST), _LARGEST)
             made = self._made(name, top)
             try:
                 total = at_force(self._finger, made.trace, self._force, self._scene.slices.count)
@@ -179,7 +193,10 @@ class _Reach:
         found, states = None, []
         for f_ext in np.geomspace(top * LIGHT, top, FORCES):
             scene = self._scene.model_copy(update={"f_ext": float(f_ext), "voltage": voltage})
-            found = self._solve(scene, name)
+            try:
+                found = self._solve(scene, name)
+            except TooLight as error:
+                raise SceneError(f"force is {self._force:.4g} N, and in its trace {error}") from None
             state = found.named.get("charged" if name == "uncharged" else name)
             if state is None:
                 raise SceneError(f"the model {self._model!r} has no {name.replace('_', ' ')} at {f_ext:.4g} N/m")
