@@ -8,8 +8,9 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
+import fingerpad as fp
 from fingerpad.io.place import LEFT, Place, PlaceError
-from fingerpad.scene import from_data
+from fingerpad.scene import Scene, from_data
 from tests.runs import run
 
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8, "touching_half_arc": 1.3e-3}
@@ -101,6 +102,27 @@ def test_refused_on_all_ranks(scene, folder):
     MPI.COMM_WORLD.barrier()
     with pytest.raises(PlaceError, match="results cannot be written to .*results: File exists; choose another folder"):
         run(scene, folder, MPI.COMM_WORLD)
+
+
+@pytest.mark.mpi
+def test_model_without_a_path_is_of_all_ranks(folder, monkeypatch):
+    """One rank writes, whatever a batch system calls it; all have the same result, and all are refused."""
+    monkeypatch.setenv("SLURM_PROCID", "1")
+    for given in ({}, {"force": 0.5}):
+        out = folder / str(len(given))
+        found = fp.run(model="cylinders", out=out, **given)
+        folders = MPI.COMM_WORLD.allgather(found.folder)
+        assert folders == [out.absolute()] * MPI.COMM_WORLD.size
+        assert (out / "summary.json").exists()
+        with pytest.raises(PlaceError, match="another scene"):
+            fp.run(Scene(friction=0.1), model="cylinders", out=out, **given)
+
+
+@pytest.mark.mpi
+def test_model_without_a_path_takes_a_communicator(tmp_path):
+    """Of one rank: each has a folder of its own."""
+    found = fp.run(model="cylinders", out=tmp_path / "own", comm=MPI.COMM_SELF)
+    assert found.folder == tmp_path / "own" and (tmp_path / "own" / "summary.json").exists()
 
 
 def test_a_run_that_fails_at_once_leaves_the_last_one(scene, folder, finished):

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, path, scene_of
-from fingerpad.io import terminal
 from fingerpad.io.folder import check_folder
 from fingerpad.io.place import full_scene
 from fingerpad.report.write import NAME
@@ -54,7 +53,7 @@ def main(argv: Sequence[str]) -> int:
     if args.model == "cylinders":
         if petsc:
             raise SceneError(f"{petsc[0]} is given and --model is cylinders, which solves nothing by PETSc")
-        echo(str(solved(scene, args.model, args.out if terminal.rank() == 0 else None, force=args.force)))
+        echo(str(solved(scene, args.model, args.out, force=args.force)))
         _say_report(args)
         return 0
     from fingerpad.startup import start

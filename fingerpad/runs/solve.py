@@ -1,5 +1,6 @@
 """Run a scene, or many: what ``import fingerpad`` gives for that."""
 
+import itertools
 import os
 import signal
 import tempfile
@@ -14,6 +15,7 @@ from fingerpad.io import dataset, terminal
 from fingerpad.io.files import replace_json
 from fingerpad.io.place import Place, Serial
 from fingerpad.io.result import Result
+from fingerpad.io.states import WORDS
 from fingerpad.model.check import check
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import show
@@ -118,12 +120,14 @@ def solved(
         force: on the whole finger, as of :func:`run`.
         resume: whether the full model goes on from where a run in the folder was cut short.
     """
+    if model not in MODELS:
+        raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     if force is None:
         result = _solved(scene, model, out, comm, lines, bar, resume)
     else:
         result = _whole(scene, force, model, out, comm, lines, bar)
     whole = not (result.interrupted and force is not None)  # a force without all of its traces is no result
-    if report and whole and out is not None and (terminal.rank() if comm is None else comm.rank) == 0:
+    if report and whole and out is not None and _ranks(comm).rank == 0:
         from fingerpad.report.write import attempt, draw_footprint
 
         draw_footprint(result)
@@ -140,6 +144,7 @@ def _solved(
     bar: bool,
     resume: bool = False,
     asked: Mapping[str, Any] | None = None,
+    tables: Path | None = None,
 ) -> Result:
     """Return what a model answers, its results written into a folder; collective; arguments as of :func:`solved`.
 
@@ -152,14 +157,13 @@ def _solved(
         bar: whether to show a bar.
         resume: whether to go on.
         asked: of which the scene is a trace, see :class:`fingerpad.io.place.Place`.
+        tables: folder of the ridge's tables; by default that of :func:`tables_in`.
     """
-    if model not in MODELS:
-        raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     if model == "cylinders":
         from fingerpad.reduced import cylinders
 
         found = cylinders.solve(scene)
-        return kept(found, out, Serial()) if terminal.rank() == 0 else found
+        return found if out is None else kept(found, out, _ranks(comm))
     with needed_by(f"the model {model!r}"):
         import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
         from fingerpad.startup import MPI
@@ -175,7 +179,7 @@ def _solved(
 
         console = Console(comm, lines, bar)
         try:
-            return kept(smooth.solve(scene, tables_in(out), comm, console), out, comm)
+            return kept(smooth.solve(scene, tables or tables_in(out), comm, console), out, comm)
         finally:
             console.close()
 
@@ -186,26 +190,51 @@ def _whole(
     """Return the result of a force on the whole finger, its sums written beside the files of the last trace."""
     from fingerpad.slices import traces
 
-    value, own = traces.newtons(force), out if model == "full" else None
-    rank = terminal.rank() if comm is None else comm.rank
+    value, number = traces.newtons(force), itertools.count(1)
     asked = {"force": value, "parameters": scene.parameters()}
+    if model != "full" and out is not None:
+        with Place(out, scene.parameters(), _ranks(comm), model, asked):
+            pass  # a folder of other results is refused before the work, not after it
+    own, tables = out if model == "full" else None, tables_in(out) if model == "smooth" else None
+    told = lines and model == "smooth" and terminal.rank() == 0
 
     def solve(each: Scene, name: str) -> Result:
-        shown = model == "full"  # the others have many scenes of seconds
+        if told:
+            what = f"trace of {WORDS[name]}" if name else "centre of the finger"
+            print(f"scene {next(number)} of some {traces.scenes(scene)}: {what}, {each.f_ext:.4g} N/m", flush=True)
         folder = traces.folder_of(own, name)
-        return _solved(each, model, folder, comm, lines and shown, bar and shown, asked=asked)
+        return _solved(each, model, folder, comm, lines and model == "full", bar, asked=asked, tables=tables)
 
-    found = traces.whole(scene, value, model, solve)
+    try:
+        found = traces.whole(scene, value, model, solve)
+    except (KeyboardInterrupt, SystemExit):
+        if told:
+            print(f"Stopped. The same command starts the traces again, with the ridge's finished tables in {tables}.")
+        raise
     if found.interrupted:
         return found
     found = replace(found, record={**found.record, "asked": asked})
-    if out is None or rank != 0:
+    if out is None:
         return found
     if model != "full":
-        return kept(found, out, Serial(), asked)
-    replace_json(out / "summary.json", found.to_dict())
-    missing = dataset.save(found)
+        return kept(found, out, _ranks(comm), asked)
+    ranks, missing = _ranks(comm), ""
+    if ranks.rank == 0:
+        replace_json(out / "summary.json", found.to_dict())
+        missing = dataset.save(found)
+    missing = ranks.bcast(missing)
     return replace(found, notes=(*found.notes, missing)) if missing else found
+
+
+def _ranks(comm: "MPI.Comm | None") -> "MPI.Comm | Serial":
+    """Return the communicator of a run: of all ranks by default, and of this process alone where there is no MPI."""
+    if comm is not None:
+        return comm
+    try:
+        from fingerpad.startup import MPI
+    except ImportError:
+        return Serial()
+    return MPI.COMM_WORLD
 
 
 def kept(result: Result, out: Path | None, comm: "MPI.Comm | Serial", asked: Mapping[str, Any] | None = None) -> Result:

@@ -125,6 +125,11 @@ def _wanted(scene: Scene) -> Iterator[str]:
         yield "full_slip"
 
 
+def scenes(scene: Scene) -> int:
+    """Return how many scenes a model without a path solves for a force, where no trace is made again."""
+    return FORCES * len(list(_wanted(scene))) + 1
+
+
 def _refuse(scene: Scene) -> None:
     if scene.history is not None:
         raise SceneError(
