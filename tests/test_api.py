@@ -124,14 +124,6 @@ def test_picture_of_another_kind_is_refused(ran):
         ran[0].plot("movie")
 
 
-def test_pictures_of_a_result_that_was_read(ran):
-    """The history is in the tables; the skin is not, and the refusal says where its picture is."""
-    read = fp.Result.load(ran[1])
-    assert read.plot("history").axes
-    with pytest.raises(ValueError, match="surface.png beside them shows it"):
-        read.plot("surface")
-
-
 @pytest.mark.parametrize("keys", [(0, 1), (1, 0)], ids=["width first", "profile first"])
 def test_sweep_over_a_value_and_an_entry_of_a_list_of_its_table(tmp_path, keys):
     axes = [("geometry.width", [15e-3]), ("geometry.ridge_profile[0]", [0.9])]

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
 _PATH, _FINAL = "path on the starting mesh", "final mesh"
 
 
+Skin = Profile | Mapping[str, NDArray[np.float64]]
+"""The skin of a state, or the arrays of its :class:`SurfaceProfile` by name, as a file has them."""
+
+
 class End(NamedTuple):
     """The finger at the end of a load."""
 
@@ -37,7 +41,7 @@ class Drawing:
     mu_0: float | None
     """Friction coefficient; None where the law of friction is not Coulomb's."""
     states: Sequence[ContactState]
-    profiles: Mapping[int, Profile]
+    profiles: Mapping[int, Skin]
     """The skin by step."""
     ends: Mapping[str, End]
     """By load."""
@@ -57,7 +61,7 @@ class Drawing:
         """
         for load, end in self.ends.items() if each_load else ():
             words = load.replace(" ", "_")
-            _keep(folder / f"finger_{words}.npz", end.snapshot, end.sites)
+            _keep(folder / f"finger_{words}.npz", end.state, end.snapshot, end.sites)
             self._end(folder / f"finger_{words}.png", load)
             if end.state.step in self.profiles and end.state.ridges_in_contact > 0:
                 along = _along(self.profiles[end.state.step], f"After {load}", end.state, self._path_note())
@@ -65,7 +69,7 @@ class Drawing:
         for name, view in self.finer.items():
             if view.snapshot is not None:
                 words = WORDS[name].replace(" ", "_")
-                _keep(folder / f"finger_{words}.npz", view.snapshot, view.merkel)
+                _keep(folder / f"finger_{words}.npz", view.state, view.snapshot, view.merkel)
                 self._final(folder / f"finger_{words}.png", name)
         if shown := self._shown():
             self._surface(folder / "surface", self._named_skin(), [state for _, state, _ in shown.values()])
@@ -141,7 +145,7 @@ class Drawing:
         if final is not None and self.finer[final].snapshot is not None:
             return self._final(path, final)
         if not self.ends:
-            raise ValueError("the result has no finger to draw: no load was reached, or it was read from files")
+            raise ValueError("the result has no finger to draw: no load was reached, or its folder has no finger_*.npz")
         return self._end(path, list(self.ends)[-1])
 
     def _end(self, path: Path | None, load: str) -> Figure:
@@ -201,15 +205,15 @@ class Drawing:
             if view is not None and view.profile is not None:
                 profiles[name] = _along(view.profile, title, state, _note(_FINAL, view.mesh.contact))
             elif state.step not in self.profiles:
-                raise ValueError("the result was read from files, which hold no skin; surface.png beside them shows it")
+                raise ValueError("the result has no skin to draw: its folder has no surface.npz that can be read")
             else:
                 profiles[name] = _along(self.profiles[state.step], title, state, self._path_note())
         return profiles
 
 
-def _keep(path: Path, snapshot: "Snapshot", sites: NDArray[np.float64] | None) -> None:
+def _keep(path: Path, state: ContactState, snapshot: "Snapshot", sites: NDArray[np.float64] | None) -> None:
     shown: dict[str, Any] = {} if sites is None else {"merkel": sites}
-    np.savez_compressed(path, **shown, **vars(snapshot))
+    np.savez_compressed(path, bone_x=np.array(state.bone_x), **shown, **vars(snapshot))
 
 
 def _title(name: str, state: ContactState) -> str:
@@ -230,17 +234,29 @@ def _numbers(profile: Profile, state: ContactState) -> NDArray[np.int64]:
     return np.arange(count) - count // 2 if state.ridges is None else state.ridges.number
 
 
-def _places(profile: Profile | None, state: ContactState) -> dict[int, float]:
+def _places(profile: Skin | None, state: ContactState) -> dict[int, float]:
     """Return the current abscissa (m) of the lowest point of each ridge that can touch, by its number."""
     if profile is None:
         return {}
-    skin = profile.skin(_numbers(profile, state))
-    lowest = {int(k): np.where((skin.ridge == k)[:, None], skin.y, np.inf).argmin() for k in np.unique(skin.ridge)}
-    return {k: float(skin.x.flat[point]) for k, point in lowest.items()}
+    along = _arrays(profile, state)
+    lowest = {int(k): np.where(along["ridge"] == k, along["y"], np.inf).argmin() for k in _known(along["ridge"])}
+    return {k: float(along["x"][point]) for k, point in lowest.items()}
 
 
-def _along(profile: Profile, title: str, state: ContactState, note: str) -> SurfaceProfile:
+def _known(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.unique(values[np.isfinite(values)])
+
+
+def _along(profile: Skin, title: str, state: ContactState, note: str) -> SurfaceProfile:
     """Return the skin sorted along each ridge, a NaN between ridges."""
+    given = {k: getattr(state, k) for k in ("f_ext", "voltage", "bone_x", "contact_length")}
+    return SurfaceProfile(title=title, note=note, **_arrays(profile, state), **given)
+
+
+def _arrays(profile: Skin, state: ContactState) -> dict[str, Any]:
+    """Return the arrays of a :class:`SurfaceProfile` by name."""
+    if not isinstance(profile, Profile):
+        return dict(profile)
     skin = profile.skin(_numbers(profile, state))
     gap = np.broadcast_to(profile.d_eq[profile.ridge][:, None], skin.x.shape)
     number = np.broadcast_to(skin.ridge[:, None].astype(float), skin.x.shape)
@@ -251,6 +267,4 @@ def _along(profile: Profile, title: str, state: ContactState, note: str) -> Surf
         for column, part in zip(columns, (skin.x, skin.y, skin.p_n, skin.t_t, skin.p_el, gap, number), strict=True):
             column += [part[mine].ravel()[order], [np.nan]]
     along = (np.concatenate(column) for column in columns)
-    given = {name: getattr(state, name) for name in ("f_ext", "voltage", "bone_x", "contact_length")}
-    arrays: dict[str, Any] = dict(zip(("x", "y", "p", "t", "p_el", "d_eq", "ridge"), along, strict=True))
-    return SurfaceProfile(title=title, note=note, **arrays, **given)
+    return dict(zip(("x", "y", "p", "t", "p_el", "d_eq", "ridge"), along, strict=True))

@@ -212,7 +212,7 @@ class Result:
             SceneError: the folder holds no result that can be read.
         """
         from fingerpad.io import dataset  # it takes a Result
-        from fingerpad.io.drawing import Drawing  # Matplotlib, which reading numbers does not need
+        from fingerpad.io.kept_drawing import KeptDrawing  # Matplotlib, which reading numbers does not need
 
         folder, name = Path(folder), clip(str(folder), 80)
         try:
@@ -228,7 +228,10 @@ class Result:
             with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
                 steps = tuple(ContactState.from_row(row) for row in csv.DictReader(file))
             mu_0 = None if "laws" in found.record.get("parameters", {}) else coefficient(found.scene)
-            drawing = Drawing(mu_0, steps, {}, {}, {}, None, found.named)
+            asked = found.scene.accuracy is not None
+            meshes = (summary.get("path_mesh"), summary.get("accuracy", {}).get("mesh")) if asked else (None, None)
+            path, final = (mesh["contact"] if mesh else None for mesh in meshes)
+            drawing = KeptDrawing(mu_0, steps, {}, {}, {}, path, found.named, folder, final)
             return replace(found, steps=steps, loads=tuple(_loads(steps, found.scene, summary)), drawing=drawing)
         except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:  # JSON of other things
             if isinstance(error, SceneError):

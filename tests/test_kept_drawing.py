@@ -1,0 +1,40 @@
+"""Pictures of a result that was read from its folder: as the run itself draws them."""
+
+import re
+import shutil
+
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+import fingerpad as fp
+from tests.runs import no_pictures
+from tests.small_finger import small
+
+KINDS = ("history", "surface", "finger")
+
+
+@pytest.fixture(scope="module", params=[{}, {"accuracy": {"mu_app": 0.2}}], ids=["plain", "refined"])
+def ran(request, tmp_path_factory) -> fp.Result:
+    """A run on one mesh, and one whose named states are on a finer mesh than its path."""
+    with no_pictures():
+        return fp.run(small(**request.param), out=tmp_path_factory.mktemp("run") / "out")
+
+
+def pixels(figure) -> bytes:
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return bytes(canvas.buffer_rgba())
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_picture_is_that_of_the_run(ran, kind):
+    assert pixels(fp.Result.load(ran.folder).plot(kind)) == pixels(ran.plot(kind))
+
+
+@pytest.mark.parametrize(("kind", "missing"), [("surface", "surface.npz"), ("finger", "finger_*.npz")])
+def test_picture_whose_arrays_are_gone_is_refused(ran, tmp_path, kind, missing):
+    bare = shutil.copytree(ran.folder, tmp_path / "bare", ignore=shutil.ignore_patterns("*.npz", "*.bp"))
+    read = fp.Result.load(bare)
+    assert read.plot("history").axes
+    with pytest.raises(ValueError, match=re.escape(f"its folder has no {missing}")):
+        read.plot(kind)
