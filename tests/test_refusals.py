@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import fingerpad as fp
 from fingerpad.model.check import check
 from fingerpad.scene import SceneError
 from fingerpad.scene import scene as scenes
@@ -266,3 +267,25 @@ def test_value_nobody_can_mean(key, value, meant):
         "?", r"\?"
     )
     assert re.match(pattern, refusal(None, **{key.replace(".", "__"): value}))
+
+
+# -- arguments in Python -----------------------------------------------------------------------------------------
+@pytest.mark.parametrize("call", [fp.run, lambda scene: fp.sweep(scene, model="cylinders", voltage=[0.0])])
+@pytest.mark.parametrize("scene", [{}, 0, {"f_ext": 5.0}, "scene.toml"])
+def test_what_is_no_scene_is_refused(call, scene):
+    """Nothing that is false is the default scene."""
+    with pytest.raises(SceneError, match=r"^scene is .*; it must be a Scene, and a file is read by Scene\.load"):
+        call(scene)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: fp.run(out=5), "out is 5; it must be the path of a folder"),
+        (lambda: fp.sweep(out=None, voltage=[0.0]), "out is empty; it must be the path of a folder"),
+        (lambda: fp.sweep(jobs="2", voltage=[0.0]), "jobs is '2'; it must be a whole number, at least 1"),
+    ],
+)
+def test_wrong_arguments_are_refused(call, words):
+    with pytest.raises(SceneError, match=words):
+        call()

@@ -145,7 +145,8 @@ class Place:
         for name in ("scene.json", "summary.json"):
             with contextlib.suppress(FileNotFoundError, json.JSONDecodeError, UnicodeDecodeError):
                 found = json.loads((self.folder / name).read_text(encoding="utf-8"))
-                return dict(found if name == "scene.json" else found.get("parameters", {}))
+                if isinstance(found, dict):
+                    return dict(found if name == "scene.json" else found.get("parameters", {}))
         if (self.folder / "steps.csv").exists():
             raise PlaceError(f"{_short(self.folder)} holds results of an unknown scene; choose another folder")
         return None

@@ -70,11 +70,11 @@ def run(
         KeyboardInterrupt: Ctrl-C, after the present step; its attribute ``result`` has the steps accepted before.
         SystemExit: SIGTERM or SIGHUP, likewise.
     """
-    scene = scene or Scene()
+    scene = checked(scene)
+    if out is not None and not isinstance(out, str | Path):
+        raise SceneError(f"out is {show(out)}; it must be the path of a folder")
     if closure is not None or materials or friction is not None or mesh is not None:
         scene = scene.with_laws(closure=closure, materials=materials, friction=friction, mesh=mesh)
-    if not isinstance(scene, Scene):
-        raise SceneError(f"scene is {show(scene)}; it must be a Scene, and a file is read by Scene.load(path)")
     if resume and (out is None or model != "full" or force is not None):
         raise SceneError(
             f"resume is true, out is {show(out)}, model {show(model)} and force {show(force)}; "
@@ -86,6 +86,19 @@ def run(
     if result.failure and terminal.rank() == 0:
         warnings.warn(result.failure, stacklevel=2)
     return result
+
+
+def checked(scene: Scene | None) -> Scene:
+    """Return a scene, by default press, charge and slide of the default finger.
+
+    Raises:
+        SceneError: it is something else.
+    """
+    if scene is None:
+        return Scene()
+    if not isinstance(scene, Scene):
+        raise SceneError(f"scene is {show(scene)}; it must be a Scene, and a file is read by Scene.load(path)")
+    return scene
 
 
 def _ended(result: Result) -> BaseException:

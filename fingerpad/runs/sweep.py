@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from dataclasses import replace as replace_fields
+from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +23,7 @@ from fingerpad.io.states import PREFIXES, STATES
 from fingerpad.model.check import check
 from fingerpad.report.write import attempt
 from fingerpad.runs import sweep_dataset
-from fingerpad.runs.solve import MODELS, solved
+from fingerpad.runs.solve import MODELS, checked, solved
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import clip, show
 from fingerpad.scene.reading import plain, put
@@ -190,11 +191,13 @@ def sweep(
         KeyboardInterrupt: Ctrl-C, after the present step of each running point; the same sweep goes on from there.
         SystemExit: SIGTERM or SIGHUP, likewise.
     """
-    scene = Scene() if scene is None else scene
+    scene = checked(scene)
     if terminal.ranks() > 1:
         raise SceneError("a sweep runs its points in processes of its own; start it without mpirun, and use jobs")
-    if jobs < 1:
-        raise SceneError(f"jobs is {show(jobs)}; it must be at least 1")
+    if not isinstance(jobs, Integral) or jobs < 1:
+        raise SceneError(f"jobs is {show(jobs)}; it must be a whole number, at least 1")
+    if not isinstance(out, str | Path):
+        raise SceneError(f"out is {show(out)}; it must be the path of a folder")
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     scenes = _scenes(scene, axes)
