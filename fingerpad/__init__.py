@@ -11,8 +11,6 @@ Importing this package imports nothing heavy; what needs finite elements is impo
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.installed import needed_by, version
-
 if TYPE_CHECKING:
     import geometry as geometry
     from fingerpad.io.result import Result as Result
@@ -69,6 +67,8 @@ __all__ = [*_HOMES, "geometry"]
 
 def __getattr__(name: str) -> Any:
     """Import what is asked for."""
+    from fingerpad.installed import needed_by, version
+
     if name == "__version__":
         return version()
     if name == "geometry":

@@ -138,7 +138,7 @@ def test_wheel_holds_licence_and_command(wheel, project):
     for name in ("LICENSE", "COPYING"):
         assert wheel.read(f"{info}/licenses/{name}") == (ROOT / name).read_bytes()
     assert f"License-Expression: {project['project']['license']}\n" in wheel.read(f"{info}/METADATA").decode()
-    assert "fingerpad = fingerpad.cli:main" in wheel.read(f"{info}/entry_points.txt").decode()
+    assert "fingerpad = fingerpad.__main__:main" in wheel.read(f"{info}/entry_points.txt").decode()
 
 
 def test_wheel_runs(wheel, tmp_path):

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, length, path, positive, scene_of
+from fingerpad.ctrl_c import raises
 from fingerpad.io.folder import check_folder
 from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
@@ -47,6 +48,7 @@ def main(argv: Sequence[str]) -> int:
     from fingerpad import startup
 
     startup.start(petsc)
+    import fingerpad.runs.full  # noqa: F401  # before Ctrl-C raises
     from fingerpad.runs import compare
 
     def answer(model: str) -> Result:
@@ -61,7 +63,8 @@ def main(argv: Sequence[str]) -> int:
         except SceneError as error:
             return Result(scene, model, None, None, None, failure=str(error))
 
-    results = [answer_or_refusal(model) for model in MODELS if model in args.model]
+    with raises():
+        results = [answer_or_refusal(model) for model in MODELS if model in args.model]
     echo(compare.table(results))
     return max(1 if result.failure else 0 for result in results)
 

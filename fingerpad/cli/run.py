@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, path, scene_of
+from fingerpad.ctrl_c import raises
 from fingerpad.io.folder import check_folder
 from fingerpad.io.place import full_scene
 from fingerpad.report.write import NAME
@@ -62,15 +63,16 @@ def main(argv: Sequence[str]) -> int:
     # PETSc has its options from here on.
     from fingerpad.runs.full import exit_code
 
-    result = solved(
-        scene,
-        args.model,
-        args.out,
-        lines=not args.quiet,
-        bar=not args.quiet,
-        force=args.force,
-        resume=args.resume is not None,
-    )
+    with raises():
+        result = solved(
+            scene,
+            args.model,
+            args.out,
+            lines=not args.quiet,
+            bar=not args.quiet,
+            force=args.force,
+            resume=args.resume is not None,
+        )
     if args.quiet or args.model != "full":
         echo(str(result))
     elif args.force is not None:

@@ -8,7 +8,9 @@ from typing import Any
 
 from fingerpad.cli import ranges
 from fingerpad.cli.arguments import Parser, echo, positive
+from fingerpad.ctrl_c import raises
 from fingerpad.io.folder import check_folder
+from fingerpad.runs import batch  # noqa: F401  # before Ctrl-C raises
 from fingerpad.runs.solve import MODELS
 from fingerpad.runs.sweep import FILES, sweep
 from fingerpad.scene import from_data, override
@@ -40,7 +42,8 @@ def main(argv: Sequence[str]) -> int:
     base, axes = study(args.scene, args.set, args.over)
     scene = from_data(base)
     try:
-        found = sweep(scene, args.out, jobs=args.jobs, model=args.model, quiet=args.quiet, **axes)
+        with raises():
+            found = sweep(scene, args.out, jobs=args.jobs, model=args.model, quiet=args.quiet, **axes)
     except (KeyboardInterrupt, SystemExit):  # of signals
         print(f"fingerpad: stopped; points are kept in {args.out}, and the same command goes on", file=sys.stderr)
         raise
