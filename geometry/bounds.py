@@ -62,7 +62,8 @@ class Range:
         typed = isinstance(value, str) and self.unit != ""
         number = float(handler(self._read(value) if typed else value))
         if number not in self:
-            raise PydanticCustomError(OUT_OF_RANGE, self.words(number, slip=not typed))  # type: ignore[arg-type]
+            given = {"words": self.words(number, slip=not typed), "range": self, "number": number, "slip": not typed}
+            raise PydanticCustomError(OUT_OF_RANGE, "{words}", given)
         return number
 
     def _read(self, text: str) -> float:
@@ -71,24 +72,31 @@ class Range:
         except ValueError as error:
             raise PydanticCustomError(NO_QUANTITY, str(error)) from None  # type: ignore[arg-type]
 
-    def words(self, value: float, slip: bool = True) -> str:
-        """Return why a value is refused, to follow the key; with the question whether another unit was meant."""
+    def words(self, value: float, slip: bool = True, usual: float | None = None) -> str:
+        """Return why a value is refused, to follow the key; with the question whether another unit was meant.
+
+        Args:
+            value: in SI.
+            slip: whether to ask that.
+            usual: value near which the one meant is looked for, such as the default; without it, or at zero, it is the
+                middle of the range.
+        """
         unit = f" {self.unit}" if self.unit else ""
         allowed = f"from {self.low:g} to {self.high:g}{unit}"
         if self.sides == 2:
             allowed += ", with either sign"
         if self.zero:
             allowed = f"0 or {allowed}"
-        return f"is {value:.12g}{unit}; it must be {allowed}{self._slip(value) if slip else ''}"
+        return f"is {value:.12g}{unit}; it must be {allowed}{self._slip(value, usual) if slip else ''}"
 
-    def _slip(self, value: float) -> str:
+    def _slip(self, value: float, usual: float | None) -> str:
         """Return the question whether another unit was meant, empty where none leads to an allowed value."""
         name, factors = _SLIPS.get(self.unit, ("", ()))
         meant = [value * factor for factor in factors if value and value * factor in self]
         if not meant:
             return ""
-        middle = math.sqrt(self.low * self.high)
-        return f" ({name}; did you mean {min(meant, key=lambda v: abs(math.log(abs(v) / middle))):.6g}?)"
+        near = abs(usual or math.sqrt(self.low * self.high))
+        return f" ({name}; did you mean {min(meant, key=lambda v: abs(math.log(abs(v) / near))):.6g}?)"
 
 
 def within(low: float, high: float, unit: str = "", zero: bool = False, sides: int = 1) -> WrapValidator:

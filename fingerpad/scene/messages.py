@@ -85,7 +85,7 @@ def first_error(error: ValidationError, root: type[BaseModel]) -> str:
     loc = tuple(part for part in first["loc"] if part not in (NUMBER, WAVE))
     key = key_of(loc)
     if kind == OUT_OF_RANGE:
-        return f"{key} {first['msg']}"
+        return f"{key} {context['range'].words(context['number'], context['slip'], _default(root, loc))}"
     if kind == "extra_forbidden":
         return f"{key} is not a key of {key_of(loc[:-1]) or 'a scene'}; {_instead(root, loc)}"
     if kind == "missing":
@@ -107,6 +107,14 @@ def first_error(error: ValidationError, root: type[BaseModel]) -> str:
     if kind in _TYPES:
         return f"{key or 'a scene'} is {given}; it must be {_TYPES[kind]}"
     return f"{key or 'a scene'} is {given}; {first['msg']}"
+
+
+def _default(root: type[BaseModel], loc: Iterable[int | str]) -> float | None:
+    """Return the number that a key has by default, None where it has none."""
+    value: Any = root.model_construct()
+    for part in loc:
+        value = getattr(value, part, None) if isinstance(part, str) else None
+    return value if isinstance(value, int | float) else None
 
 
 def _model_at(model: type[BaseModel], loc: Iterable[int | str]) -> type[BaseModel] | None:
