@@ -253,6 +253,8 @@ def test_sweep_is_taken_up_again(tmp_path, monkeypatch):
     [
         ({}, "the sweep has no axis"),
         ({"voltage": []}, "voltage of the sweep is"),
+        ({"voltage": 100}, r"voltage of the sweep is 100; it must be a list, such as \[100\]"),
+        ({"contact.length": "gap"}, r"contact.length of the sweep is 'gap'; it must be a list, such as \['gap'\]"),
         ({"geometry.ridge_profile": [[1.0], [1.0, -0.1]]}, "it must be a list of at least one value, none a list"),
         ({"voltage": [1e6]}, "voltage is 1000000"),
         ({"volt": [1.0]}, "did you mean voltage"),

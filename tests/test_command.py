@@ -3,6 +3,7 @@
 import argparse
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -70,6 +71,13 @@ def test_options_of_petsc_are_told_from_the_others(words, own, petsc):
     [
         (["--set", "voltage=high"], "voltage is 'high'; it must be a number"),
         (["--set", "f_ext=nan"], "f_ext is nan; it must be a finite number"),
+        (
+            ["--set", "f_ext=0.5 N"],
+            "f_ext is '0.5 N'; it must be in N/m, and newtons of a whole finger are given by run",
+        ),
+        (["--force", "0.5"], "command line: argument --force: 0.5 has no unit; give one, as in '0.5 N'"),
+        (["--force", "-0.5N"], "--force -0.5N is read as two options; write --force=-0.5N"),
+        (["--force", "0.5 N", "--set", "f_ext = 50"], "--set f_ext is given and --force too; give one of the two"),
         (["--set", "f_ext=-3"], "f_ext is -3 N/m; it must be from 0.001 to 5000 N/m"),
         (["--set", "mesh.contact=2e-4"], "mesh.contact is 0.0002 m, too large for a ridge of 0.000483 m"),
         (["--set", "voltage"], "voltage is no change of a scene; it must be key=value"),
@@ -95,6 +103,27 @@ def test_options_of_petsc_are_told_from_the_others(words, own, petsc):
 )
 def test_bad_command_line(argv, message, capsys):
     assert refused(capsys, "run", *argv).startswith(message)
+
+
+@pytest.mark.parametrize(
+    ("argv", "message"),
+    [
+        (["estimate", "--f-ext", "75", "--set", "f_ext=50"], "--set f_ext is given and --f-ext too; give one of"),
+        (["estimate", "--voltage", "200", "--set", "voltage=-5 kV"], "--set voltage is given and --voltage too; give"),
+        (["microscale", "--voltage", "200", "--set", "voltage=100"], "--set voltage is given and --voltage too; give"),
+        (["estimate", "--voltage", "-200:200:3"], "--voltage -200:200:3 is read as two options; write --voltage=-200:"),
+        (["microscale", "--p", "-1,5"], "--p -1,5 is read as two options; write --p=-1,5"),
+    ],
+)
+def test_options_that_are_not_what_was_meant(capsys, argv, message):
+    assert refused(capsys, *argv).startswith(message)
+
+
+def test_negative_voltages(capsys):
+    """A range of them after an equals sign, and a number also without."""
+    for words in (["--voltage=-200:200:3"], ["--voltage", "-200"]):
+        assert main(["estimate", *words]) == 0
+        assert re.search(r"^ +75 +-200 ", capsys.readouterr().out, re.MULTILINE)
 
 
 def test_folder_that_is_read_only(tmp_path, monkeypatch, capsys):

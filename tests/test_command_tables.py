@@ -9,6 +9,7 @@ import pytest
 
 from fingerpad.cli import estimate, main, microscale, sweep
 from fingerpad.io import style
+from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
 from fingerpad.runs.sweep import sweep as run_sweep
 from fingerpad.scene import Scene, SceneError, from_data, keys, load
@@ -119,6 +120,18 @@ def test_file_that_cannot_be_written_is_named(capsys, tmp_path, monkeypatch):
     assert main(["estimate", "--csv", str(tmp_path / "mu.csv")]) == 2
     said = capsys.readouterr()
     assert "mu_app" in said.out and "mu.csv cannot be used: No space left on device" in said.err
+
+
+def test_file_in_a_folder_that_takes_none_is_named(capsys, monkeypatch):
+    """As it was given, where the file that is written first cannot be deleted either: on a read-only disk."""
+
+    def read_only(file, *data, **options):
+        raise OSError(errno.EROFS, "Read-only file system", str(file))
+
+    monkeypatch.setattr(Path, "write_bytes", read_only)
+    monkeypatch.setattr(Path, "unlink", read_only)
+    assert main(["estimate", "--csv", "/dev/stdout"]) == 2
+    assert capsys.readouterr().err == "fingerpad: /dev/stdout cannot be used: Read-only file system\n"
 
 
 # -- microscale --------------------------------------------------------------------------------------------
@@ -305,8 +318,16 @@ def test_compare_prints_keys_and_notes(capsys):
     ("argv", "message"),
     [
         (["--ridges", "3"], "one of --contact-length and --ridges is given without the other"),
+        (["--run", "none", "--model", "cylinders"], "none is not a folder of a finished run"),
         (["--model", "smooth", "--ridges", "3"], "--ridges is given without the model cylinders"),
     ],
 )
 def test_compare_refuses(argv, message, capsys):
     assert refused(capsys, "compare", *argv).startswith(message)
+
+
+@pytest.mark.parametrize("name", ["", "none", "file"])
+def test_folder_of_no_run(name, tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(SceneError, match=rf"^{tmp_path / name} is not a folder of a finished run$"):
+        Result.load(tmp_path / name)

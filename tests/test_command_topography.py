@@ -8,7 +8,7 @@ import pytest
 from fingerpad.cli import main
 from fingerpad.scene import from_data, load
 from fingerpad.scene.messages import SceneError
-from tests.commands import refused
+from tests.commands import ROOT, refused
 from variational.roughness.selfaffine import SelfAffine
 
 
@@ -86,7 +86,8 @@ def test_scene_may_name_a_height_map(tmp_path, capsys):
     ("table", "message"),
     [
         ({"file": "none.csv", "unit": "um"}, "roughness.topography.file is 'none.csv': No such file"),
-        ({"file": "none.csv"}, "roughness.topography.unit is missing"),
+        ({"file": "none.csv"}, "roughness.topography.file is 'none.csv': No such file"),
+        ({"file": str(ROOT / "data/measured/ayyildiz2018.csv")}, "roughness.topography.unit is missing"),
         ({"file": "none.csv", "unit": "inch"}, "roughness.topography.unit is 'inch'; it must be 'm'"),
         ({"fil": "none.csv"}, "roughness.topography.file is missing"),
         ("skin.csv", "roughness.topography is 'skin.csv'; it must be a table of keys"),

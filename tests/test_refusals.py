@@ -84,6 +84,7 @@ def refusal(path: Path | None = None, **overrides) -> str:
             "numerics.element is 'P4'; it must be 'P1', 'P2', 'P2 reduced', 'P2-P1' or 'P3'",
         ),
         ("numerics.coupling_cap", 1.5, "numerics.coupling_cap is 1.5; it must be a whole number"),
+        ("geometry.ridge_count", 5.0, "geometry.ridge_count is 5.0; it must be a whole number"),
         ("numerics.quadrature_points", 9, "numerics.quadrature_points is 9; it must be at most 8"),
         (
             "numerics.quadrature_points", 2,
@@ -177,7 +178,15 @@ def test_files_that_cannot_be_read(write, tmp_path, monkeypatch):
     path = write("f_ext = ").relative_to(tmp_path)
     assert refusal(path) == f"scene file {path} is not TOML: Invalid value (at end of document)"
     path.write_bytes(b"\xff\xfe")
-    assert refusal(path).startswith(f"scene file {path} is not TOML: ")
+    assert refusal(path) == f"scene file {path} is not text in UTF-8; save it in UTF-8"
+
+
+@pytest.mark.parametrize(("value", "column"), [("50,0", 11), ("50 N/m", 12)])
+def test_values_of_other_languages(write, value, column):
+    """The parser's place stays in the sentence."""
+    assert refusal(write(f"f_ext = {value}")).endswith(
+        f"after a statement (at line 1, column {column}); decimals have points, and a value with a unit has quotes"
+    )
 
 
 def test_byte_order_mark(write):

@@ -86,9 +86,12 @@ class Parser(argparse.ArgumentParser):
         words, passed = separate(argv) if petsc else (list(argv), [])
         options = list(self._option_string_actions)
         # -voltage and -help are no options, but argparse would take the latter for -h and more.
-        for word in words:
+        for word, after in zip(words, [*words, ""][1:], strict=True):
             if re.match(r"-[A-Za-z]", word) and word not in options:
                 self._refuse(word, petsc)
+            takes = word in options and self._option_string_actions[word].nargs != 0
+            if takes and re.match(r"-[\d.]", after) and not self._negative_number_matcher.match(after):
+                raise SceneError(f"{word} {clip(after)} is read as two options; write {word}={clip(after)}")
         args, rest = self.parse_known_args(words)
         if rest:
             self._refuse(rest[0], petsc)
@@ -113,6 +116,17 @@ def scene_of(args: argparse.Namespace, meshed: bool = True) -> Scene:
     if meshed:
         check(scene)
     return scene
+
+
+def refuse_twice(args: argparse.Namespace, key: str, option: str) -> None:
+    """Refuse a key of the scene that ``--set`` gives beside an option of its own.
+
+    Raises:
+        SceneError: both are given.
+    """
+    given = getattr(args, option.lstrip("-").replace("-", "_")) is not None
+    if given and any(override(text)[0] == key for text in args.set):
+        raise SceneError(f"--set {key} is given and {option} too; give one of the two")
 
 
 def separate(argv: Sequence[str]) -> tuple[list[str], list[str]]:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.cli import ranges, tables
-from fingerpad.cli.arguments import Parser, echo, scene_of
+from fingerpad.cli.arguments import Parser, echo, refuse_twice, scene_of
 from fingerpad.io.quantities import PER_LENGTH
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.answer import refuse_others
@@ -45,6 +45,8 @@ def main(argv: Sequence[str]) -> int:
     tables.add_files(parser, "picture: one curve a force")
     args = parser.read(argv)
     tables.check_files(args)
+    refuse_twice(args, "f_ext", "--f-ext")
+    refuse_twice(args, "voltage", "--voltage")
     scene = scene_of(args, meshed=False)
     refuse_others(scene, "cylinders")
     forces, voltages = (_axis(scene, key, getattr(args, key)) for key in ("f_ext", "voltage"))

@@ -200,7 +200,9 @@ def _factor(where: str, name: str, unit: str, wanted: str) -> float:
     try:
         return to_si(f"1 {unit}", wanted)
     except ValueError as error:
-        raise SceneError(f"{where}: the unit of {name} is {clip(repr(unit))}; {error}") from None
+        why = str(error).partition(";")[0]
+        allowed = "N/m, or in N for a whole finger" if wanted == "N/m" else wanted
+        raise SceneError(f"{where}: the unit of {name} is {clip(repr(unit))}; {why}; it must be in {allowed}") from None
 
 
 def _numbers(name: str, line: int, cells: Sequence[str], columns: Sequence[_Column]) -> list[float]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from fingerpad.cli import ranges, tables
-from fingerpad.cli.arguments import Parser, echo, scene_of
+from fingerpad.cli.arguments import Parser, echo, refuse_twice, scene_of
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError
 from geometry.units import to_si
@@ -41,6 +41,7 @@ def main(argv: Sequence[str]) -> int:
     tables.add_files(parser, "picture")
     args = parser.read(argv)
     tables.check_files(args)
+    refuse_twice(args, "voltage", "--voltage")
     scene = scene_of(args, meshed=False)
     if args.voltage is None and scene.history is not None:
         raise SceneError("history is given, whose loads have their own voltages; name those wanted by --voltage")

@@ -1,17 +1,17 @@
 """``fingerpad run``: press, charge and slide a finger, from a scene to tables, pictures and fields."""
 
-from argparse import Namespace
+from argparse import ArgumentTypeError, Namespace
 from collections.abc import Sequence
 from pathlib import Path
 
-from fingerpad.cli.arguments import Parser, echo, path, scene_of
+from fingerpad.cli.arguments import Parser, echo, path, refuse_twice, scene_of
 from fingerpad.ctrl_c import raises
 from fingerpad.io.folder import check_folder
 from fingerpad.io.place import full_scene
 from fingerpad.report.write import NAME
 from fingerpad.runs.solve import MODELS, solved
 from fingerpad.scene import Scene
-from fingerpad.scene.messages import SceneError
+from fingerpad.scene.messages import SceneError, clip
 
 _OUT = Path("results")
 
@@ -41,6 +41,7 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--resume", type=path, metavar="DIR", help="go on with a run that was cut short in this folder")
     parser.add_argument(
         "--force",
+        type=_force,
         metavar="FORCE",
         help="force on the whole finger, as '0.5 N', in place of f_ext: sums slices over traces of the model",
     )
@@ -49,6 +50,7 @@ def main(argv: Sequence[str]) -> int:
     if args.resume is not None:
         scene, args.out = _cut_short(args), args.resume
     else:
+        refuse_twice(args, "f_ext", "--force")
         scene = scene_of(args, meshed=args.model != "cylinders")
     check_folder(args.out)
     if args.model == "cylinders":
@@ -79,6 +81,15 @@ def main(argv: Sequence[str]) -> int:
         echo(f"\n{result.finger or result.failure}")
     _say_report(args)
     return exit_code(result)
+
+
+def _force(text: str) -> str:
+    """Return a force that the run reads, and refuse a number alone, which could be N or N/m."""
+    try:
+        float(text)
+    except ValueError:
+        return text
+    raise ArgumentTypeError(f"{clip(text)} has no unit; give one, as in '{clip(text)} N'")
 
 
 def _say_report(args: Namespace) -> None:

@@ -1,5 +1,6 @@
 """Files that are there as a whole or not at all, and tables of whole rows."""
 
+import contextlib
 import csv
 import io
 import json
@@ -21,7 +22,8 @@ def replace(file: Path, text: str | bytes) -> None:
         part.write_bytes(text.encode("utf-8") if isinstance(text, str) else text)
         part.replace(file)
     except OSError as error:
-        part.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):  # where the folder takes no file
+            part.unlink()
         raise OSError(error.errno, error.strerror, str(file)) from error  # the system names no file of a full disk
 
 

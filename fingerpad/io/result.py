@@ -236,6 +236,8 @@ class Result:
         except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:  # JSON of other things
             if isinstance(error, SceneError):
                 raise
+            if isinstance(error, FileNotFoundError | NotADirectoryError) and not (folder / "summary.json").exists():
+                raise SceneError(f"{name} is not a folder of a finished run") from None
             raise SceneError(f"run {name} cannot be read: its files are not whole, or not of a run ({error})") from None
 
     # -- text ------------------------------------------------------------------------------------------

@@ -128,6 +128,8 @@ def from_run(scene: Scene, folder: Path) -> Footprint:
     """
     try:
         summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    except (FileNotFoundError, NotADirectoryError):
+        raise SceneError(f"{folder} is not a folder of a finished run") from None
     except (OSError, ValueError) as error:
         raise SceneError(f"run {folder} cannot be read: {error}") from None
     if "parameters" not in summary:  # a point of a sweep that was refused

@@ -243,7 +243,9 @@ def _scenes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> list[Scene]:
     if not axes:
         raise SceneError("the sweep has no axis; give values of at least one key, such as voltage=[0, 100, 200]")
     for key, values in axes.items():
-        listed = isinstance(values, Sequence | np.ndarray) and not isinstance(values, str) and len(values)
+        if isinstance(values, str | int | float):
+            raise SceneError(f"{key} of the sweep is {show(values)}; it must be a list, such as [{show(values)}]")
+        listed = isinstance(values, Sequence | np.ndarray) and len(values)
         if not listed or any(np.iterable(value) and not isinstance(value, str | Mapping) for value in values):
             raise SceneError(
                 f"{key} of the sweep is {show(values)}; it must be a list of at least one value, none a list"

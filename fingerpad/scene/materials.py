@@ -133,7 +133,8 @@ class Topography(Part):
         from variational.roughness.heightfile import is_plain, scan
         from variational.roughness.spectrum import roughness_table
 
-        if self.unit is None and is_plain(Path(self.file)):
+        file = Path(self.file)
+        if self.unit is None and is_plain(file) and file.exists():
             raise ValueError(f"topography.unit is missing; {clip(self.file)} holds numbers without a unit")
         try:
             found = scan(self.file, self.size, self.unit, self.size_unit, self.missing, self.pixel)

@@ -11,7 +11,8 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from geometry.bounds import OUT_OF_RANGE
+from geometry.bounds import NO_QUANTITY, OUT_OF_RANGE
+from geometry.units import to_si
 
 MOST = 280  # characters of a message; with the name of the program before it less than 300
 _MOST_VALUE = 60  # of a value that is quoted
@@ -104,9 +105,21 @@ def first_error(error: ValidationError, root: type[BaseModel]) -> str:
         return f"{key} is empty; it must have at least one entry"
     if kind == "too_long":
         return f"{key} has too many entries; it must have at most {context['max_length']}"
+    if kind == NO_QUANTITY and key == "f_ext" and _newtons(first["input"]):
+        return f"{key} is {given}; it must be in N/m, and newtons of a whole finger are given by run --force {given}"
+    if kind in ("int_type", "int_from_float") and isinstance(first["input"], float):
+        given = repr(first["input"])  # 5.0, which show writes as 5
     if kind in _TYPES:
         return f"{key or 'a scene'} is {given}; it must be {_TYPES[kind]}"
     return f"{key or 'a scene'} is {given}; {first['msg']}"
+
+
+def _newtons(text: str) -> bool:
+    try:
+        to_si(text, "N")
+    except ValueError:
+        return False
+    return True
 
 
 def _default(root: type[BaseModel], loc: Iterable[int | str]) -> float | None:

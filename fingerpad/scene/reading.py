@@ -18,6 +18,7 @@ _MOST_DEPTH = 8  # of tables in lists in tables; a scene has 3
 _DEPTH = f"a scene has at most {_MOST_DEPTH} inside one another"
 _MOST_BITS = 1000  # of a whole number; floating point has 1024
 _PATH = 80  # characters of a path in a message
+_AFTER_VALUE = "Expected newline or end of document after a statement"  # tomllib, of 50,0 and of 50 N/m
 _NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
 _FILES = r"geometry\.file|roughness\.topography\.file|history\[\d+\]\.voltage\.file"
 _KEY = re.compile(rf"{_NAME}(\.{_NAME})*")
@@ -38,8 +39,11 @@ def read(path: Path) -> dict[str, Any]:
         raise SceneError(f"{name} has more than {_MOST_BYTES} bytes; a scene has a few hundred")
     try:
         return tomllib.loads(raw.decode("utf-8-sig"))
-    except ValueError as error:  # of the encoding or of TOML
-        raise SceneError(f"{name} is not TOML: {clip(str(error), 150)}") from None
+    except UnicodeDecodeError:
+        raise SceneError(f"{name} is not text in UTF-8; save it in UTF-8") from None
+    except tomllib.TOMLDecodeError as error:
+        hint = "; decimals have points, and a value with a unit has quotes" if _AFTER_VALUE in str(error) else ""
+        raise SceneError(f"{name} is not TOML: {clip(str(error), 150)}{hint}") from None
     except RecursionError:
         raise SceneError(f"{name} has lists or tables that are nested too deep; {_DEPTH}") from None
 
