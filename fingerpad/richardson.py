@@ -120,4 +120,4 @@ def to_refine(parameters: Mapping[str, MeshParameter], allowed: Mapping[str, flo
 def plus_minus(value: float, error: float) -> str:
     """Return a value with its error, which is given to two digits: ``0.4750 ± 0.0041``."""
     digits = int(max(0, 1 - np.floor(np.log10(error)))) if error > 0 else 6
-    return f"{value:.{digits}f} ± {error:.{digits}f}"
+    return f"{value:z.{digits}f} ± {error:.{digits}f}"

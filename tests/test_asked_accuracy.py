@@ -71,7 +71,8 @@ def test_names_of_states_are_those_of_their_files():
 
 @pytest.mark.parametrize(
     ("value", "error", "text"),
-    [(0.47512, 0.0041, "0.4751 ± 0.0041"), (39.226, 12.0, "39 ± 12"), (1.0, 0.0, "1.000000 ± 0.000000")],
+    [(0.47512, 0.0041, "0.4751 ± 0.0041"), (39.226, 12.0, "39 ± 12"), (1.0, 0.0, "1.000000 ± 0.000000")]
+    + [(-1e-9, 0.01, "0.000 ± 0.010")],
 )
 def test_plus_minus(value, error, text):
     assert plus_minus(value, error) == text

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from fingerpad.cli import estimate, main, microscale, sweep
+from fingerpad.cli import estimate, main, microscale, sweep, tables
 from fingerpad.io import style
 from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
@@ -44,6 +44,11 @@ def test_estimate_is_the_closed_form(tmp_path, capsys):
     one = cylinders.solve(from_data({"f_ext": 75.0, "voltage": 100.0})).full_slip
     assert float(rows[-1]["mu_app"]) == one.mu_app
     assert float(rows[0]["mu_app"]) == pytest.approx(0.25, rel=1e-12)
+
+
+def test_zeros_have_no_sign():
+    """As of friction that is roundoff, or of a friction coefficient of 0."""
+    assert [tables.Column("f_t", "friction", digits=digits).cell(-0.0) for digits in (".4g", ".3f")] == ["0", "0.000"]
 
 
 def test_estimate_says_where_its_error_is_not_known(capsys):

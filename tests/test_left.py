@@ -96,12 +96,14 @@ def test_time_left_of_a_step_is_said_to_be_of_the_path_where_more_is_to_come(cap
     console.expect({"press": 60.0}, 0.0, whole=whole)
     work = {field.name: 0 for field in fields(StepRecord)}
     conditions = {"f_ext": 1.0, "voltage": 0.0, "f_contact": 1.0, "f_electrostatic": 0.0, "f_t": 0.0, "mu_app": 0.0}
+    conditions |= {"bone_x": -0.0, "bone_height": -1e-12, "f_t": -1e-17, "mu_app": -1e-17}  # zeros have no sign
     console.step(
         ContactState(**conditions, load="press", contact_length=1e-3, ridges_in_contact=1, record=StepRecord(**work)),
         0.5,
     )
     console.close()
-    assert capsys.readouterr().out.endswith(f"  {words}\n")
+    out = capsys.readouterr().out
+    assert out.endswith(f"  {words}\n") and "-0" not in out
 
 
 @pytest.mark.parametrize("quiet", [False, True])

@@ -303,7 +303,8 @@ def test_bone_that_moves_as_it_touches_has_no_normal_contact():
 
 @pytest.mark.parametrize(
     ("key", "value", "text"),
-    [("f_ext", 75.0, "75.00"), ("f_ext", 0.002, "0.002"), ("f_ext", 3e-15, "0.00"), ("mu_app", math.nan, "–")],
+    [("f_ext", 75.0, "75.00"), ("f_ext", 0.002, "0.002"), ("f_ext", 3e-15, "0.00"), ("mu_app", math.nan, "–")]
+    + [("mu_app", -0.0, "0.0000"), ("f_t", -1e-17, "0.000"), ("f_t", -0.0004, "-0.0004")],
 )
 def test_small_numbers_keep_digits(key, value, text):
     """What is not roundoff is not shown as zero."""

@@ -30,7 +30,7 @@ class Column:
         """Return a value as it is printed, a dash where there is none."""
         if value is None:
             return "–"
-        return str(value) if isinstance(value, str) else f"{value * self.factor:{self.digits}}"
+        return str(value) if isinstance(value, str) else f"{value * self.factor:z{self.digits}}"
 
 
 def text(columns: Sequence[Column], rows: Sequence[Mapping[str, Any]]) -> str:

@@ -104,13 +104,13 @@ class Console:
         self._pace.on_path(done, abs(s.f_t) / most if most > 0 else 0.0)
         left, mu = self._pace.left() + self._of, cell("mu_app", s.mu_app)
         self.show(
-            f"{s.step:4d} {s.load[:7]:7s} {s.f_ext:7.3f} {s.voltage:5.1f} {s.bone_x * 1e3:7.4f} "
-            f"{s.bone_height * 1e3:8.5f} {s.f_t:8.4f} {mu:>7s} {s.f_electrostatic:7.3f} "
+            f"{s.step:4d} {s.load[:7]:7s} {s.f_ext:7.3f} {s.voltage:z5.1f} {s.bone_x * 1e3:z7.4f} "
+            f"{s.bone_height * 1e3:z8.5f} {s.f_t:z8.4f} {mu:>7s} {s.f_electrostatic:7.3f} "
             f"{s.ridges_in_contact:6d} {s.contact_length * 1e3:8.4f} {s.record.newton_iterations:6d} "
             f"{s.record.factorisations:5d}  {left}{'  jump, ' + _released(s) if s.record.jump else ''}"
         )
         loads = f"{s.load}: {s.f_ext:.1f} N/m, {s.voltage:.0f} V, x {s.bone_x * 1e3:.2f} mm"
-        words = loads if math.isnan(s.mu_app) else f"{loads}, µ_app {s.mu_app:.3f}"
+        words = loads if math.isnan(s.mu_app) else f"{loads}, µ_app {s.mu_app:z.3f}"
         self._progress.update(
             self._task, completed=self._pace.part, description=words, left=f"{self._pace.left()} left{self._of}"
         )

@@ -50,7 +50,7 @@ def cell(key: str, value: float, error: float = math.nan) -> str:
         return plus_minus(value * quantity.scale, error * quantity.scale)
     shown = value * quantity.scale
     small = _NOTHING < abs(shown) < 0.5 * 10.0**-quantity.digits
-    return f"{shown:.2g}" if small else f"{shown:.{quantity.digits}f}"
+    return f"{shown:.2g}" if small else f"{shown:z.{quantity.digits}f}"  # z: no minus before a zero
 
 
 def in_words(key: str) -> str:
