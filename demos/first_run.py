@@ -15,7 +15,7 @@ scene = fp.Scene(f_ext=75.0, voltage=200.0, friction=0.25)         # SI units; e
 curve = fp.sweep(scene, model="cylinders", voltage=[0, 100, 200])  # a closed form: two seconds
 print(curve)
 
-result = fp.run(scene, out="results/mine")                         # finite elements: two minutes
+result = fp.run(scene, out="results/mine")                         # finite elements: a minute or two
 slip = result.full_slip                                            # also .uncharged, .charged, .steps
 print(f"µ_app = {slip.mu_app:.4f} ± {slip.error.mu_app:.4f}, {slip.ridges_in_contact} ridges in contact")
 whole = result.finger                                              # a sum of slices along the finger

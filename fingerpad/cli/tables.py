@@ -42,7 +42,7 @@ def text(columns: Sequence[Column], rows: Sequence[Mapping[str, Any]]) -> str:
 
 
 def write(file: Path, columns: Sequence[Column], rows: Sequence[Mapping[str, Any]]) -> None:
-    """Write a table as CSV in SI units, unrounded."""
+    """Write a table as CSV in SI units, unrounded; :mod:`fingerpad.cli.ranges` has rounded its values."""
     out = io.StringIO()
     writer = csv.DictWriter(out, [c.key for c in columns], extrasaction="ignore", lineterminator="\n")
     writer.writeheader()
@@ -53,7 +53,7 @@ def write(file: Path, columns: Sequence[Column], rows: Sequence[Mapping[str, Any
 def add_files(parser: Parser, picture: str) -> None:
     """Add the options of a picture and of a table in a file; ``picture`` is the help of the picture."""
     parser.add_argument("--plot", type=path, metavar="PNG", help=picture)
-    parser.add_argument("--csv", type=path, metavar="CSV", help="table in SI units, unrounded")
+    parser.add_argument("--csv", type=path, metavar="CSV", help="table in SI units; results are unrounded")
 
 
 def check_files(args: argparse.Namespace) -> None:
