@@ -1,8 +1,8 @@
 """Several values of a quantity in one text, written alike for every option and in every study.
 
 ``75`` is one value, ``0, 50, 200`` are three, ``0:200:5`` are five from 0 to 200 at equal distances, both ends among
-them, and ``1e3:1e6:4:log`` are four at equal ratios. Values between the ends are rounded to 12 digits, so that 0.3 is 0.3. A unit
-may follow: ``0:0.2:5 kV``.
+them, and ``1e3:1e6:4:log`` are four at equal ratios. Values between the ends are rounded to 12 digits, so that 0.3 is
+0.3. A unit may follow: ``0:0.2:5 kV``.
 """
 
 import re
