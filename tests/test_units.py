@@ -1,8 +1,10 @@
 """Numbers with units as text: the same number as in SI, or refused in one sentence that names the unit wanted."""
 
+import numpy as np
+import pint
 import pytest
 
-from fingerpad.scene import SceneError
+from fingerpad.scene import Scene, SceneError
 from fingerpad.scene import scene as scenes
 from geometry.units import QUANTITIES, to_si
 from tests.test_light import HEAVY, without
@@ -88,6 +90,15 @@ def test_range_is_of_the_converted_number():
 @pytest.mark.parametrize("unit", QUANTITIES)
 def test_every_unit_of_a_parameter_is_known(unit):
     assert to_si(f"1.5 {unit}", unit) == 1.5
+
+
+@pytest.mark.parametrize("form", ["", ".0f~P"])
+def test_quantities_of_pint_keep_their_digits(form):
+    """Whatever their format for printing is."""
+    units = pint.UnitRegistry()
+    units.formatter.default_format = form
+    found = Scene(mesh={"contact": 12.7 * units.um}, voltage=np.float64(0.1503) * units.kV)
+    assert (found.mesh.contact, found.voltage) == (pytest.approx(12.7e-6, rel=1e-15), pytest.approx(150.3, rel=1e-15))
 
 
 def test_text_without_pint_is_refused():

@@ -31,7 +31,8 @@ QUANTITIES = {
 }
 _NOTHING = 1e-6  # in the units of tables: below it all is roundoff
 PER_LENGTH = (
-    "N/m: force per metre of finger out of the plane of the cross-section; 75 N/m at the centre are about 0.5 N in all."
+    "N/m: force per metre of finger out of the plane of the cross-section; 75 N/m at the centre of the default finger "
+    "are about 0.5 N in all."
 )
 
 

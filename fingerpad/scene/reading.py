@@ -101,7 +101,8 @@ def read_bytes(path: Path) -> bytes:
 def plain(value: Any, place: tuple[int | str, ...] = ()) -> Any:
     """Return data of tables, lists, numbers and texts that JSON can hold.
 
-    Dates become texts, NumPy's numbers and arrays Python's, and a model a table of what it was given.
+    Dates become texts, NumPy's numbers and arrays Python's, a model a table of what it was given, and a quantity of
+    pint a number with its unit.
 
     Raises:
         SceneError: data that is nested too deep, or a whole number beyond floating point.
@@ -118,6 +119,8 @@ def plain(value: Any, place: tuple[int | str, ...] = ()) -> Any:
         return [plain(inner, (*place, k)) for k, inner in enumerate(value)]
     if value is None or isinstance(value, bool | float):
         return value
+    if hasattr(value, "magnitude") and hasattr(value, "units"):  # of pint; all digits, whatever its format for printing
+        return f"{plain(value.magnitude, place)} {value.units:D}"
     if isinstance(value, int):
         if value.bit_length() > _MOST_BITS:
             raise SceneError(
