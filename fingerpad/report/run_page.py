@@ -223,7 +223,7 @@ def _sliding(result: Result) -> str:
         return ""
     rows = [
         (
-            str(state.step), f"{_MM * state.bone_x:.4g}", f"{state.f_t:.3f}", cell("mu_app", state.mu_app),
+            str(state.step), f"{_MM * state.bone_x:.4g}", f"{state.f_t:z.3f}", cell("mu_app", state.mu_app),
             f"{_MM * state.contact_length:.4f}", str(state.ridges_in_contact),
             "jump" if state.record is not None and state.record.jump else "",
         )

@@ -97,7 +97,7 @@ class WholeFinger:
                     cells.append("–")
                 else:
                     large = not math.isnan(error) and error >= 0.5 * 10.0**-digits
-                    cells.append(plus_minus(value, error) if large else f"{value:.{digits}f}")
+                    cells.append(plus_minus(value, error) if large else f"{value:z.{digits}f}")
             if set(cells) - {"–"}:
                 yield [f"{words} ({unit})" if unit else words, *cells]
 
