@@ -142,6 +142,9 @@ def test_missing_run_is_refused(tmp_path):
     (tmp_path / "refused" / "summary.json").write_text('{"failure": "mesh.contact is too large"}', encoding="utf-8")
     with pytest.raises(SceneError, match="refused has no results: mesh.contact is too large"):
         cylinders.from_run(scene(), tmp_path / "refused")
+    with pytest.raises(SceneError, match="is not a folder of a finished run"):
+        cylinders.from_run(scene(), tmp_path)
+    (tmp_path / "summary.json").write_text("{", encoding="utf-8")
     with pytest.raises(SceneError, match="cannot be read"):
         cylinders.from_run(scene(), tmp_path)
 

@@ -137,7 +137,7 @@ elif kind == "row":
     kill_at(files.Table, "write")
 from fingerpad.io.drawing import Drawing
 Drawing.write = lambda *args: None
-from fingerpad.__main__ import main
+from fingerpad.cli import main
 sys.exit(main(sys.argv[1:]))
 """
 
@@ -268,7 +268,7 @@ def test_refused_options(tmp_path):
         fp.run(resume=True)
     with pytest.raises(SceneError, match="only a full run in a folder, of one scene, can go on"):
         fp.run(out=tmp_path, model="cylinders", resume=True)
-    for words in (["scene.toml"], ["--set", "voltage=1"], ["--model", "smooth"], ["--out", "x"], ["--force", "1"]):
+    for words in (["scene.toml"], ["--set", "voltage=1"], ["--model", "smooth"], ["--out", "x"], ["--force", "1 N"]):
         with pytest.raises(SceneError, match="and --resume are given"):
             command.main([*words, "--resume", str(tmp_path)])
     with pytest.raises(SceneError, match=r"has no scene.json, and so no run to go on with"):

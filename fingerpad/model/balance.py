@@ -76,7 +76,7 @@ def refuse_unbalanced(
         )
 
 
-def refuse_strained(where: str, record: StepRecord, before: Iterable[ContactState]) -> None:
+def refuse_strained(where: str, record: StepRecord, before: Iterable[ContactState], scale: float) -> None:
     """Refuse a state that stores energy although nothing loads the body: Nitsche's method has such equilibria.
 
     They come where the method is not coercive, and Newton's method may go on to them while the body is loaded.
@@ -85,11 +85,12 @@ def refuse_strained(where: str, record: StepRecord, before: Iterable[ContactStat
         where: step and load.
         record: of the state, in which nothing touches and there is no voltage.
         before: states before it.
+        scale: force (N/m) in which residuals are measured.
 
     Raises:
-        StepFailed: the energy is above roundoff of the largest one stored in contact before.
+        StepFailed: the energy is above roundoff of the largest one stored under a load before.
     """
-    loaded = (state.record.stored for state in before if state.record and state.ridges_in_contact)
+    loaded = (state.record.stored for state in before if state.record and state.f_contact > BALANCED * scale)
     if record.stored > _AT_REST * max(loaded, default=math.inf):
         raise StepFailed(
             f"{where}: nothing loads the body, and it stores {record.stored:.3g} J/m; Nitsche's method has such "

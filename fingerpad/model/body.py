@@ -230,7 +230,7 @@ class Body:
         record = step_record(self._made.continuation, balance, solver.imbalance(), attempt)
         state = self._present(record)
         if not (state.ridges_in_contact or state.voltage):
-            refuse_strained(f"step {state.step} ({self._load})", record, self.states)
+            refuse_strained(f"step {state.step} ({self._load})", record, self.states, solver.force_scale)
         self.energy = Energy(
             balance.stored, self.energy.dissipated + balance.dissipation, self.energy.released + balance.released
         )

@@ -177,12 +177,6 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
             ridge = _ridge(scene, footprint, state)
         except NoEquilibriumError as error:
             raise SceneError(f"{WORDS[state]} of the model 'cylinders': {error}") from None
-        width = scene.geometry.ridge_wavelength
-        if ridge.length > width and not footprint.charged:  # that of a run has been computed
-            raise SceneError(
-                f"{WORDS[state]} of the model 'cylinders': f_ext is {scene.f_ext:g} N/m, under which a ridge of "
-                f"{1e3 * width:.3g} mm would touch over {1e3 * ridge.length:.3g} mm; give less"
-            )
         n = footprint.ridges[state]
         contact = {
             "f_contact": n * ridge.f_contact,
@@ -208,8 +202,14 @@ def _ridge(scene: Scene, footprint: Footprint, state: str) -> RidgeState:
     f, radius, closure = scene.f_ext / n, tip_radius(scene.geometry), scene.closure()
     if footprint.charged:
         return Cylinder(radius, skin_modulus(scene), scene.h_0, closure).over_length(length / n, f, scene.voltage)
-    modulus = hertz_modulus(radius, f, length / n)
-    return Cylinder(radius, modulus, scene.h_0, closure).under_load(f, scene.voltage)
+    modulus, width = hertz_modulus(radius, f, length / n), scene.geometry.ridge_wavelength
+    ridge = Cylinder(radius, modulus, scene.h_0, closure).under_load(f, scene.voltage)
+    if ridge.length > width:
+        raise NoEquilibriumError(
+            f"f_ext is {scene.f_ext:g} N/m, under which a ridge of {1e3 * width:.3g} mm would touch over "
+            f"{1e3 * ridge.length:.3g} mm; give less"
+        )
+    return ridge
 
 
 def _remarks(scene: Scene, state: str, ridge: RidgeState) -> list[str]:
