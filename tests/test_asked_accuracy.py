@@ -1,15 +1,13 @@
 """Accuracies that scenes ask for: what is read and refused, how results are printed, where a run starts again finer."""
 
 import signal
-from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from mpi4py import MPI
 
 from fingerpad.accuracy import solves
-from fingerpad.accuracy.refinement import Refinement, with_errors
+from fingerpad.accuracy.refinement import Refinement
 from fingerpad.io import states
 from fingerpad.io.interrupt import Interrupted
 from fingerpad.richardson import plus_minus
@@ -19,7 +17,6 @@ from fingerpad.scene import SceneError, from_data, load_names
 from tests.test_accuracy import change, known, model_of, search
 from variational.solvers.continuation import StepFailed
 from variational.solvers.failure import NotConverged
-from variational.state import ContactState
 
 
 # -- scenes ------------------------------------------------------------------------------------------------
@@ -128,20 +125,6 @@ def test_errors_without_a_force_are_those_of_the_friction_force(monkeypatch):
     found.run()
     assert "slip_f_t" in found.estimates() and "slip_mu_app" not in found.estimates()
     assert any("friction force" in line for line in shown) and not any("nan" in line for line in shown)
-
-
-def test_named_states_are_of_the_final_mesh():
-    """Forces, contact and height of the bone; conditions and the place in the history are of the path."""
-    path = ContactState(
-        step=7, f_ext=1.0, voltage=0.0, f_t=0.0, mu_app=0.0, f_contact=1.0, f_electrostatic=0.0, ridges_in_contact=1,
-        contact_length=2e-3, bone_height=-3e-5, mesh_contact=2e-6,
-    )  # fmt: skip
-    final = replace(path, step=0, contact_length=1e-3, bone_height=-2e-5, mesh_contact=1e-6)
-    base = SimpleNamespace(states={"charged": SimpleNamespace(state=final)})
-    refinement = SimpleNamespace(base=base, penalty={}, estimates=lambda: {"normal_bone_height": 1e-7})
-    found = with_errors(refinement, {"charged": path})["charged"]
-    assert (found.step, found.bone_height, found.contact_length, found.mesh_contact) == (7, -2e-5, 1e-3, 1e-6)
-    assert found.error.bone_height == 1e-7
 
 
 def test_coefficient_without_a_force_is_refused():

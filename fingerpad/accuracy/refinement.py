@@ -44,7 +44,6 @@ from variational.element import ELEMENTS
 from variational.solvers.continuation import StepFailed
 from variational.state import RESULTS, ContactState, Errors
 
-_OF_THE_MESH = (*RESULTS, "f_ext", "bone_height", "ridges", "mesh_contact")
 _SIZES = {"contact": ("contact",), "bulk": ("growth", "interface", "coarsest"), "receptor": ("receptor",)}
 _ROUNDS = 6  # of refinement
 
@@ -264,7 +263,7 @@ def with_errors(refinement: Refinement, path: Mapping[str, ContactState]) -> dic
     estimates, found = refinement.estimates(), dict(path)
     for name, kept in refinement.base.states.items():
         if name in found:
-            final = {key: getattr(kept.state, key) for key in _OF_THE_MESH}
+            final = {key: getattr(kept.state, key) for key in (*RESULTS, "f_ext", "ridges", "mesh_contact")}
             parts = (errors_of(name, estimates), errors_of(name, refinement.penalty))
             found[name] = replace(found[name], **final, error=parts[0], penalty=parts[1])
     return found

@@ -272,12 +272,7 @@ const closedForm = (function () {
     const closure = closure_of(p), radius = data.tip_radius, h_0 = closure.h_0;
     if (footprint.charged)
       return new Cylinder(radius, data.skin_modulus, h_0, closure).over_length(length / n, f, p.voltage);
-    const ridge = new Cylinder(radius, hertz_modulus(radius, f, length / n), h_0, closure).under_load(f, p.voltage);
-    if (ridge.length > data.ridge_wavelength)
-      throw new NoEquilibriumError(
-        `f_ext is ${show(p.f_ext)} N/m, under which a ridge of ${show(1e3 * data.ridge_wavelength, 3)} mm ` +
-        `would touch over ${show(1e3 * ridge.length, 3)} mm; give less`);
-    return ridge;
+    return new Cylinder(radius, hertz_modulus(radius, f, length / n), h_0, closure).under_load(f, p.voltage);
   }
 
   return { NoEquilibriumError, solve, given, refuse, show, erfc };

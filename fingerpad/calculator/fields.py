@@ -103,7 +103,6 @@ def data() -> dict[str, Any]:
         "eps_0": VACUUM_PERMITTIVITY,
         "sc_thickness": scene.geometry.sc_thickness,
         "tip_radius": cylinders.tip_radius(scene.geometry),
-        "ridge_wavelength": scene.geometry.ridge_wavelength,
         "skin_modulus": skin_modulus(scene),
         "largest_gap": LARGEST_GAP,
         "forces": cylinders.FORCES,

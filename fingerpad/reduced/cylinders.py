@@ -163,8 +163,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     """Return the answer of the cylinders; without a footprint it is the default finger's.
 
     Raises:
-        SceneError: a scene with a history, another finger than the footprint's, ridges that do not stay, or that would
-            touch over more than their width.
+        SceneError: a scene with a history, another finger than the footprint's, or ridges that do not stay.
     """
     clock = Stopwatch()
     refuse_others(scene, "cylinders")
@@ -202,14 +201,8 @@ def _ridge(scene: Scene, footprint: Footprint, state: str) -> RidgeState:
     f, radius, closure = scene.f_ext / n, tip_radius(scene.geometry), scene.closure()
     if footprint.charged:
         return Cylinder(radius, skin_modulus(scene), scene.h_0, closure).over_length(length / n, f, scene.voltage)
-    modulus, width = hertz_modulus(radius, f, length / n), scene.geometry.ridge_wavelength
-    ridge = Cylinder(radius, modulus, scene.h_0, closure).under_load(f, scene.voltage)
-    if ridge.length > width:
-        raise NoEquilibriumError(
-            f"f_ext is {scene.f_ext:g} N/m, under which a ridge of {1e3 * width:.3g} mm would touch over "
-            f"{1e3 * ridge.length:.3g} mm; give less"
-        )
-    return ridge
+    modulus = hertz_modulus(radius, f, length / n)
+    return Cylinder(radius, modulus, scene.h_0, closure).under_load(f, scene.voltage)
 
 
 def _remarks(scene: Scene, state: str, ridge: RidgeState) -> list[str]:
