@@ -19,7 +19,7 @@ def ends_at_once() -> None:
 
 @contextmanager
 def raises() -> Iterator[None]:
-    """Raise KeyboardInterrupt again inside the block, which has something to put in order first."""
+    """Let Ctrl-C raise KeyboardInterrupt inside the block, so that the block can clean up."""
     ends = signal.getsignal(signal.SIGINT) is _end
     try:
         if ends:

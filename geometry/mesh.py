@@ -1,7 +1,7 @@
 """From a gmsh model, built on rank 0, to a distributed dolfinx mesh in metres. The only dolfinx code here."""
 
 from collections.abc import Callable, Iterable
-from contextlib import nullcontext
+from contextlib import ExitStack
 from dataclasses import dataclass
 
 import dolfinx
@@ -66,9 +66,10 @@ def load(comm: MPI.Comm, build: Callable[[], float], needed: Iterable[int] = ())
         GeometryError: what ``build`` or gmsh refuses, on every rank; or a needed tag without any entity.
     """
     unit, failure = 1.0, None
-    with session("body") if comm.rank == 0 else nullcontext():
+    with ExitStack() as stack:
         if comm.rank == 0:
             try:
+                stack.enter_context(session("body"))
                 unit = build()
             except Exception as error:  # whatever it is, the other ranks must not wait for a mesh
                 plain = type(error) is Exception  # gmsh's own, which are of no other kind

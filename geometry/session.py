@@ -24,9 +24,9 @@ def session(name: str) -> Iterator[None]:
                 _begin(name)
                 yield
             finally:
+                gmsh.merge(options)  # which would name a model of the caller that has no name
                 gmsh.model.remove()
                 gmsh.model.setCurrent(current)
-                gmsh.merge(options)
     else:
         gmsh.initialize(interruptible=False)
         try:

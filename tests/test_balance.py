@@ -3,9 +3,12 @@
 import pytest
 
 from fingerpad.model import balance
+from variational.contact.nitsche import Nitsche
+from variational.contact.penalty import Penalty
 from variational.solvers.continuation import StepFailed
 from variational.state import ContactState, StepRecord
 
+PENALTY = Penalty(1e12, 1e11)
 SLIP = {"f_contact": 100.0, "f_electrostatic": 25.0, "f_ext": 75.0, "f_t": -25.0, "voltage": 200.0, "mu_app": 1 / 3}
 
 
@@ -48,7 +51,8 @@ def test_body_without_loads_stores_nothing():
     The unloaded skin is on the screen, and may bear roundoff there.
     """
     unloaded, pressed = state(1e-12, 1e-40), state(100.0, 1e-5)
-    balance.refuse_strained("step 3 (lift)", record(1e-30), [unloaded, pressed], 75.0)
-    balance.refuse_strained("step 2 (lower)", record(1e-30), [unloaded], 75.0)
-    with pytest.raises(StepFailed, match=r"^step 3 \(lift\): nothing loads .*, and it stores 1e-06 J/m; .*gamma_0"):
-        balance.refuse_strained("step 3 (lift)", record(1e-6), [unloaded, pressed], 75.0)
+    balance.refuse_strained("step 3 (lift)", record(1e-30), [unloaded, pressed], 75.0, PENALTY)
+    balance.refuse_strained("step 2 (lower)", record(1e-30), [unloaded], 75.0, PENALTY)
+    for formulation, remedy in ((Nitsche(20.0, 1), "larger"), (PENALTY, "second state without stress")):
+        with pytest.raises(StepFailed, match=rf"^step 3 \(lift\): nothing loads .* stores 1e-06 J/m; .*{remedy}"):
+            balance.refuse_strained("step 3 (lift)", record(1e-6), [unloaded, pressed], 75.0, formulation)

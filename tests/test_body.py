@@ -172,7 +172,7 @@ def test_lifted_body_bears_nothing():
 
 
 def test_energy_of_a_lifted_body_is_checked(monkeypatch):
-    """The body stays in the state before."""
+    """The state is not among the accepted ones."""
     monkeypatch.setattr(balance, "_AT_REST", -1.0)
     body = ridge(MPI.COMM_SELF).press(height=-20e-6)
     with pytest.raises(StepFailed, match=r"\(lift\): nothing loads the body"):

@@ -73,10 +73,10 @@ def test_options_of_petsc_are_told_from_the_others(words, own, petsc):
         (["--set", "f_ext=nan"], "f_ext is nan; it must be a finite number"),
         (
             ["--set", "f_ext=0.5 N"],
-            "f_ext is '0.5 N'; it must be in N/m, and newtons of a whole finger are given by run",
+            "f_ext is '0.5 N'; it must be in N/m; a force on the whole finger is given by run --force",
         ),
         (["--force", "0.5"], "command line: argument --force: 0.5 has no unit; give one, as in '0.5 N'"),
-        (["--force", "-0.5N"], "--force -0.5N is read as two options; write --force=-0.5N"),
+        (["--force", "nan"], "force is 'nan'; "),
         (["--force", "0.5 N", "--set", "f_ext = 50"], "--set f_ext is given and --force too; give one of the two"),
         (["--set", "f_ext=-3"], "f_ext is -3 N/m; it must be from 0.001 to 5000 N/m"),
         (["--set", "mesh.contact=2e-4"], "mesh.contact is 0.0002 m, too large for a ridge of 0.000483 m"),
@@ -111,12 +111,13 @@ def test_bad_command_line(argv, message, capsys):
         (["estimate", "--f-ext", "75", "--set", "f_ext=50"], "--set f_ext is given and --f-ext too; give one of"),
         (["estimate", "--voltage", "200", "--set", "voltage=-5 kV"], "--set voltage is given and --voltage too; give"),
         (["microscale", "--voltage", "200", "--set", "voltage=100"], "--set voltage is given and --voltage too; give"),
-        (["estimate", "--voltage", "-200:200:3"], "--voltage -200:200:3 is read as two options; write --voltage=-200:"),
-        (["microscale", "--p", "-1,5"], "--p -1,5 is read as two options; write --p=-1,5"),
+        (["estimate", "--voltage", "-200:200:3"], "has an equals sign before it; write --voltage=-200:200:3"),
+        (["run", "--force", "-0.5 N"], "has an equals sign before it; write --force='-0.5 N'"),
+        (["microscale", "--p", "-1,5"], "has an equals sign before it; write --p=-1,5"),
     ],
 )
 def test_options_that_are_not_what_was_meant(capsys, argv, message):
-    assert refused(capsys, *argv).startswith(message)
+    assert message in refused(capsys, *argv)
 
 
 def test_negative_voltages(capsys):

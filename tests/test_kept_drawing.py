@@ -38,3 +38,17 @@ def test_picture_whose_arrays_are_gone_is_refused(ran, tmp_path, kind, missing):
     assert read.plot("history").axes
     with pytest.raises(ValueError, match=re.escape(f"its folder has no {missing}")):
         read.plot(kind)
+
+
+def test_folder_is_kept_and_a_damaged_file_is_none(ran, tmp_path, monkeypatch):
+    """Where the program goes to another folder; and where a file was cut short."""
+    shutil.copytree(ran.folder, tmp_path / "a", ignore=shutil.ignore_patterns("*.bp"))
+    (tmp_path / "b").mkdir()
+    monkeypatch.chdir(tmp_path)
+    read = fp.Result.load("a")
+    monkeypatch.chdir(tmp_path / "b")
+    assert read.plot("surface").axes
+    whole = (tmp_path / "a" / "surface.npz").read_bytes()
+    (tmp_path / "a" / "surface.npz").write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(ValueError, match=r"its folder has no surface\.npz"):
+        read.plot("surface")

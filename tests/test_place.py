@@ -1,5 +1,6 @@
 """The folder of results is one scene's and one run's at a time, and no earlier run is lost for nothing."""
 
+import errno
 import fcntl
 import json
 from pathlib import Path
@@ -9,7 +10,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 import fingerpad as fp
-from fingerpad.io.place import LEFT, Place, PlaceError
+from fingerpad.io.place import LEFT, Place, PlaceError, on_rank_0
 from fingerpad.scene import Scene, from_data
 from tests.runs import run
 
@@ -102,6 +103,31 @@ def test_refused_on_all_ranks(scene, folder):
     MPI.COMM_WORLD.barrier()
     with pytest.raises(PlaceError, match="results cannot be written to .*results: File exists; choose another folder"):
         run(scene, folder, MPI.COMM_WORLD)
+
+
+@pytest.mark.mpi
+def test_full_disk_is_told_on_all_ranks():
+    """The first rank writes; the others would wait for it."""
+
+    def write():
+        raise OSError(errno.ENOSPC, "No space left on device", "summary.json")
+
+    with pytest.raises(OSError, match="No space left on device") as full:
+        on_rank_0(MPI.COMM_WORLD, write)
+    assert (full.value.errno, full.value.filename) == (errno.ENOSPC, "summary.json")
+    assert on_rank_0(MPI.COMM_WORLD, lambda: 3) == 3
+
+
+@pytest.mark.mpi
+def test_mesh_file_is_known_by_its_content(folder):
+    """A project may be moved; other content is another scene."""
+    kept = [{"laws": {"mesh": {"path": path, "sha256": sum_}}} for path, sum_ in (("a", "1"), ("b", "1"), ("b", "2"))]
+    with Place(folder, kept[0], MPI.COMM_WORLD) as place:
+        place.take()
+    with Place(folder, kept[1], MPI.COMM_WORLD):
+        pass
+    with pytest.raises(PlaceError, match=r"its laws\.mesh\.sha256 was 1, and is 2 now"):
+        Place(folder, kept[2], MPI.COMM_WORLD).__enter__()
 
 
 @pytest.mark.mpi

@@ -4,6 +4,7 @@ import os
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import fingerpad as fp
@@ -295,6 +296,7 @@ def test_what_is_no_scene_is_refused(call, scene):
     [
         (lambda: fp.run(out=5), "out is 5; it must be the path of a folder"),
         (lambda: fp.sweep(out=None, voltage=[0.0]), "out is empty; it must be the path of a folder"),
+        (lambda: fp.sweep(voltage=np.array(3)), "voltage of the sweep is 3; it must be a list, such as"),
         (lambda: fp.sweep(jobs="2", voltage=[0.0]), "jobs is '2'; it must be a whole number, at least 1"),
     ],
 )

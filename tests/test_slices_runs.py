@@ -84,7 +84,7 @@ def test_trace_that_was_too_short_is_made_again(tmp_path, monkeypatch, constant,
     assert {path.name for path in out.iterdir() if path.is_dir()} >= {"uncharged", "charged"}
     assert [each.finger.states["full_slip"].totals["f_ext"] for each in found] == pytest.approx(2 * [FORCE], rel=1e-9)
     assert fp.Result.load(out).scene == found[-1].scene
-    for other, now in (({"force": 1.1 * FORCE}, "0.0022 N"), ({}, "None")):
+    for other, now in (({"force": 1.1 * FORCE}, "0.0022 N"), ({}, "not given")):
         words = rf"holds the results of another scene \(its force was 0.002 N, and is {now} now\)"
         with pytest.raises(SceneError, match=words):
             fp.run(scene, out=out, **other)

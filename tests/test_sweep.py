@@ -166,7 +166,39 @@ def test_signal_stops_the_jobs_too(capsys, number, error):
         signal.signal(number, before)
     assert [end.code for end in ends] == [-signal.SIGTERM] * 2
     assert number == signal.SIGINT or stopped.value.code == 128 + number
-    assert capsys.readouterr().err == "fingerpad: runs end after their present step: 2\n"
+    assert capsys.readouterr().err == "fingerpad: running points that stop after their present step: 2\n"
+
+
+def test_job_that_waits_for_its_turn_is_not_begun(monkeypatch):
+    """As at a folder that another sweep has locked; the signal comes when the pool waits for the job."""
+    ends, waits, stopped, plain = [], threading.Event(), threading.Event(), processes.wait
+
+    def wait(*args, **more):
+        waits.set()
+        return plain(*args, **more)
+
+    monkeypatch.setattr(processes, "wait", wait)
+
+    def job(k):
+        assert stopped.wait(60.0)
+        ends.append(run_module("timeit", ["-n1", "-r1", "__import__('time').sleep(100)"], 100.0))
+        return ends[-1]
+
+    def send():
+        waits.wait(60.0)
+        os.kill(os.getpid(), signal.SIGTERM)
+        while not processes._STOPPED.is_set():
+            time.sleep(0.01)
+        stopped.set()
+
+    before = signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    try:
+        threading.Thread(target=send).start()
+        with pytest.raises(SystemExit):
+            Pool[int, End](job, jobs=1).run(range(1), lambda *end: None)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert [end.reason for end in ends] == ["STOPPED"]
 
 
 def test_jobs_are_no_ranks_of_a_launcher(monkeypatch):

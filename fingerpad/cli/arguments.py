@@ -4,6 +4,7 @@ import argparse
 import math
 import os
 import re
+import shlex
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from difflib import get_close_matches
@@ -91,7 +92,8 @@ class Parser(argparse.ArgumentParser):
                 self._refuse(word, petsc)
             takes = word in options and self._option_string_actions[word].nargs != 0
             if takes and re.match(r"-[\d.]", after) and not self._negative_number_matcher.match(after):
-                raise SceneError(f"{word} {clip(after)} is read as two options; write {word}={clip(after)}")
+                given = shlex.quote(clip(after))
+                raise SceneError(f"a value that begins with a minus has an equals sign before it; write {word}={given}")
         args, rest = self.parse_known_args(words)
         if rest:
             self._refuse(rest[0], petsc)

@@ -1,5 +1,6 @@
 """``fingerpad run``: press, charge and slide a finger, from a scene to tables, pictures and fields."""
 
+import math
 from argparse import ArgumentTypeError, Namespace
 from collections.abc import Sequence
 from pathlib import Path
@@ -86,8 +87,10 @@ def main(argv: Sequence[str]) -> int:
 def _force(text: str) -> str:
     """Return a force that the run reads, and refuse a number alone, which could be N or N/m."""
     try:
-        float(text)
+        number = float(text)
     except ValueError:
+        return text
+    if not math.isfinite(number):
         return text
     raise ArgumentTypeError(f"{clip(text)} has no unit; give one, as in '{clip(text)} N'")
 

@@ -1,5 +1,7 @@
 """The pictures of a result that was read from its folder, drawn from the arrays that its run left there."""
 
+import zipfile
+import zlib
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -54,9 +56,9 @@ class KeptDrawing(Drawing):
 def _arrays(file: Path) -> dict[str, Any]:
     """Return the arrays of a file by name; none without a file that can be read."""
     try:
-        with np.load(file, allow_pickle=False) as found:
+        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as found:
             return dict(found)
-    except (OSError, ValueError, EOFError, TypeError):
+    except (OSError, ValueError, EOFError, TypeError, zipfile.BadZipFile, zlib.error):
         return {}
 
 

@@ -12,9 +12,9 @@ import errno
 import fcntl
 import json
 import shutil
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 from fingerpad.io.files import replace_json
 from fingerpad.scene import Scene, SceneError, from_kept
@@ -42,6 +42,7 @@ LEFT = (
 )
 TRACE = "trace"
 """Key of ``scene.json`` where the scene is a trace of a force on the whole finger."""
+T = TypeVar("T")
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP)  # some network file systems
 
 
@@ -54,8 +55,23 @@ class Serial:
         """Return the value."""
         return value
 
-    def barrier(self) -> None:
-        """Wait for nobody."""
+
+def on_rank_0(comm: "MPI.Comm | Serial", work: Callable[[], T]) -> T:
+    """Return on every rank what rank 0 finds; collective.
+
+    Raises:
+        OSError: what rank 0 cannot write, on every rank: the others would wait for it.
+    """
+    found: T | OSError | None = None
+    if comm.rank == 0:
+        try:
+            found = work()
+        except OSError as error:
+            found = error
+    found = comm.bcast(found)
+    if isinstance(found, OSError):
+        raise found
+    return found  # type: ignore[return-value]
 
 
 class PlaceError(SceneError):
@@ -134,10 +150,11 @@ class Place:
             raise PlaceError(f"{_short(self.folder)} holds the results of a sweep; choose another folder")
         kept = self._kept()
         same = kept is not None and kept.get(TRACE, "") == self._parameters.get(TRACE)
-        if kept is not None and kept != self._parameters and not same:
+        if kept is not None and identity(kept) != identity(self._parameters) and not same:
+            what = difference(identity(_given(kept)), identity(_given(self._parameters)))
             raise PlaceError(
-                f"{_short(self.folder)} holds the results of another scene "
-                f"({difference(_given(kept), _given(self._parameters))}); choose another folder, or delete the folder"
+                f"{_short(self.folder)} holds the results of another scene ({what}); "
+                "choose another folder, or delete the folder"
             )
 
     def _kept(self) -> dict[str, Any] | None:
@@ -153,11 +170,12 @@ class Place:
 
     def take(self) -> None:
         """Make way for the run's files: an earlier run's go; collective."""
-        if self._comm.rank == 0:
-            for file in [file for pattern in LEFT for file in self.folder.glob(pattern)]:
-                shutil.rmtree(file) if file.is_dir() else file.unlink()
-            replace_json(self.folder / "scene.json", self._parameters)
-        self._comm.barrier()
+        on_rank_0(self._comm, self._clear)
+
+    def _clear(self) -> None:
+        for file in [file for pattern in LEFT for file in self.folder.glob(pattern)]:
+            shutil.rmtree(file) if file.is_dir() else file.unlink()
+        replace_json(self.folder / "scene.json", self._parameters)
 
 
 def full_scene(folder: Path) -> Scene:
@@ -190,9 +208,17 @@ def _given(parameters: dict[str, Any]) -> dict[str, Any]:
     """Return what a user gave: of a trace the force and the scene that it is of."""
     asked = parameters.get(TRACE)
     if asked is None:
-        return parameters
+        return {"force": "not given"} | parameters
     model = {key: parameters[key] for key in ("model",) if key in parameters}
-    return {"force": f"{asked['force']:g} N"} | asked["parameters"] | model
+    return {"force": f"{asked['force']!r} N"} | asked["parameters"] | model
+
+
+def identity(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what results depend on: the scene's parameters without the place of a mesh file, whose hash stays."""
+    laws = dict(parameters.get("laws", {}))
+    if "mesh" in laws:
+        laws["mesh"] = {key: value for key, value in laws["mesh"].items() if key != "path"}
+    return {**parameters, "laws": laws} if laws else dict(parameters)
 
 
 def difference(old: Mapping[str, Any], new: Mapping[str, Any], table: str = "") -> str:

@@ -231,7 +231,7 @@ class Result:
             asked = found.scene.accuracy is not None
             meshes = (summary.get("path_mesh"), summary.get("accuracy", {}).get("mesh")) if asked else (None, None)
             path, final = (mesh["contact"] if mesh else None for mesh in meshes)
-            drawing = KeptDrawing(mu_0, steps, {}, {}, {}, path, found.named, folder, final)
+            drawing = KeptDrawing(mu_0, steps, {}, {}, {}, path, found.named, folder.absolute(), final)
             return replace(found, steps=steps, loads=tuple(_loads(steps, found.scene, summary)), drawing=drawing)
         except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:  # JSON of other things
             if isinstance(error, SceneError):

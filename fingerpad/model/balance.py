@@ -6,7 +6,9 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from variational.contact.formulation import Formulation
 from variational.contact.friction import CONE_ROUNDOFF
+from variational.contact.nitsche import Nitsche
 from variational.quantities import RidgeLoads
 from variational.solvers.continuation import StepFailed
 from variational.state import ContactState, StepRecord
@@ -76,7 +78,9 @@ def refuse_unbalanced(
         )
 
 
-def refuse_strained(where: str, record: StepRecord, before: Iterable[ContactState], scale: float) -> None:
+def refuse_strained(
+    where: str, record: StepRecord, before: Iterable[ContactState], scale: float, formulation: Formulation
+) -> None:
     """Refuse a state that stores energy although nothing loads the body: Nitsche's method has such equilibria.
 
     They come where the method is not coercive, and Newton's method may go on to them while the body is loaded.
@@ -86,16 +90,17 @@ def refuse_strained(where: str, record: StepRecord, before: Iterable[ContactStat
         record: of the state, in which nothing touches and there is no voltage.
         before: states before it.
         scale: force (N/m) in which residuals are measured.
+        formulation: of the contact.
 
     Raises:
         StepFailed: the energy is above roundoff of the largest one stored under a load before.
     """
     loaded = (state.record.stored for state in before if state.record and state.f_contact > BALANCED * scale)
     if record.stored > _AT_REST * max(loaded, default=math.inf):
-        raise StepFailed(
-            f"{where}: nothing loads the body, and it stores {record.stored:.3g} J/m; Nitsche's method has such "
-            "equilibria where gamma_0 is too small, so try a larger one"
-        )
+        remedy = "a material of one's own may have a second state without stress, else " + _DEFECT
+        if isinstance(formulation, Nitsche):
+            remedy = "Nitsche's method has such equilibria where gamma_0 is too small, so start again with a larger one"
+        raise StepFailed(f"{where}: nothing loads the body, and it stores {record.stored:.3g} J/m; {remedy}")
 
 
 def broken(slip: ContactState | None, error: float, mu_0: float | None) -> str:

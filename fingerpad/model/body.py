@@ -230,7 +230,8 @@ class Body:
         record = step_record(self._made.continuation, balance, solver.imbalance(), attempt)
         state = self._present(record)
         if not (state.ridges_in_contact or state.voltage):
-            refuse_strained(f"step {state.step} ({self._load})", record, self.states, solver.force_scale)
+            where, formulation = f"step {state.step} ({self._load})", self.problem.interface.formulation
+            refuse_strained(where, record, self.states, solver.force_scale, formulation)
         self.energy = Energy(
             balance.stored, self.energy.dissipated + balance.dissipation, self.energy.released + balance.released
         )

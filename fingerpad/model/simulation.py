@@ -199,7 +199,8 @@ class Simulation:
         record = step_record(finger.continuation, energy, imbalance, attempt)
         if not (loads.f_contact.any() or finger.voltage):
             where = f"step {finger.continuation.steps} ({self._load})"
-            refuse_strained(where, record, self.states, finger.solver.force_scale)
+            formulation = finger.problem.interface.formulation
+            refuse_strained(where, record, self.states, finger.solver.force_scale, formulation)
         probe = part >= 1 and not target.until_full_slip and not self._course.over_time
         state = self._slip.placed(self.states, step.state, probe)
         state = replace(state, record=record, time=self._course.time(target, part, state.bone_x))

@@ -21,6 +21,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from fingerpad.io.files import replace_json
 from fingerpad.io.left import between
+from fingerpad.io.place import identity
 from fingerpad.io.terminal import watched
 from fingerpad.runs.processes import End, Pool, limit_processor_time, run
 from fingerpad.scene import Scene
@@ -32,7 +33,7 @@ _OF_THE_MACHINE = "MUMPS_OUT_OF_MEMORY"  # a failure that says nothing of the sc
 
 def key(scene: Scene) -> str:
     """Return the name under which a scene's results are kept."""
-    return hashlib.sha256(json.dumps(scene.parameters(), sort_keys=True).encode()).hexdigest()[:16]
+    return hashlib.sha256(json.dumps(identity(scene.parameters()), sort_keys=True).encode()).hexdigest()[:16]
 
 
 def result(scene: Scene, folder: Path) -> Summary | None:

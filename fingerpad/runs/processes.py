@@ -25,6 +25,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 _LAUNCHERS = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "MV2_")  # by whose variables MPI takes a process for a rank of theirs
 _STUCK = 20  # times its limit that a job may take by the clock
 _RUNNING = set[subprocess.Popen[str]]()  # of all pools: a signal is to the program
+_STOPPED = threading.Event()
 Key = TypeVar("Key")
 Result = TypeVar("Result")
 
@@ -35,7 +36,7 @@ class End:
 
     code: int
     reason: str
-    """TIME_LIMIT, STUCK, CRASH with the exit code, or nothing if the process ended by itself without an error."""
+    """TIME_LIMIT, STUCK, STOPPED, CRASH with the exit code, or nothing if it ended by itself without an error."""
     message: str
     stdout: str
 
@@ -58,9 +59,13 @@ def run(module: str, arguments: Sequence[str], limit: float) -> End:
     alone = {name: value for name, value in os.environ.items() if not name.startswith(_LAUNCHERS)}
     env = alone | {"PYTHONPATH": path, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     command = [sys.executable, "-P", "-m", module, *arguments]  # -P: no modules of the current folder
+    if _STOPPED.is_set():  # while the job waited for its turn
+        return End(-signal.SIGTERM, "STOPPED", "a signal came before it began", "")
     process = subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     _RUNNING.add(process)
     try:
+        if _STOPPED.is_set():
+            process.terminate()
         out, errors = process.communicate(timeout=_STUCK * limit)
     except subprocess.TimeoutExpired:
         process.kill()
@@ -93,12 +98,14 @@ def _stopped_by_signals() -> Iterator[None]:
         signal.signal(number, end)
     try:
         yield
-    except BaseException:
+    except (KeyboardInterrupt, SystemExit):
+        _STOPPED.set()
         running = tuple(_RUNNING)
         for process in running:
             process.terminate()
         if running:
-            print(f"fingerpad: runs end after their present step: {len(running)}", file=sys.stderr, flush=True)
+            words = "running points that stop after their present step"
+            print(f"fingerpad: {words}: {len(running)}", file=sys.stderr, flush=True)
         raise
     finally:
         for number in taken:
@@ -135,13 +142,16 @@ class Pool(Generic[Key, Result]):
         """
         waiting, stop = list(keys), time.monotonic() + 3600 * self.hours
         running: dict[Future[Result], Key] = {}
-        with ThreadPoolExecutor(self.jobs) as pool, _stopped_by_signals():
-            while running or (waiting and time.monotonic() < stop):
-                while waiting and len(running) < self.jobs and time.monotonic() < stop:
-                    key = waiting.pop(0)
-                    running[pool.submit(self.job, key)] = key
-                ended, _ = wait(running, return_when=FIRST_COMPLETED)
-                for future in ended:
-                    key = running.pop(future)
-                    done(key, future.result(), len(waiting) + len(running))
+        try:
+            with ThreadPoolExecutor(self.jobs) as pool, _stopped_by_signals():
+                while running or (waiting and time.monotonic() < stop):
+                    while waiting and len(running) < self.jobs and time.monotonic() < stop:
+                        key = waiting.pop(0)
+                        running[pool.submit(self.job, key)] = key
+                    ended, _ = wait(running, return_when=FIRST_COMPLETED)
+                    for future in ended:
+                        key = running.pop(future)
+                        done(key, future.result(), len(waiting) + len(running))
+        finally:
+            _STOPPED.clear()  # all jobs have ended
         return len(waiting)

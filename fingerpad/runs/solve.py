@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from fingerpad.installed import needed_by
 from fingerpad.io import dataset, terminal
 from fingerpad.io.files import replace_json
-from fingerpad.io.place import Place, Serial
+from fingerpad.io.place import Place, Serial, on_rank_0
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS
 from fingerpad.model.check import check
@@ -71,7 +71,7 @@ def run(
         SystemExit: SIGTERM or SIGHUP, likewise.
     """
     scene = checked(scene)
-    if out is not None and not isinstance(out, str | Path):
+    if out is not None and not isinstance(out, str | os.PathLike):
         raise SceneError(f"out is {show(out)}; it must be the path of a folder")
     if closure is not None or materials or friction is not None or mesh is not None:
         scene = scene.with_laws(closure=closure, materials=materials, friction=friction, mesh=mesh)
@@ -231,12 +231,7 @@ def _whole(
         return found
     if model != "full":
         return kept(found, out, _ranks(comm), asked)
-    ranks, missing = _ranks(comm), ""
-    if ranks.rank == 0:
-        replace_json(out / "summary.json", found.to_dict())
-        missing = dataset.save(found)
-    missing = ranks.bcast(missing)
-    return replace(found, notes=(*found.notes, missing)) if missing else found
+    return _written(found, _ranks(comm))
 
 
 def _ranks(comm: "MPI.Comm | None") -> "MPI.Comm | Serial":
@@ -267,9 +262,18 @@ def kept(result: Result, out: Path | None, comm: "MPI.Comm | Serial", asked: Map
     result = replace(result, folder=out)
     with Place(out, result.scene.parameters(), comm, result.model, asked) as place:
         place.take()
-        if comm.rank == 0:
-            replace_json(out / "summary.json", result.to_dict())
-        missing = comm.bcast(dataset.save(result) if comm.rank == 0 else "")
+        return _written(result, comm)
+
+
+def _written(result: Result, comm: "MPI.Comm | Serial") -> Result:
+    """Write summary and dataset of a result into its folder; return the result with a note on what is missing."""
+
+    def write() -> str:
+        assert result.folder is not None
+        replace_json(result.folder / "summary.json", result.to_dict())
+        return dataset.save(result)
+
+    missing = on_rank_0(comm, write)
     return replace(result, notes=(*result.notes, missing)) if missing else result
 
 

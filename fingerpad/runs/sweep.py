@@ -2,6 +2,7 @@
 
 import csv
 import itertools
+import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -196,7 +197,7 @@ def sweep(
         raise SceneError("a sweep runs its points in processes of its own; start it without mpirun, and use jobs")
     if not isinstance(jobs, Integral) or jobs < 1:
         raise SceneError(f"jobs is {show(jobs)}; it must be a whole number, at least 1")
-    if not isinstance(out, str | Path):
+    if not isinstance(out, str | os.PathLike):
         raise SceneError(f"out is {show(out)}; it must be the path of a folder")
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
@@ -243,8 +244,10 @@ def _scenes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> list[Scene]:
     if not axes:
         raise SceneError("the sweep has no axis; give values of at least one key, such as voltage=[0, 100, 200]")
     for key, values in axes.items():
-        if isinstance(values, str | int | float):
-            raise SceneError(f"{key} of the sweep is {show(values)}; it must be a list, such as [{show(values)}]")
+        single = isinstance(values, str) or not isinstance(values, Sequence | Mapping)
+        if single and np.ndim(getattr(values, "magnitude", values)) == 0:
+            given = show(plain(values))
+            raise SceneError(f"{key} of the sweep is {given}; it must be a list, such as [{given}]")
         listed = isinstance(values, Sequence | np.ndarray) and len(values)
         if not listed or any(np.iterable(value) and not isinstance(value, str | Mapping) for value in values):
             raise SceneError(

@@ -106,7 +106,7 @@ def first_error(error: ValidationError, root: type[BaseModel]) -> str:
     if kind == "too_long":
         return f"{key} has too many entries; it must have at most {context['max_length']}"
     if kind == NO_QUANTITY and key == "f_ext" and _newtons(first["input"]):
-        return f"{key} is {given}; it must be in N/m, and newtons of a whole finger are given by run --force {given}"
+        return f"{key} is {given}; it must be in N/m; a force on the whole finger is given by run --force {given}"
     if kind in ("int_type", "int_from_float") and isinstance(first["input"], float):
         given = repr(first["input"])  # 5.0, which show writes as 5
     if kind in _TYPES:

@@ -229,8 +229,8 @@ class Contact(Part):
     """Nitsche's stiffness, divided by the skin's constrained modulus per facet length. With 10 no equilibrium was
     found while the default finger was pressed (``docs/chart.md``)."""
     theta: Literal[-1, 0, 1] = 0
-    """Variant of Nitsche's method. Variants 1 and -1 compile for longer. Variant 1 needs a larger gamma_0: below it the
-    skin may keep stresses that no load explains, which a run finds where the finger is lifted."""
+    """Variant of Nitsche's method. Variants 1 and -1 compile for longer. Variant 1 needs a larger gamma_0: below it
+    stresses can remain in the unloaded skin, which is refused where the finger is lifted."""
     length: Literal["pressure", "gap"] = "pressure"
     """Ridge length L_R of Eq. 4: ``"pressure"`` is the length under contact pressure, ``"gap"`` the length where
     the gap is below d_eq. *Assumption*: the former; the domain printed in Eq. 4 is the whole boundary. Tables have the
