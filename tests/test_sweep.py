@@ -3,7 +3,6 @@
 import contextlib
 import fcntl
 import json
-import os
 import signal
 import threading
 import time
@@ -141,8 +140,21 @@ def test_pool_reports_every_job_once():
     assert sorted((left for _, left in ends), reverse=True) == [4, 3, 2, 1, 0]
 
 
+@pytest.fixture
+def waits(monkeypatch):
+    """An event: a pool has begun its jobs and waits for them."""
+    event, plain = threading.Event(), processes.wait
+
+    def wait(*args, **more):
+        event.set()
+        return plain(*args, **more)
+
+    monkeypatch.setattr(processes, "wait", wait)
+    return event
+
+
 @pytest.mark.parametrize(("number", "error"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, SystemExit)])
-def test_signal_stops_the_jobs_too(capsys, number, error):
+def test_signal_stops_the_jobs_too(capsys, waits, number, error):
     """Else they would go on without the program, or keep it."""
     ends = []
 
@@ -151,9 +163,10 @@ def test_signal_stops_the_jobs_too(capsys, number, error):
         return ends[-1]
 
     def send():
+        assert waits.wait(60.0)
         while len(processes._RUNNING) < 2:
             time.sleep(0.01)
-        os.kill(os.getpid(), number)
+        signal.pthread_kill(threading.main_thread().ident, number)  # another thread would not wake it
 
     usual = signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL
     before = signal.signal(number, usual)  # a caller in the background may ignore it
@@ -169,15 +182,9 @@ def test_signal_stops_the_jobs_too(capsys, number, error):
     assert capsys.readouterr().err == "fingerpad: running points that stop after their present step: 2\n"
 
 
-def test_job_that_waits_for_its_turn_is_not_begun(monkeypatch):
-    """As at a folder that another sweep has locked; the signal comes when the pool waits for the job."""
-    ends, waits, stopped, plain = [], threading.Event(), threading.Event(), processes.wait
-
-    def wait(*args, **more):
-        waits.set()
-        return plain(*args, **more)
-
-    monkeypatch.setattr(processes, "wait", wait)
+def test_job_that_waits_for_its_turn_is_not_begun(waits):
+    """As at a folder that another sweep has locked."""
+    ends, stopped = [], threading.Event()
 
     def job(k):
         assert stopped.wait(60.0)
@@ -185,8 +192,8 @@ def test_job_that_waits_for_its_turn_is_not_begun(monkeypatch):
         return ends[-1]
 
     def send():
-        waits.wait(60.0)
-        os.kill(os.getpid(), signal.SIGTERM)
+        assert waits.wait(60.0)
+        signal.pthread_kill(threading.main_thread().ident, signal.SIGTERM)
         while not processes._STOPPED.is_set():
             time.sleep(0.01)
         stopped.set()

@@ -26,6 +26,7 @@ _LAUNCHERS = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "MV2_")  # by whose variables M
 _STUCK = 20  # times its limit that a job may take by the clock
 _RUNNING = set[subprocess.Popen[str]]()  # of all pools: a signal is to the program
 _STOPPED = threading.Event()
+_NOTICED = 0.5  # s after which a signal is seen at the latest
 Key = TypeVar("Key")
 Result = TypeVar("Result")
 
@@ -148,7 +149,8 @@ class Pool(Generic[Key, Result]):
                     while waiting and len(running) < self.jobs and time.monotonic() < stop:
                         key = waiting.pop(0)
                         running[pool.submit(self.job, key)] = key
-                    ended, _ = wait(running, return_when=FIRST_COMPLETED)
+                    # A signal just before the wait is seen after it only.
+                    ended, _ = wait(running, timeout=_NOTICED, return_when=FIRST_COMPLETED)
                     for future in ended:
                         key = running.pop(future)
                         done(key, future.result(), len(waiting) + len(running))
