@@ -14,6 +14,7 @@ commit count as made by the commit that brought them, and so do older numbers, w
 
 import argparse
 import ast
+import functools
 import hashlib
 import io
 import json
@@ -61,7 +62,8 @@ def git(*words: str) -> bytes:
     return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, check=True).stdout
 
 
-def files(commit: str, paths: Sequence[str]) -> dict[str, bytes]:
+@functools.cache
+def files(commit: str, paths: tuple[str, ...]) -> dict[str, bytes]:
     """Return the Python files of a commit in folders, or at paths, by path."""
     there = [path for path in paths if git("ls-tree", "--name-only", commit, "--", path)]
     if not there:
@@ -79,6 +81,7 @@ def source(commit: str) -> str:
     return found.hexdigest()[:12]
 
 
+@functools.cache
 def computes(text: bytes) -> str:
     """Return the statements of a module, without comments, docstrings and what only ``draw(docs)`` uses."""
     module = ast.parse(text)
@@ -118,13 +121,13 @@ def changed(before: Mapping[str, bytes], now: Mapping[str, bytes]) -> set[str]:
     return {path for path in differ if path not in now or computes(before[path]) != computes(now[path])}
 
 
-def program(name: str) -> list[str]:
+def program(name: str) -> tuple[str, ...]:
     """Return the files and folders in benchmarks/ that make the numbers of a page."""
     _, own, *module = PAGES[name].split(".")
     path = ROOT / "benchmarks" / (own if module else f"{own}.py")
     text = "".join(file.read_text(encoding="utf-8") for file in ([path] if path.is_file() else path.glob("*.py")))
     shared = [name for name in _SHARED if re.search(rf"benchmarks(\.| import (\w+, )*){name}\b", text)]
-    return [*(f"benchmarks/{name}.py" for name in shared), f"benchmarks/{path.name}"]
+    return *(f"benchmarks/{name}.py" for name in shared), f"benchmarks/{path.name}"
 
 
 def since(commit: str, aside: tuple[str, ...], pairs: Sequence[Mapping[str, Any]]) -> set[str]:

@@ -128,6 +128,7 @@ def main(given: Sequence[str] | None = None) -> int:
     path = args.docs / SAME
     kept = json.loads(path.read_text(encoding="utf-8")) if path.exists() else []
     but = {"but": args.but} if args.but else {}
+    kept = [pair for pair in kept if (pair["before"], pair.get("but", [])) != (older, args.but)]  # that said so before
     kept.append({"before": older, "now": present, "scenes": list(SCENES)} | but)
     path.write_text(json.dumps(kept, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     print(f"{older} and {present} compute the same numbers of {len(SCENES)} scenes, to the last bit; kept in {path}")

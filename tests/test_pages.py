@@ -152,7 +152,7 @@ def test_program_of_a_page_is_in_git():
     root = harness.ROOT
     assert all((root / path).exists() for name in pages.PAGES for path in pages.program(name))
     assert "benchmarks/limits.py" in pages.program("errors")
-    assert pages.program("models") == ["benchmarks/runs.py", "benchmarks/models.py"]
+    assert pages.program("models") == ("benchmarks/runs.py", "benchmarks/models.py")
     assert not any("prose" in path or "harness" in path for path in pages.program("chart"))
 
 
