@@ -1,6 +1,7 @@
 """One measurement of benchmarks/performance.py in a process of its own; rank 0 prints JSON.
 
-python3 -m benchmarks.measure run [SCENE.toml] | tried [CONSTANT=VALUE ...] | operations FACTOR | compile | explicit
+python3 -m benchmarks.measure run [SCENE.toml] | tried [CONSTANT=VALUE ...] | compile | explicit
+python3 -m benchmarks.measure operations FACTOR | solvers FACTOR
 """
 
 import functools
@@ -26,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from benchmarks import explicit
+from benchmarks import explicit, linear
 from fingerpad.accuracy.refinement import Refinement
 from fingerpad.io.drawing import Drawing
 from fingerpad.io.writing import Writer
@@ -47,7 +48,6 @@ from variational.solvers.timing import memory_mb
 Numbers = dict[str, Any]
 _Key = tuple[str, str]
 _REPEATS, _SIZES = 5, ("contact", "receptor", "interface", "growth")
-_STRAIN = (0.01, -0.02)  # of the body whose operations are timed
 _NEWTON, _PATH, _ERRORS, _LAYER = "rest of Newton's method", "rest of the path", "errors", "layer at the screen"
 _WHOLE = ("stability", "output", "set-up", _LAYER)  # parts to which all that is called in them belongs
 _WATCHED: dict[str, list[tuple[type, str]]] = {
@@ -191,17 +191,29 @@ def tried(*constants: str) -> Numbers:
     }
 
 
+def default_finger(factor: str) -> Finger:
+    """Return the default finger with its element sizes times a factor."""
+    scene = by_rule(load())
+    size = scene.mesh.model_copy(update={name: float(factor) * getattr(scene.mesh, name) for name in _SIZES})
+    model = FingerModel(scene.model_copy(update={"mesh": size}), plan(scene))
+    return Finger(model, MPI.COMM_WORLD, lambda target, part, attempt: False)
+
+
+def solvers(factor: str) -> Numbers:
+    """Return what linear solvers cost on the tangent of the default finger with its element sizes times a factor."""
+    finger = default_finger(factor)
+    return {"unknowns": finger.unknowns, "ways": linear.measure(finger.solver)}
+
+
 def operations(factor: str) -> Numbers:
     """Return the cost of single operations on the default finger with its element sizes times a factor.
 
     Processor seconds are of all ranks, wall seconds of the slowest; both are the least of some repetitions.
     """
-    comm, before, scene = MPI.COMM_WORLD, memory_mb(), by_rule(load())
-    size = scene.mesh.model_copy(update={name: float(factor) * getattr(scene.mesh, name) for name in _SIZES})
-    model = FingerModel(scene.model_copy(update={"mesh": size}), plan(scene))
-    finger = Finger(model, comm, lambda target, part, attempt: False)
+    comm, before = MPI.COMM_WORLD, memory_mb()
+    finger = default_finger(factor)
     solver, equations = finger.solver, finger.solver.equations
-    solver.set_displacement(finger.problem.V.tabulate_dof_coordinates()[:, :2] * _STRAIN, np.zeros(2))
+    linear.strain(solver)
     K, f, step = (equations.layout.create_matrix(), *(equations.layout.create_vector() for _ in "ab"))
     ksp = PETSc.KSP().create(comm)
     ksp.setOptionsPrefix(PREFIX)
@@ -268,6 +280,7 @@ if __name__ == "__main__":
         "run": run,
         "tried": tried,
         "operations": operations,
+        "solvers": solvers,
         "compile": forms,
         "explicit": explicit.measure,
     }

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks import harness, targets, tried
+from benchmarks import harness, linear, targets, tried
 from benchmarks.harness import Made, keep, kept, made, prose, table
 
 FACTORS = (2.0, 1.4, 1.0, 0.7, 0.5, 0.31)  # on the element sizes of the default scene: 45 k to 1.16 M unknowns
@@ -84,6 +84,7 @@ PARTS = {
     "ranks": _ranks,
     "compile": _compile,
     "operations": _operations,
+    "solvers": lambda: child("solvers", "1.0"),
     "explicit": lambda: child("explicit"),
     "run": lambda: child("run"),
     "tried": lambda: tried.measure(child),
@@ -276,6 +277,7 @@ def draw(docs: Path) -> Path:
         text["compile"].format(files=of["compile"]["files"], ratio=cold["seconds"] / unit(run), cold=cold, warm=warm),
         f"## How the cost grows\n\n{text['growth'].format(saved=saved)}\n\n{_growth(sizes)}",
         f"## Two ranks\n\n{two}",
+        f"{text['solvers'].format(**of['solvers'])}\n\n{linear.rows(of['solvers']['ways'])}",
         f"{text['tried']}\n\n{tried.rows(of['tried'])}\n\n{text['others']}",
         f"{text['cluster']}\n\n{_cluster(sizes)}\n\n{text['array']}",
         f"## Explicit dynamics\n\n{_explicit(of['explicit'], run)}",

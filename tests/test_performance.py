@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks import explicit, performance, tried
+from benchmarks import explicit, linear, performance, tried
 from benchmarks.harness import DOCS
 from benchmarks.targets import Target, reasons, rows, targets
 
@@ -41,6 +41,21 @@ def test_busy_machine_is_refused(monkeypatch, tmp_path, capsys):
     performance.measure(["ranks"], tmp_path)
     assert "the load average is 2.00" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+def test_linear_solvers_that_are_compared_solve_the_same_system():
+    """On a coarse finger: direct ones to roundoff, the kept factorisation to what GMRES is asked for."""
+    found = performance.child("solvers", "6")
+    ways = found["ways"]
+    assert {linear.NOW, "GMRES, kept LU"} <= set(ways) <= set(linear.WAYS)
+    for name, numbers in ways.items():
+        assert min(numbers[part] for part in ("first", "set-up", "solve")) > 0
+        if numbers["iterations"] is None:
+            assert numbers["rest"] < 1e-9, name
+    assert ways["GMRES, kept LU"]["iterations"] > 1 and ways["GMRES, kept LU"]["rest"] < 1e-6
+    assert ways["its AMF ordering"]["entries"] != ways[linear.NOW]["entries"] > found["unknowns"]
+    first = linear.rows(ways).splitlines()[2]
+    assert first.startswith(f"| {linear.NOW} | 1.00 |")
 
 
 def test_what_is_tried_are_other_values_of_constants_that_there_are():
