@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 _STABILITY = ("stable", "lambda_min", "gain")
 _CHANGES = ("error", "penalty")
-_ROUNDOFF = 1e-9  # of a friction force over the external force; N/m
 KINDS = ("surface", "finger", "history", "footprint", "time")
 """Pictures of a result."""
 
@@ -259,7 +258,8 @@ class Result:
             for first, *rest in rows:
                 cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
                 lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
-        lines += [f"  {_in_time(load)}" for load in self.loads if load.over_time is not None]
+        least = self.record.get("force_error", 0.0)
+        lines += [f"  {_in_time(load, least)}" for load in self.loads if load.over_time is not None]
         lines += [f"  {note}" for note in self._remarks()]
         return "\n".join([*lines, *([f"{self.finger}"] if self.finger is not None else [])])
 
@@ -289,12 +289,17 @@ class Result:
         return [*found, *([PER_LENGTH] if self.named else []), *self.notes]
 
 
-def _in_time(load: LoadResult) -> str:
-    """Return range and mean of friction in a load over time, and its largest amplitude; of L_R without friction."""
+def _in_time(load: LoadResult, least: float) -> str:
+    """Return range and mean of friction in a load over time, and its largest amplitude; of L_R without friction.
+
+    Args:
+        load: over time.
+        least: friction force (N/m) up to which there is none.
+    """
     passed, f_t = load.over_time, load.extremes["f_t"]
     assert passed is not None
     key = "mu_app" if "mu_app" in load.extremes else "f_t"
-    rubs = max(abs(f_t.min), abs(f_t.max)) > _ROUNDOFF * max(abs(load.end.f_ext), _ROUNDOFF)
+    rubs = max(abs(f_t.min), abs(f_t.max)) > least
     key = key if rubs else "contact_length"
     quantity, ends, mean = QUANTITIES[key], load.extremes[key], passed.mean[key]
     unit = f" {quantity.unit}" if quantity.unit else ""
