@@ -263,10 +263,11 @@ def interrupt(*given):
     raise KeyboardInterrupt
 
 
-def test_folder_of_other_results_is_refused_before_the_work(tmp_path, smooth_scenes):
+@pytest.mark.parametrize("force", [0.5, None])
+def test_folder_of_other_results_is_refused_before_the_work(tmp_path, smooth_scenes, force):
     fp.run(model="cylinders", out=tmp_path)
     with pytest.raises(SceneError, match="holds the results of another scene"):
-        fp.run(force=0.5, model="smooth", out=tmp_path)
+        fp.run(force=force, model="smooth", out=tmp_path)
     assert not smooth_scenes and not (tmp_path / "ridge_tables").exists()
 
 

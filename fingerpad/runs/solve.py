@@ -190,6 +190,7 @@ def _solved(
         from fingerpad.io.console import Console
         from fingerpad.reduced import smooth
 
+        _refuse_other_results(scene, model, out, comm, asked)
         console = Console(comm, lines, bar)
         try:
             return kept(smooth.solve(scene, tables or tables_in(out), comm, console), out, comm)
@@ -205,9 +206,8 @@ def _whole(
 
     value, number = traces.newtons(force), itertools.count(1)
     asked = {"force": value, "parameters": scene.parameters()}
-    if model != "full" and out is not None:
-        with Place(out, scene.parameters(), _ranks(comm), model, asked):
-            pass  # a folder of other results is refused before the work, not after it
+    if model != "full":
+        _refuse_other_results(scene, model, out, _ranks(comm), asked)
     own, tables = out if model == "full" else None, tables_in(out) if model == "smooth" else None
     told = lines and model == "smooth" and terminal.rank() == 0
 
@@ -232,6 +232,15 @@ def _whole(
     if model != "full":
         return kept(found, out, _ranks(comm), asked)
     return _written(found, _ranks(comm))
+
+
+def _refuse_other_results(
+    scene: Scene, model: str, out: Path | None, comm: "MPI.Comm | Serial", asked: Mapping[str, Any] | None = None
+) -> None:
+    """Refuse a folder of other results before the work, not after it; collective; see :func:`kept`."""
+    if out is not None:
+        with Place(out, scene.parameters(), comm, model, asked):
+            pass
 
 
 def _ranks(comm: "MPI.Comm | None") -> "MPI.Comm | Serial":
