@@ -60,7 +60,7 @@ class Range:
         if type(value) is int and abs(value) < 10**300:
             value = float(value)
         typed = isinstance(value, str) and self.unit != ""
-        number = float(handler(self._read(value) if typed else value))
+        number = float(handler(self._read(value) if typed else value)) + 0.0  # which has no zero with a sign
         if number not in self:
             given = {"words": self.words(number, slip=not typed), "range": self, "number": number, "slip": not typed}
             raise PydanticCustomError(OUT_OF_RANGE, "{words}", given)

@@ -1,5 +1,7 @@
 """Numbers with units as text: the same number as in SI, or refused in one sentence that names the unit wanted."""
 
+import math
+
 import numpy as np
 import pint
 import pytest
@@ -113,3 +115,9 @@ def test_text_without_pint_is_refused():
 def test_numbers_do_not_import_pint():
     done = without("from fingerpad import scene; scene.load(None, {'f_ext': 50, 'mesh.contact': 5e-6})", *HEAVY, "pint")
     assert done.returncode == 0, done.stderr
+
+
+def test_zero_has_no_sign():
+    """Else a sweep over 0 V and -0 V runs the same scene twice, in two folders."""
+    for voltage in (-0.0, "-0 V"):
+        assert math.copysign(1.0, Scene(voltage=voltage).voltage) == 1.0
