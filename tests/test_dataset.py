@@ -18,6 +18,7 @@ from fingerpad.io import columns, dataset
 from fingerpad.io.over_time import QUANTITIES, OverTime
 from fingerpad.io.result import Result
 from fingerpad.runs import sweep_dataset
+from fingerpad.runs.sweep import Sweep
 from fingerpad.scene import from_data
 from tests.runs import run
 from variational.roughness.closure import AirGap, Closure
@@ -288,6 +289,20 @@ def test_swept_names_are_text(tmp_path):
     data = fp.sweep(fp.Scene(), tmp_path, model="cylinders", **axes).to_xarray()
     assert data["materials.exponent"].values.tolist() == ["printed", "abaqus"]
     assert data["roughness.h_rms"].attrs["units"] == "m"
+
+
+def test_sites_of_a_sweep_are_those_of_its_states(folder, data, tmp_path):
+    found = Sweep({"voltage": (50.0,)}, (Result.load(folder),), tmp_path)
+    swept = found.to_xarray()
+    assert swept["merkel_sed"].dims == ("voltage", "state", "ridge")
+    assert swept["meissner_sed"].dims == ("voltage", "state", "ridge", "side")
+    state = found[0].charged
+    ridges = swept["ridge"].values
+    mine = swept.sel(voltage=50.0, state="charged")
+    for name in ("merkel_sed", "meissner_sed"):
+        np.testing.assert_array_equal(mine[name], data[name].sel(step=state.step, ridge=ridges))
+        assert mine[name].notnull().all() and swept[name].sel(state="full_slip").isnull().all()
+        assert swept[name].attrs == data[name].attrs
 
 
 # -- faults ----------------------------------------------------------------------------------------------

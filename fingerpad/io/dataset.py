@@ -58,13 +58,13 @@ def dataset(result: "Result") -> "xarray.Dataset":
         tables = {name: _table(result, name) for name in (*_RIDGE_TABLES, "coupling")}
         steps = [state.step for state in result.steps]
         numbers = sorted({int(row["ridge"]) for name in _RIDGE_TABLES for row in tables[name]})
-        found |= _steps(result.steps) | _loads(result)
+        found |= _steps(result.steps) | loads(result)
         found["ridge"] = ("ridge",), np.array(numbers, np.int32), _about(Column("1", "number of the ridge, 0 central"))
         for end, dim, key, labels in (("", "step", "step", steps), ("_final", "state", "of", list(STATES))):
             found |= _by_ridge(tables[f"ridges{end}"], (dim, key, labels), numbers, f"ridge{end}_", columns.RIDGES)
             found |= _sites(tables[f"receptors{end}"], (dim, key, labels), numbers, end.removeprefix("_"))
         found |= _coupling(tables["coupling"], steps)
-    found |= _skin(result.named) | _finger(result.finger)
+    found |= _skin(result.named) | finger(result.finger)
     coords = {name: value for name, value in found.items() if name in COORDINATES}
     data = {name: value for name, value in found.items() if name not in COORDINATES}
     return xarray.Dataset(data, coords, attributes(result))
@@ -167,22 +167,22 @@ def _steps(steps: Sequence[ContactState]) -> Variables:
     return found
 
 
-def _loads(result: "Result") -> Variables:
+def loads(result: "Result") -> Variables:
     """Return the results of the loads along ``load``."""
-    loads = result.loads
-    found: Variables = {"load": (("load",), _array([load.name for load in loads]), _about(columns.STEPS["load"]))}
-    ends = [load.end.step for load in loads]
+    names = _array([load.name for load in result.loads])
+    found: Variables = {"load": (("load",), names, _about(columns.STEPS["load"]))}
+    ends = [load.end.step for load in result.loads]
     found["load_last_step"] = ("load",), _array(ends), _about(Column("1", "last step of the load"))
     for name in ("full_slip_reached", "full_slip_held"):
         slip = Column("1", f"whether full slip was {name.rpartition('_')[2]} in the load")
-        found[f"load_{name}"] = ("load",), _array([getattr(load, name) for load in loads]), _about(slip)
-    for quantity in dict.fromkeys(name for load in loads for name in load.extremes):
+        found[f"load_{name}"] = ("load",), _array([getattr(load, name) for load in result.loads]), _about(slip)
+    for quantity in dict.fromkeys(name for load in result.loads for name in load.extremes):
         for end, words in (("min", "least"), ("max", "largest")):
-            values = [getattr(load.extremes.get(quantity), end, math.nan) for load in loads]
+            values = [getattr(load.extremes.get(quantity), end, math.nan) for load in result.loads]
             column = columns.STEPS[quantity]
             about = _about(Column(column.unit, f"{words} value in the load: {column.meaning}"))
             found[f"load_{quantity}_{end}"] = ("load",), _array(values), about
-    return found | _over_time(loads)
+    return found | _over_time(result.loads)
 
 
 def _over_time(loads: "Sequence[LoadResult]") -> Variables:
@@ -249,6 +249,16 @@ def _sites(rows: Sequence[Row], axis: Axis, numbers: Sequence[int], end: str) ->
     return {f"merkel{end}_sed": flat["merkel_sed"], f"meissner{end}_sed": ((*dims, "side"), both, about), "side": sides}
 
 
+def sites(result: "Result") -> Variables:
+    """Return the energy densities at the sites in the named states, of a result in a folder; nothing without any."""
+    steps = {str(state.step): name for name, state in result.named.items()}
+    rows: list[Row] = [*_table(result, "receptors_final")]  # on the final mesh, with an accuracy asked for
+    rows = rows or [{**row, "of": steps[row["step"]]} for row in _table(result, "receptors") if row["step"] in steps]
+    numbers = sorted({int(row["ridge"]) for row in rows})
+    ridge = ("ridge",), np.array(numbers, np.int32), _about(Column("1", "number of the ridge, 0 central"))
+    return {"ridge": ridge} | _sites(rows, ("state", "of", list(STATES)), numbers, "") if rows else {}
+
+
 def _coupling(rows: Sequence[Row], steps: Sequence[int]) -> Variables:
     """Return the columns of ``coupling.csv`` along ``step`` and ``iteration``."""
     if not rows:
@@ -285,15 +295,15 @@ def _skin(named: Mapping[str, ContactState]) -> Variables:
     return found
 
 
-def _finger(finger: "WholeFinger | None") -> Variables:
+def finger(whole: "WholeFinger | None") -> Variables:
     """Return the whole finger along ``state``, and its slices along ``state`` and ``slice``; NaN if missing."""
-    if finger is None:
+    if whole is None:
         return {}
-    count = max(len(total.z) for total in finger.states.values())
+    count = max(len(total.z) for total in whole.states.values())
     sums = {name: np.full(len(STATES), np.nan) for name in columns.FINGER}
     slices = {name: np.full((len(STATES), count), np.nan) for name in columns.SLICES}
-    for state, total in finger.states.items():
-        for name, value in finger.values(state).items():
+    for state, total in whole.states.items():
+        for name, value in whole.values(state).items():
             sums[name][STATES.index(state)] = value
         for name, along in total.slices().items():
             slices[name][STATES.index(state), : len(along)] = along

@@ -220,7 +220,7 @@
         mode: "lines+markers", line: { color: COLOURS[k % COLOURS.length], dash: DASHES[k % DASHES.length] },
         marker: { symbol: MARKERS[k % MARKERS.length], size: 9 }, error_y: bars(curve[key + "_error"], COLOURS[k % COLOURS.length]),
         hovertemplate: `${curve.name}<br>%{x:.4g}: %{y:.4g}<extra></extra>` }));
-      draw("sweep_" + key, traces, layout(320, { showlegend: data.sweep.curves.length > 1, margin: { l: 60, r: 12, t: 60, b: 44 },
+      draw(key, traces, layout(320, { showlegend: data.sweep.curves.length > 1, margin: { l: 60, r: 12, t: 60, b: 44 },
         xaxis: axis(data.sweep.along), yaxis: axis(title, { rangemode: "tozero" }) }));
     }
   }

@@ -13,7 +13,7 @@ from fingerpad.scene import SceneError, from_data
 from fingerpad.scene.messages import clip
 from variational.state import ContactState
 
-_STATES = ("uncharged_", "normal_", "slip_")
+_RESULTS = ("uncharged_", "normal_", "slip_", "load_")
 _MODELS = ("full", "smooth")
 
 
@@ -91,7 +91,7 @@ def _sweep(folder: Path) -> Table:
             rows, columns = tuple(reader), list(reader.fieldnames or ())
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise SceneError(f"the table of {name} cannot be read: {error}") from None
-    axes = tuple(key for key in columns if not key.startswith(_STATES) and key != "failure")
+    axes = tuple(key for key in columns if not key.startswith(_RESULTS) and key != "failure")
     if "failure" not in columns or not axes or not rows:
         raise SceneError(f"table.csv in {name} is not the table of a sweep of fingerpad, or is cut short")
     whole = [row for row in rows if None not in row and None not in row.values()]

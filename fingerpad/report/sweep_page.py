@@ -9,20 +9,26 @@ from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
 from fingerpad.report import page as html
 from fingerpad.report import parameters
 from fingerpad.report.source import Table
+from fingerpad.runs.sweep_columns import LOAD, SHOWN, in_time, loads, text
 from fingerpad.runs.sweep_dataset import described
 
-_SHOWN = ("mu_app", "f_t", "contact_length", "f_electrostatic", "ridges_in_contact")
 _CHARTS = {
     "mu_app": "apparent friction µ_app",
     "f_t": "friction force f_T (N/m)",
     "contact_length": "contact length L_R (mm)",
+}
+_IN_TIME = {  # column of a load over time, behind its name
+    "mu_app_max": "largest µ_app",
+    "mu_app_mean": "mean µ_app",
+    "f_t_amplitude": "amplitude of f_T (N/m)",
 }
 
 
 def page(table: Table) -> str:
     """Return the page of a sweep."""
     title = f"fingerpad: sweep over {', '.join(table.axes)}"
-    parts = [_head(table), _study(table), _points(table), _failed(table), _parameters(table), _cite(table)]
+    made = (_head, _over_time, _study, _points, _failed, _parameters, _cite)
+    parts = [section(table) for section in made]
     return html.page(title, "\n".join(filter(None, parts)), {"sweep": _curves(table)})
 
 
@@ -36,6 +42,14 @@ def _head(table: Table) -> str:
         number = f"f<sub>T</sub> from {min(f_t):.3f} to {max(f_t):.3f} N/m"
     else:
         number = "No point reached full slip"
+    said = f"at full slip, over {_varied(table)}"
+    for name in loads(table.rows[0])[:1]:  # which a sweep of a waveform is about
+        column = f"{LOAD}_{name}_mu_app"
+        read = ([_read(row.get(f"{column}_{end}")) for row in table.rows] for end in ("min", "max"))
+        least, most = ([value for value in values if value is not None] for values in read)
+        if least and most:
+            said = f"in the load {name}, over {_varied(table)}; {number.replace('<sub>app</sub>', '_app')} at full slip"
+            number = f"µ<sub>app</sub> from {min(least):.3f} to {max(most):.3f}"
     failed = [row for row in table.rows if row["failure"]]
     missing = len(table.rows) - len(slid) - sum(1 for row in failed if not _slid(row))
     kind, mark, words = "holds", "✓ holds", "Every point was computed."
@@ -44,7 +58,6 @@ def _head(table: Table) -> str:
         words = f"{len(failed)} of {len(table.rows)} points failed; the table of failures says why."
     elif missing:
         kind, mark, words = "care", "! care", f"{missing} of {len(table.rows)} points have no full slip."
-    said = f"at full slip, over {_varied(table)}"
     return (
         f'<header><p class="kind">fingerpad · report of a sweep · {html.text(table.folder.resolve().name)}</p>'
         f'<h1>{number}</h1><p class="said">{html.text(said)}</p>'
@@ -66,6 +79,32 @@ def _varied(table: Table) -> str:
     return "; ".join(words)
 
 
+def _over_time(table: Table) -> str:
+    """Return friction and contact in loads over time, which no state at full slip has; nothing without such a load."""
+    parts = list[str]()
+    for name in loads(table.rows[0]):
+        shown = in_time(name, table.rows[0])
+        heads = [*(_head_of(key) for key in table.axes), *shown.values()]
+        rows = [
+            [*(_plain(row[key]) for key in table.axes), *(text(column, _read(row[column])) for column in shown)]
+            for row in table.rows
+        ]
+        charts = [html.chart(key, title) for key, (column, title) in _charts(table).items() if column in shown]
+        parts += [html.paragraph(f"In the load {name}:"), *charts, html.table(heads, map(tuple, rows), "numbers")]
+    return html.section("time", "Loads over time", *parts) if parts else ""
+
+
+def _charts(table: Table) -> dict[str, tuple[str, str]]:
+    """Return the column and the title of each chart by the name of its place on the page."""
+    found = {f"sweep_{key}": (f"slip_{key}", words) for key, words in _CHARTS.items()}
+    for k, name in enumerate(loads(table.rows[0])):
+        for key, words in _IN_TIME.items():
+            column = f"{LOAD}_{name}_{key}"
+            if column in table.rows[0]:
+                found[f"sweep_load_{k}_{key}"] = column, words
+    return found
+
+
 def _study(table: Table) -> str:
     charts = [html.chart(f"sweep_{key}", f"{words} at full slip over the sweep") for key, words in _CHARTS.items()]
     note = "Bars are estimated discretisation errors, where a run has them."
@@ -79,14 +118,14 @@ def _points(table: Table) -> str:
     rows = []
     for row in table.rows:
         cells = []
-        for key in _SHOWN:
+        for key in SHOWN:
             value, error = _read(row.get(f"slip_{key}")), _read(row.get(f"slip_{key}_error"))
             cells.append("–" if value is None else cell(key, value, math.nan if error is None else error))
         state = "failed" if row["failure"] else "" if _slid(row) else "no full slip"
         first, *rest = (_plain(row[key]) for key in table.axes)
         rows.append((first, *rest, *cells, state))
     heads = [_head_of(key) for key in table.axes]
-    heads += [f"{QUANTITIES[k].words}{f' ({QUANTITIES[k].unit})' if QUANTITIES[k].unit else ''}" for k in _SHOWN]
+    heads += [f"{QUANTITIES[k].words}{f' ({QUANTITIES[k].unit})' if QUANTITIES[k].unit else ''}" for k in SHOWN]
     return html.section(
         "points", "Every point", html.table((*heads, ""), rows, "numbers"), html.paragraph(PER_LENGTH, "note")
     )
@@ -146,6 +185,7 @@ def _toml(cell: str) -> str:
 
 def _curves(table: Table) -> dict[str, Any]:
     """Return one curve for each value of all axes but the one along x, which is that with most numbers."""
+    charts = _charts(table)
     numbers = {key: {row[key] for row in table.rows if _read(row[key]) is not None} for key in table.axes}
     along = max(table.axes, key=lambda key: len(numbers[key]))
     others = [key for key in table.axes if key != along]
@@ -161,13 +201,14 @@ def _curves(table: Table) -> dict[str, Any]:
             "name": ", ".join(f"{key} = {_plain(value)}" for key, value in zip(others, values, strict=True)),
             "x": [_read(row[along]) if numbers[along] else _plain(row[along]) for row in mine],
         }
-        for key in _CHARTS:
-            scale = QUANTITIES[key].scale
-            for name in (key, f"{key}_error"):
-                found = [_read(row.get(f"slip_{name}")) for row in mine]
-                curve[name] = [None if value is None else value * scale for value in found]
+        for place, (column, _) in charts.items():
+            scale = QUANTITIES["contact_length"].scale if column.endswith("contact_length") else 1.0
+            for end in ("", "_error"):
+                found = [_read(row.get(f"{column}{end}")) for row in mine]
+                curve[f"{place}{end}"] = [None if value is None else value * scale for value in found]
         curves.append(curve)
-    return {"along": _head_of(along), "curves": curves, "charts": _CHARTS}
+    titles = {place: title for place, (_, title) in charts.items()}
+    return {"along": _head_of(along), "curves": curves, "charts": titles}
 
 
 def _head_of(key: str) -> str:

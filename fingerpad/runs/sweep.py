@@ -20,11 +20,12 @@ from fingerpad.io.files import replace, replace_json
 from fingerpad.io.folder import check_folder
 from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
 from fingerpad.io.result import Result
-from fingerpad.io.states import PREFIXES, STATES
+from fingerpad.io.states import STATES
 from fingerpad.model.check import check
 from fingerpad.report.write import attempt
 from fingerpad.runs import sweep_dataset
 from fingerpad.runs.solve import MODELS, checked, solved
+from fingerpad.runs.sweep_columns import SHOWN, newtons_of, printed, row, tables
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import clip, show
 from fingerpad.scene.reading import plain, put
@@ -37,7 +38,6 @@ FILES = ("table.csv", sweep_dataset.FILE, "report.html", "sweep.json")
 """What a sweep writes into its folder beside its points."""
 _MOST = 10_000  # points
 _LIMIT = 4 * 3600.0  # s of processor time for one point
-_SHOWN = ("mu_app", "f_t", "contact_length", "f_electrostatic", "ridges_in_contact")
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,14 +95,8 @@ class Sweep:
         return np.array(values).reshape([len(values) for values in self.axes.values()])
 
     def rows(self) -> list[dict[str, Any]]:
-        """Return a flat row for each point: axes, results and errors of the named states, and failure; SI units."""
-        rows = []
-        for point, result in zip(self.points(), self.results, strict=True):
-            values = result.values()
-            names = [f"{PREFIXES[state]}_{key}" for state in STATES for key in _SHOWN]
-            cells = {key: values.get(key) for name in names for key in (name, f"{name}_error") if key in values}
-            rows.append(point | cells | {"failure": result.failure})
-        return rows
+        """Return a flat row for each point in SI units: axes, :mod:`~fingerpad.runs.sweep_columns`, and failure."""
+        return [point | row(result) for point, result in zip(self.points(), self.results, strict=True)]
 
     def to_xarray(self) -> "xarray.Dataset":
         """Return the named states along the swept keys as one dataset with units, as ``sweep.nc`` has it.
@@ -124,20 +118,33 @@ class Sweep:
         replace(Path(path), "".join(lines))
 
     def __str__(self) -> str:
-        """Return full slip over the axes as a table with units; ± estimated discretisation errors."""
-        heads = [*(_head(key) for key in self.axes), *(_head(key) for key in _SHOWN)]
-        rows = [heads]
-        for point, result in zip(self.points(), self.results, strict=True):
-            first = [_text(value) for value in point.values()]
+        """Return full slip over the axes, and loads over time, as tables with units; ± estimated discretisation errors.
+
+        The last column is friction of the whole finger, where it is known.
+        """
+        axes = {key: _head(key) for key in self.axes}
+        newtons = any(result.finger is not None for result in self.results)
+        heads = [*axes.values(), *(_head(key) for key in SHOWN), *(["F_T (N)"] if newtons else [])]
+        table = [heads]
+        for values, result in zip(self.points(), self.results, strict=True):
+            first = [printed(value) for value in values.values()]
             state = result.full_slip
             if state is None:
-                rows.append([*first, result.failure or "no full slip"])
+                table.append([*first, result.failure or "no full slip"])
                 continue
-            cells = [cell(key, getattr(state, key), getattr(state.error, key, np.nan)) for key in _SHOWN]
-            rows.append([*first, *cells])
-        widths = [max(len(row[k]) for row in rows if len(row) == len(heads)) for k in range(len(heads))]
-        lines = ["   ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=False)) for row in rows]
-        return "\n".join(["At full slip", *lines, PER_LENGTH, *self.notes])
+            cells = [cell(key, getattr(state, key), getattr(state.error, key, np.nan)) for key in SHOWN]
+            table.append([*first, *cells, *([newtons_of(result)] if newtons else [])])
+        lines = ["At full slip", *_aligned(table)]
+        for name, over_time in tables(self.rows(), axes):
+            lines += [f"Over time, in the load {name}", *_aligned(over_time)]
+        return "\n".join([*lines, PER_LENGTH, *self.notes])
+
+
+def _aligned(table: Sequence[Sequence[str]]) -> list[str]:
+    """Return the lines of a table; a line that is cut short ends in words."""
+    whole = [line for line in table if len(line) == len(table[0])]
+    widths = [max(map(len, column)) for column in zip(*whole, strict=True)]
+    return ["   ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=False)) for line in table]
 
 
 class _Lines(list[str]):
@@ -146,12 +153,6 @@ class _Lines(list[str]):
     def write(self, line: str) -> None:
         """Add a line."""
         self.append(line)
-
-
-def _text(value: Any) -> str:
-    if isinstance(value, bool):
-        return str(value).lower()
-    return f"{value:g}" if isinstance(value, int | float) else str(value)
 
 
 def _head(key: str) -> str:

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fingerpad.io import dataset
+from fingerpad.io.states import STATES
 from fingerpad.scene.keys import Key, every
 
 if TYPE_CHECKING:
     import xarray
 
+    from fingerpad.io.result import Result
     from fingerpad.runs.sweep import Sweep
 
 FILE = "sweep.nc"
@@ -25,8 +27,9 @@ def of_sweep(sweep: "Sweep") -> "xarray.Dataset":
         sweep: with at least one point.
 
     Returns:
-        The named states of every point along the swept keys and ``state``, as in the dataset of a run; the failure and
-        the cost of every point. Its attributes are the parameters that all points share. SI units.
+        The named states of every point along the swept keys and ``state``, as in the dataset of a run; likewise its
+        loads, its sums over the whole finger and its sites in the named states, where a point has them; its failure and
+        cost. The attributes are the parameters that all points share. SI units.
 
     Raises:
         ImportError: xarray is not installed.
@@ -41,6 +44,7 @@ def of_sweep(sweep: "Sweep") -> "xarray.Dataset":
         if name != "state":
             values = np.stack([point[name][1] for point in points])
             found[name] = (*axes, *dims), values.reshape(*shape, *values.shape[1:]), about
+    found |= _more([_of_point(result) for result in sweep.results], axes, shape)
     failures = np.array([result.failure for result in sweep.results], object).reshape(shape)
     found["failure"] = axes, failures, {"units": "1", "long_name": "reason of a failure, empty without one"}
     for name, words in (("wall_seconds", "elapsed time"), ("processor_seconds", "processor time of all ranks")):
@@ -50,9 +54,48 @@ def of_sweep(sweep: "Sweep") -> "xarray.Dataset":
         meant = described(key)
         unit, words = ("1", key) if meant is None else (meant.unit or "1", meant.meaning)
         found[key] = (key,), _coordinate(along), {"units": unit, "long_name": words}
-    coords = {name: value for name, value in found.items() if name in (*axes, "state")}
+    coords = {name: value for name, value in found.items() if name in (*axes, *dataset.COORDINATES)}
     data = {name: value for name, value in found.items() if name not in coords}
     return xarray.Dataset(data, coords, _shared(sweep))
+
+
+def _of_point(result: "Result") -> dataset.Variables:
+    """Return the loads, newtons and sites of a point."""
+    sums = {name: each for name, each in dataset.finger(result.finger).items() if "slice" not in each[0]}
+    return (dataset.loads(result) if result.loads else {}) | sums | dataset.sites(result)
+
+
+def _more(points: Sequence[dataset.Variables], axes: tuple[str, ...], shape: Sequence[int]) -> dataset.Variables:
+    """Return variables of all points along the swept keys and their own dimensions; NaN where a point has no value.
+
+    A place along a dimension that has a coordinate is that of its label: a load by name, a ridge by number.
+    """
+    labels: dict[str, list[Any]] = {}
+    for point in points:
+        for name in point.keys() & set(dataset.COORDINATES):
+            mine = labels.setdefault(name, [])
+            mine += [label for label in point[name][1].tolist() if label not in mine]
+    if "ridge" in labels:
+        labels["ridge"].sort()
+    abouts = {name: (dims, about) for point in points for name, (dims, _, about) in point.items()}
+    found: dataset.Variables = {}
+    for name, (dims, about) in abouts.items():
+        if name in labels:
+            kind = object if isinstance(labels[name][0], str) else np.int32
+            found[name] = dims, np.array(labels[name], kind), about
+            continue
+        sizes = [len(STATES) if dim == "state" else len(labels[dim]) for dim in dims]
+        values = np.full((len(points), *sizes), np.nan)
+        for k, point in enumerate(points):
+            if name in point:
+                at = [range(len(STATES)) if dim == "state" else _places(point[dim][1], labels[dim]) for dim in dims]
+                values[k][np.ix_(*at)] = point[name][1]
+        found[name] = (*axes, *dims), values.reshape(*shape, *sizes), about
+    return found
+
+
+def _places(mine: Any, labels: Sequence[Any]) -> list[int]:
+    return [labels.index(label) for label in mine.tolist()]
 
 
 def described(key: str) -> Key | None:

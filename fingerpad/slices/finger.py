@@ -89,17 +89,18 @@ class WholeFinger:
 
     def rows(self) -> Iterator[list[str]]:
         """Yield the quantities with unit, and their values in each state with the discretisation error."""
-        for key, (words, unit, scale, digits) in _SHOWN.items():
-            cells = []
-            for name in self.states:
-                value, error = self.values(name)[key] * scale, self.error.get(name, {}).get(key, math.nan) * scale
-                if key in _FRICTION and name != "full_slip":
-                    cells.append("–")
-                else:
-                    large = not math.isnan(error) and error >= 0.5 * 10.0**-digits
-                    cells.append(plus_minus(value, error) if large else f"{value:z.{digits}f}")
+        for key, (words, unit, *_) in _SHOWN.items():
+            known = [name for name in self.states if key not in _FRICTION or name == "full_slip"]
+            cells = [self.shown(name, key) if name in known else "–" for name in self.states]
             if set(cells) - {"–"}:
                 yield [f"{words} ({unit})" if unit else words, *cells]
+
+    def shown(self, name: str, key: str) -> str:
+        """Return a quantity of a state in the unit of tables, with its error where the error reaches the digits."""
+        *_, scale, digits = _SHOWN[key]
+        value, error = self.values(name)[key] * scale, self.error.get(name, {}).get(key, math.nan) * scale
+        large = not math.isnan(error) and error >= 0.5 * 10.0**-digits
+        return plus_minus(value, error) if large else f"{value:z.{digits}f}"
 
     def heads(self) -> list[str]:
         """Return the words of the states."""

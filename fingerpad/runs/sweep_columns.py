@@ -1,0 +1,129 @@
+"""The columns of a sweep's table: of each point its named states, its newtons and its loads over time.
+
+A load over time, such as a drive waveform, has no named state: ``load_NAME_mu_app_max`` is the largest coefficient in
+it, ``load_NAME_f_t_amplitude`` the largest amplitude in the spectrum of friction and ``load_NAME_f_t_frequency`` the
+frequency of that.
+"""
+
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from fingerpad.io.quantities import QUANTITIES, cell
+from fingerpad.io.result import Result
+from fingerpad.io.states import PREFIXES, STATES, LoadResult
+from fingerpad.slices.finger import WholeFinger
+
+SHOWN = ("mu_app", "f_t", "contact_length", "f_electrostatic", "ridges_in_contact")
+"""Quantities of a named state."""
+FINGER, LOAD = "finger", "load"
+"""Beginnings of the columns of a whole finger, behind the state's, and of a load over time."""
+_NEWTONS = ("f_ext", "f_t", "mu_app", "f_electrostatic", "contact_area")
+_IN_TIME = ("mu_app", "f_t", "contact_length")
+_ENDS = {"min": "least", "max": "largest", "mean": "mean"}
+_DIGITS = 4
+
+
+def row(result: Result) -> dict[str, Any]:
+    """Return the values of a point in SI units by column, and its failure."""
+    values = result.values()
+    names = [f"{PREFIXES[state]}_{key}" for state in STATES for key in SHOWN]
+    cells = {key: values.get(key) for name in names for key in (name, f"{name}_error") if key in values}
+    if result.finger is not None:
+        cells |= _newtons(result.finger)
+    for load in result.loads:
+        cells |= _in_time(load)
+    return cells | {"failure": result.failure}
+
+
+def _newtons(finger: WholeFinger) -> dict[str, float]:
+    found: dict[str, float] = {}
+    for state in finger.states:
+        values, error = finger.values(state), finger.error.get(state, {})
+        for key in _NEWTONS:
+            if key in ("mu_app", "f_t") and state != "full_slip":
+                continue
+            name = f"{PREFIXES[state]}_{FINGER}_{key}"
+            found |= {name: values[key]} | ({f"{name}_error": error[key]} if key in error else {})
+    return found
+
+
+def _in_time(load: LoadResult) -> dict[str, float]:
+    passed, found = load.over_time, dict[str, float]()
+    if passed is None:
+        return found
+    for key in _IN_TIME:
+        ends = load.extremes.get(key)
+        if ends is not None:
+            values = {"min": ends.min, "max": ends.max, "mean": passed.mean[key]}
+            found |= {f"{LOAD}_{load.name}_{key}_{end}": values[end] for end in _ENDS}
+    if passed.periods:
+        most, frequency = max(zip(passed.f_t_amplitude, passed.frequency, strict=True))
+        name = f"{LOAD}_{load.name}_f_t"
+        found |= {f"{name}_amplitude": most, f"{name}_frequency": frequency}
+    return found
+
+
+def newtons_of(result: Result) -> str:
+    """Return friction of the whole finger at full slip (N) as it is printed."""
+    if result.finger is None or "full_slip" not in result.finger.states:
+        return "–"
+    return result.finger.shown("full_slip", "f_t")
+
+
+def loads(columns: Iterable[str]) -> list[str]:
+    """Return the names of the loads over time that columns are of, in order."""
+    found = (re.fullmatch(rf"{LOAD}_(.+)_contact_length_mean", column) for column in columns)
+    return [match[1] for match in found if match]
+
+
+def in_time(name: str, columns: Iterable[str]) -> dict[str, str]:
+    """Return the columns of a load over time that are printed, in words with units.
+
+    Args:
+        name: of the load.
+        columns: of the table.
+    """
+    words, there = dict[str, str](), set(columns)
+    friction = "mu_app" if f"{LOAD}_{name}_mu_app_mean" in there else "f_t"
+    for key in (friction, "contact_length"):
+        quantity = QUANTITIES[key]
+        short, unit = quantity.words.split()[-1], f" ({quantity.unit})" if quantity.unit else ""
+        words |= {f"{key}_{end}": f"{said} {short}{unit}" for end, said in _ENDS.items()}
+    words |= {"f_t_amplitude": "amplitude of f_T (N/m)", "f_t_frequency": "at (Hz)"}
+    return {column: said for key, said in words.items() if (column := f"{LOAD}_{name}_{key}") in there}
+
+
+def text(column: str, value: float | None) -> str:
+    """Return a value in SI of a load's column as it is printed."""
+    if value is None or math.isnan(value):
+        return "–"
+    key = next((key for key in _IN_TIME if re.search(rf"_{key}_(min|max|mean)$", column)), None)
+    if key is None:
+        key = "f_t" if column.endswith("amplitude") else None
+    return f"{value:.{_DIGITS}g}" if key is None else cell(key, value)
+
+
+def tables(rows: list[dict[str, Any]], axes: Mapping[str, str]) -> Iterator[tuple[str, list[list[str]]]]:
+    """Yield the name of each load over time, and its table with heads, a line a point.
+
+    Args:
+        rows: of all points.
+        axes: heads of the swept keys by key.
+    """
+    columns = list(dict.fromkeys(column for each in rows for column in each))
+    for name in loads(columns):
+        shown = in_time(name, columns)
+        lines = [[*axes.values(), *shown.values()]]
+        for each in rows:
+            values = [text(column, each.get(column)) for column in shown]
+            lines.append([*(printed(each[key]) for key in axes), *values])
+        yield name, lines
+
+
+def printed(value: Any) -> str:
+    """Return the value of a swept key as it is printed."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f"{value:g}" if isinstance(value, int | float) else str(value)
