@@ -282,3 +282,19 @@ def test_profile_that_does_not_fit_costs_a_note_alone():
     scene = small(**SMALL).replace(slices={"radius": 1.0, "length": 1e-3})
     result = fp.run(scene)
     assert result.finger is None and "no newtons of the whole finger: the finger ends at z" in result.notes[-1]
+
+
+def test_report_and_text_of_a_force_begin_with_the_whole_finger(tmp_path):
+    """Its coefficient is not that of the centre slice, nor of the end of a trace."""
+    result = fp.run(force=2.0, model="cylinders", out=tmp_path)
+    whole = result.finger.values("full_slip")
+    assert whole["mu_app"] != pytest.approx(result.full_slip.mu_app, rel=0.05)
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert f"<h1>µ<sub>app</sub> = {whole['mu_app']:.4f}</h1>" in page
+    assert f"friction force {whole['f_t']:.4f} N; 2 N on the whole finger, 200 V" in page
+    assert page.index('id="newtons"') < page.index('id="numbers"') and "under its part of the force" in page
+    text = str(result)
+    assert text.startswith("Whole finger, as a sum of slices")
+    assert text.index("Cross-section at the centre of the finger (model 'cylinders')") > 0
+    assert fp.Result.load(tmp_path).asked_force == 2.0 and str(fp.Result.load(tmp_path)) == text
+    assert fp.run(model="cylinders").asked_force is None

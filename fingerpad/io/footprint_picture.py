@@ -45,7 +45,7 @@ def footprint(finger: WholeFinger, path: Path | None = None) -> Figure:
             middle = max(middle, float(total.pressure[len(z) // 2]) / 1e3 if len(z) else 0.0)
         for axis in (axes[0], axes[-1]):
             axis.set_ylabel("z along the finger (mm)")
-        axes[-1].set(xlabel="mean contact pressure (kPa)", title="Along the finger")
+        axes[-1].set(xlabel="mean contact\npressure (kPa)", title="Along the finger")
         axes[-1].set(xlim=(0, 1.3 * middle or None), ylim=(-end, end), box_aspect=end / half / _WIDER)
         bands = {
             "light: gross contact, from the first touching ridge to the last": _LIGHT,

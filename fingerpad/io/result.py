@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from fingerpad.io.drawing import Drawing
     from fingerpad.slices.finger import WholeFinger
 
+_TITLES = {True: "Cross-section at the end of its last trace", False: "Cross-section at the centre of the finger"}
 _STABILITY = ("stable", "lambda_min", "gain")
 _CHANGES = ("error", "penalty")
 KINDS = ("surface", "finger", "history", "footprint", "time")
@@ -94,6 +95,11 @@ class Result:
     def last(self) -> ContactState | None:
         """The last accepted state; without a loading path the last named state."""
         return self.steps[-1] if self.steps else (self.full_slip or self.charged or self.uncharged)
+
+    @property
+    def asked_force(self) -> float | None:
+        """Force on the whole finger (N) that the run was asked for; None of a run of a cross-section."""
+        return (self.record.get("asked") or {}).get("force")
 
     def plot(self, kind: str = "surface", path: str | Path | None = None) -> "Figure | None":
         """Draw the skin, the deformed finger, the history of sliding, or the footprint of the whole finger.
@@ -241,9 +247,13 @@ class Result:
 
     # -- text ------------------------------------------------------------------------------------------
     def __str__(self) -> str:
-        """Return the text *Result* at the end of a run: the named states side by side, with units and errors."""
-        shown = self.named
-        lines = ["Result" + (f" (model '{self.model}')" if self.model != "full" else "")]
+        """Return the text *Result* at the end of a run: the named states side by side, with units and errors.
+
+        The whole finger follows; it comes first where the run was asked for a force in newtons.
+        """
+        asked, shown = self.asked_force is not None and self.finger is not None, self.named
+        lines = [_TITLES[self.model == "full"] if asked else "Result"]
+        lines[0] += f" (model '{self.model}')" if self.model != "full" else ""
         if shown:
             heads = [called(name, state.voltage).split(" normal") for name, state in shown.items()]
             rows = [
@@ -261,7 +271,8 @@ class Result:
         least = self.record.get("force_error", 0.0)
         lines += [f"  {_in_time(load, least)}" for load in self.loads if load.over_time is not None]
         lines += [f"  {note}" for note in self._remarks()]
-        return "\n".join([*lines, *([f"{self.finger}"] if self.finger is not None else [])])
+        finger = [f"{self.finger}"] if self.finger is not None else []
+        return "\n".join([*finger, *lines] if asked else [*lines, *finger])
 
     def _line(self, key: str) -> list[str]:
         """Return a quantity of the named states as a row of text; empty where it is missing in every state."""

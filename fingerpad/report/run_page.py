@@ -19,6 +19,10 @@ _LINKS = {
     "sliding": "Sliding", "time": "Time", "pictures": "Pictures", "model": "Model", "solver": "Solver",
     "parameters": "Parameters", "reproduce": "Reproduce",
 }  # fmt: skip
+_OF_FORCE = {
+    True: "States of the cross-section on its last trace, each under an external force of its own.",
+    False: "States of the cross-section at the centre of the finger, under its part of the force.",
+}
 _SAID = {
     "footprint.png": "Gross contact (light), sum of the ridges' contact lengths (dark) and pressure, slice by slice",
     "time.png": "Voltage, friction force and contact length over time",
@@ -31,10 +35,10 @@ def page(result: Result) -> str:
     """Return the page of a run."""
     shown = frames(result)
     title = f"fingerpad: {_conditions(result)}"
+    first = (_numbers, _newtons) if result.asked_force is None else (_newtons, _numbers)
     sections = [
         _asked(result),
-        _numbers(result),
-        _newtons(result),
+        *(section(result) for section in first),
         _trust(result),
         _finger(shown),
         _sliding(result),
@@ -45,9 +49,8 @@ def page(result: Result) -> str:
         html.section("parameters", "Parameters", parameters.all_of(_parameters(result))),
         _reproduce(result),
     ]
-    links = "".join(
-        f'<a href="#{name}">{words}</a>' for name, words in _LINKS.items() if any(f'id="{name}"' in s for s in sections)
-    )
+    there = [name for section in sections for name in _LINKS if f'id="{name}"' in section]
+    links = "".join(f'<a href="#{name}">{_LINKS[name]}</a>' for name in there)
     body = "\n".join([_head(result), f"<nav>{links}</nav>", *sections])
     return html.page(title, body, {"finger": shown, "steps": _columns(result), "errors": _errors(result)})
 
@@ -57,6 +60,8 @@ def _parameters(result: Result) -> Mapping[str, Any]:
 
 
 def _conditions(result: Result) -> str:
+    if result.asked_force is not None and result.finger is not None:
+        return f"{result.asked_force:.4g} N on the whole finger, {result.scene.voltage:.4g} V"
     last = result.full_slip or result.charged or result.last
     if last is None:
         return "a run without a result"
@@ -67,7 +72,16 @@ def _head(result: Result) -> str:
     """Return the finding: the largest number of the page, and whether to rely on it."""
     kind, words = trust.verdict(trust.findings(result))
     slip, charged = result.full_slip, result.charged
-    if slip is not None and math.isnan(slip.mu_app):
+    whole = result.finger if result.asked_force is not None else None
+    if whole is not None and "full_slip" in whole.states:
+        number = f"µ<sub>app</sub> = {html.text(whole.shown('full_slip', 'mu_app'))}"
+        force = f"friction force {whole.shown('full_slip', 'f_t')} N"
+        said = f"apparent friction coefficient at full slip, {force}; {_conditions(result)}"
+    elif whole is not None:
+        name = list(whole.states)[-1]
+        number = f"{html.text(whole.shown(name, 'contact_area'))} mm²"
+        said = f"ridge contact area in {whole.heads()[-1]}; {_conditions(result)}"
+    elif slip is not None and math.isnan(slip.mu_app):
         number = f"f<sub>T</sub> = {html.text(cell('f_t', slip.f_t, slip.error.f_t))} N/m"
         said = f"friction force at full slip, where no force presses the finger; {_conditions(result)}"
     elif slip is not None:
@@ -142,6 +156,8 @@ def _numbers(result: Result) -> str:
             rows.append((f"{quantity.words}{f' ({quantity.unit})' if quantity.unit else ''}", *cells))
     slip = result.full_slip
     notes = []
+    if result.asked_force is not None:
+        notes.append(_OF_FORCE[result.model == "full"])
     if any(state.error.known() for state in result.named.values()):
         notes.append("±: estimated discretisation error, of the mesh alone.")
     if slip is not None and not math.isnan(slip.penalty.contact_length):
