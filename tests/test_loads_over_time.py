@@ -262,3 +262,25 @@ def test_run_without_time_has_none(tmp_path):
     assert "over_time" not in str(found.to_dict()) and "time" not in str(found.loads[0].to_dict()["extremes"])
     with pytest.raises(ValueError, match="no load over time"):
         found.plot("time")
+
+
+def test_mean_from_steps_that_are_too_long_is_told(tmp_path):
+    """Friction turns round, and the finger leaves the screen, within less than a step: the remark names both loads.
+
+    With steps a tenth as long the mean of the way back is 7 % off that of the default steps, and is not remarked on.
+    """
+    loads = [
+        {"name": "press", "f_ext": 0.4, "voltage": 30.0},
+        {"name": "slide", "bone_x": 5e-4, "until_full_slip": True},
+        {"name": "back", "bone_x_by": -5e-4, "speed": 1e-3},
+        {"name": "lift", "bone_height": 5e-5, "duration": 1.0},
+    ]
+    long, short = (full.run(scene(*loads, numerics={"step_scale": part}), None, MPI.COMM_WORLD) for part in (1, 0.1))
+    told = [note.split(" the mean ")[0] for note in long.notes if "step_scale" in note]
+    assert told == ["In the load back", "In the load lift"]
+    assert not any("In the load back" in note for note in short.notes)
+    means = [result.loads[2].over_time.mean["f_t"] for result in (long, short)]
+    assert means[0] == pytest.approx(means[1], rel=0.1) and means[0] != pytest.approx(means[1], rel=0.05)
+    assert abs(means[0] - means[1]) < long.loads[2].over_time.mean_change["f_t"]
+    assert long.loads[2].extremes["f_t"].max == pytest.approx(long.loads[1].end.f_t, rel=1e-9), "where it began"
+    assert long.to_dict()["loads"][2]["over_time"]["mean_change"]["f_t"] > 0

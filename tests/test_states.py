@@ -301,6 +301,24 @@ def test_bone_that_moves_as_it_touches_has_no_normal_contact():
     assert "charged" not in states.named(history.rows) and "full_slip" in states.named(history.rows)
 
 
+@pytest.mark.parametrize("slides", [False, True])
+def test_first_touch_is_no_named_state(slides):
+    """Its depth is the program's: 0.17 N/m where a load asks for 0.05 N/m, charged or sliding."""
+    history = History()
+    history.still("touch", f_ext=0.17)
+    history.rows = [replace(state, load_number=1) for state in history.rows]
+    history.numbers = itertools.count(1)
+    if slides:
+        history.slide("press", 0.5e-3)
+    else:
+        history.still("press", f_ext=0.05, voltage=100.0)
+    found = states.named(history.rows)
+    assert "uncharged" not in found and ("charged" in found) == (not slides)
+    press = next(states.load_results(history.rows, [Load(name="press", f_ext=0.05)], lambda k, end: None))
+    own = [state.contact_length for state in history.rows if state.load == "press"]
+    assert press.extremes["contact_length"].max == max(own)
+
+
 @pytest.mark.parametrize(
     ("key", "value", "text"),
     [("f_ext", 75.0, "75.00"), ("f_ext", 0.002, "0.002"), ("f_ext", 3e-15, "0.00"), ("mu_app", math.nan, "–")]

@@ -99,7 +99,7 @@ class StateRecorder:
     def record(self, step: Step) -> None:
         """Record an accepted step; collective."""
         states, state = self._simulation.states, step.state
-        if state.ridges_in_contact > 0 and len(before_sliding(states)) == len(states):
+        if state.ridges_in_contact > 0 and not step.touches and len(before_sliding(states)) == len(states):
             self.keep("charged")
         if state.slip_began == state.step:
             self._begun = self._state(1 if state.f_t >= 0 else -1)

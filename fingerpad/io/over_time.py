@@ -15,15 +15,18 @@ Fritsch, Carlson, SIAM J. Numer. Anal. 17 (1980), doi 10.1137/0717021.
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.scene.waveform import Waveform
 from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.io.states import LoadResult
 
 NOTE = (
     "Loads over time are quasi-static: no inertia, no viscous skin, no leakage of charge. A frequency only sets how "
@@ -36,6 +39,8 @@ QUANTITIES = ("mu_app", "f_t", "contact_length", "f_electrostatic")
 """Quantities of which extremes and means are kept."""
 Array = NDArray[np.float64]
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(20)
+_MEANS = {"f_t": ("f_T", "N/m", 1.0), "contact_length": ("L_R", "mm", 1e3)}
+_SURE = 0.02  # of the largest amount in the load: change of a mean with every second step that is not told
 _NEAR = 1e-9  # of a period: two times that are one
 
 
@@ -55,10 +60,13 @@ class OverTime:
     """Frequencies of the spectrum (Hz): multiples of the waveform's; for a file multiples of one over its length."""
     f_t_amplitude: tuple[float, ...] = ()
     """Amplitudes of the friction force at these frequencies (N/m)."""
+    mean_change: dict[str, float] = field(default_factory=dict)
+    """What every second state alone would change the means by, in their units; of loads at a constant voltage."""
 
     def to_dict(self) -> dict[str, Any]:
         """Return it ready for JSON."""
         found: dict[str, Any] = {"start": self.start, "seconds": self.seconds, "mean": self.mean}
+        found |= {"mean_change": self.mean_change} if self.mean_change else {}
         if self.periods:
             found["periods"] = self.periods
             found |= {"frequency": list(self.frequency), "f_t_amplitude": list(self.f_t_amplitude)}
@@ -84,11 +92,45 @@ def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime
         name: math.nan if np.isnan(value).any() else _integral(time, value, corners).real / seconds
         for name, value in values.items()
     }
-    if wave is None or (periods := int(seconds / wave.period + _NEAR)) < 1:
+    if wave is None:
+        change = {name: _change(time, values[name], value) for name, value in mean.items() if not math.isnan(value)}
+        return OverTime(start, seconds, mean, mean_change=change)
+    if (periods := int(seconds / wave.period + _NEAR)) < 1:
         return OverTime(start, seconds, mean)
     found = spectrum(time, values["f_t"], wave.period, periods, corners)
     frequency = tuple(k / wave.period for k in range(1, HARMONICS + 1))
     return OverTime(start, seconds, mean, periods, frequency, tuple(map(float, found)))
+
+
+def _change(time: Array, value: Array, mean: float) -> float:
+    """Return what every second sample alone would change a mean by; of a single step half of its change."""
+    few = sorted({*range(0, len(time), 2), len(time) - 1})
+    if len(few) == len(time):
+        return float(abs(value[-1] - value[0]) / 2)
+    return float(abs(_integral(time[few], value[few], []).real / (time[-1] - time[0]) - mean))
+
+
+def remarks(loads: "Iterable[LoadResult]", least: float) -> list[str]:
+    """Return a sentence for each load at a constant voltage whose steps are too long for its means.
+
+    Args:
+        loads: of a run.
+        least: friction force (N/m) up to which there is none.
+    """
+    found = list[str]()
+    for load in loads:
+        changes = {} if load.over_time is None else load.over_time.mean_change
+        for key, (words, unit, factor) in _MEANS.items():
+            ends = load.extremes.get(key)
+            most = 0.0 if ends is None else max(abs(ends.min), abs(ends.max))
+            change = changes.get(key, 0.0)
+            if change > _SURE * most and (key != "f_t" or most > least):
+                found.append(
+                    f"In the load {load.name} the mean {words} over time would change by {factor * change:.2g} {unit} "
+                    "with every second step alone: its steps are too long for it; give a smaller numerics.step_scale."
+                )
+                break
+    return found
 
 
 def spectrum(time: Array, value: Array, period: float, periods: int, corners: Sequence[float] = ()) -> Array:

@@ -4,7 +4,7 @@
   first moves sideways,
 * *charged* (charged normal contact, in short normal contact): the last state in contact before the bone first moves
   sideways with skin on the screen, at the voltage of that state; at 0 V it is called normal contact. Sideways motion
-  without contact does not count, nor does a later return of the bone,
+  without contact does not count, nor does a later return of the bone, nor a first touch before the force is reached,
 * *full_slip*: full slip. Every point in contact slips one way, with the same forces while the bone slides a further
   0.2 mm. A full slip begins at its first state. Of several full slips the last one that was held counts.
 """
@@ -27,6 +27,8 @@ STATES = ("uncharged", "charged", "full_slip")
 WORDS = {"uncharged": "uncharged normal contact", "charged": "charged normal contact", "full_slip": "full slip"}
 PREFIXES = {"uncharged": "uncharged", "charged": "normal", "full_slip": "slip"}
 """Prefixes of the quantities of a state in flat tables and in ``summary.json``: ``normal_contact_length``."""
+FIRST_TOUCH = "touch"
+"""Name of the steps that press a finger in the air in a little, before a force can control it."""
 _ROUNDOFF = 1e-9  # relative, of a displacement or a voltage
 _UNLOADED = ContactState(
     f_ext=0.0, voltage=0.0, f_t=0.0, mu_app=math.nan, f_contact=0.0, f_electrostatic=0.0, ridges_in_contact=0,
@@ -82,9 +84,19 @@ def unchanged(first: ContactState, row: ContactState, steady: float, least: floa
     return bool(same and all(abs(b - a) <= steady * abs(a) + least for a, b in pairs))
 
 
+def asked_for(rows: Sequence[ContactState]) -> list[ContactState]:
+    """Return the states on the way of the loads, without those of a first touch, whose depth no load asks for.
+
+    A load may have the name of the first touch, whose states then count as its own.
+    """
+    loads = {row.load_number: row.load for row in rows}
+    return [row for row in rows if row.load != FIRST_TOUCH or loads[row.load_number] == FIRST_TOUCH]
+
+
 def named(rows: Sequence[ContactState]) -> dict[str, ContactState]:
     """Return the states of :data:`STATES` in a history so far, by name."""
-    still = [row for row in before_sliding(rows) if row.ridges_in_contact > 0]
+    asked = {row.step for row in asked_for(rows)}
+    still = [row for row in before_sliding(rows) if row.ridges_in_contact > 0 and row.step in asked]
     uncharged = still[: next((k for k, row in enumerate(still) if row.voltage != 0), len(still))]
     held = next((row.slip_began for row in reversed(rows) if row.slip_held), None)
     found = {"uncharged": uncharged[-1:], "charged": still[-1:], "full_slip": [r for r in rows if r.step == held][:1]}
@@ -189,16 +201,17 @@ def load_result(
         before: the state at its begin, if there is one.
         wave: its voltage over time; None where it is constant.
     """
+    # A waveform has a state of its own at its begin, after a jump from the voltage before.
+    begin = [] if wave is not None else before or ([_UNLOADED] if mine[0].time > 0 else [])
+    passed = over_time([*begin, *mine], wave)
+    counted = asked_for(mine) if passed is None or wave is not None else [*before, *asked_for(mine)]
     extremes = {}
     for quantity in QUANTITIES:
         of = attrgetter(quantity)
-        known = [state for state in mine if not math.isnan(of(state))]
+        known = [state for state in counted if not math.isnan(of(state))]
         if not known:
             continue
         least, most = min(known, key=of), max(known, key=of)
         extremes[quantity] = Extreme(of(least), least.step, of(most), most.step, least.time, most.time)
     slips = any(state.slip_began for state in mine), any(state.slip_held for state in mine)
-    # A waveform has a state of its own at its begin, after a jump from the voltage before.
-    begin = [] if wave is not None else before or ([_UNLOADED] if mine[0].time > 0 else [])
-    passed = over_time([*begin, *mine], wave)
     return LoadResult(name, mine[-1], extremes, *slips, stable, passed)

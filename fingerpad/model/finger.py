@@ -33,6 +33,8 @@ class Step:
     notes: list[str]
     """Remarks on each ridge's place on the closure, mostly empty."""
     attempt: Attempt
+    touches: bool = False
+    """Whether the bone was lowered to a first touch."""
 
 
 class Finger:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from mpi4py import MPI
 
-from fingerpad.io.states import SLIDE_ON
+from fingerpad.io.states import FIRST_TOUCH, SLIDE_ON
 from fingerpad.model.balance import refuse_strained
 from fingerpad.model.contact_zone import ContactZone, FingerExceeded
 from fingerpad.model.course import Course
@@ -169,7 +169,7 @@ class Simulation:
             attempt: how it was solved, where that is known.
             touches: whether the bone was lowered to the first touch.
         """
-        return self.finger.present(loads, "touch" if touches else self._load, self._loads_done + 1, attempt)
+        return self.finger.present(loads, FIRST_TOUCH if touches else self._load, self._loads_done + 1, attempt)
 
     def _symmetry_lost(self) -> RestartRequired | None:
         """Check the stability of the present state; return that the whole finger is needed where a half is unstable."""
@@ -207,7 +207,7 @@ class Simulation:
         self.states.append(state)
         part = 0.0 if touches else self._course.done(target, part)
         done = min((self._loads_done + part) / len(self._model.loads), 1.0)
-        self.on_step(replace(step, state=state), done)
+        self.on_step(replace(step, state=state, touches=touches), done)
         try:
             self._restart = self._zone_exceeded(loads)
         except FingerExceeded as error:

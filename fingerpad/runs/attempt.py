@@ -10,7 +10,7 @@ from fingerpad.io import petsc_options
 from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt, Interrupted
 from fingerpad.io.left import in_words
-from fingerpad.io.over_time import NOTE
+from fingerpad.io.over_time import NOTE, remarks
 from fingerpad.io.provenance import provenance
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
@@ -163,6 +163,8 @@ class Attempt:
         left = max(self._model.numerics.tolerance, totals["floor"])
         error = force_error(unknowns, left, finger.solver.force_scale)
         more |= self._comm.bcast(self._path() | totals | {"force_error": error})
+        loads = tuple(record.loads(scene.loads()))
+        notes += remarks(loads, error)
         more |= {"restarts": restarts.table, "laws": used(scene), "provenance": provenance()}
         result = Result(
             scene,
@@ -171,7 +173,7 @@ class Attempt:
             named.get("charged"),
             named.get("full_slip"),
             steps=tuple(record.states),
-            loads=tuple(record.loads(scene.loads())),
+            loads=loads,
             cost=self._clock.cost(finger.solver.counts, unknowns),
             failure=failure or broken(named.get("full_slip"), error, mu_0),
             interrupted=self._ended.get("interrupted", ""),
