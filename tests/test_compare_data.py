@@ -72,7 +72,8 @@ def test_units_are_converted(table):
         ("force (N/m), friction (1)\n, 2\n", "line 3, column 1: the force is missing"),
         ("force (N/m), friction (1)\n1, nan\n", "line 3, column 2: the friction is nan; it must be finite and greater"),
         ("force (N/m), friction (1)\n1, -0.2\n", "the friction is -0.2; it must be finite and greater than 0"),
-        ("voltage (V), friction (1)\ninf, 0.2\n", "the voltage is inf; it must be finite and 0 or more"),
+        ("voltage (V), friction (1)\ninf, 0.2\n", "the voltage is inf; it must be finite"),
+        ("friction (1), spread (1)\n0.2, -1\n", "the spread is -1; it must be finite and 0 or more"),
         ("force (N/m), friction (1)\n1, 1_0\n", "line 3, column 2: the friction is '1_0'; it must be a number"),
         ("force (N/m); friction (1)\n1; 2\n", "line 2 is 'force (N/m); friction (1)'; columns must be separated by"),
         ("# state: charged\nforce (N/m), friction (1)\n1, 2\n", "has friction at the state charged; before the"),
@@ -115,6 +116,19 @@ def test_tables_in_the_repository_are_read():
     assert files
     for file in files:
         assert {"source", "people"} <= set(read(file).about) and {"doi", "url"} & set(read(file).about)
+
+
+def test_sign_of_a_measured_voltage_is_left_out(table):
+    """The attraction goes with U²."""
+    assert read(table("voltage (V), friction (1)\n-100, 0.2\n0, 0.2\n")).conditions == {"voltage": (100.0, 0.0)}
+
+
+def test_row_without_a_spread_is_one(folder, table, capsys):
+    """The empty cell may also be missing; the others are counted."""
+    text = "force (N/m), voltage (V), friction (1), spread (1)\n25, 0, 0.25, 0.1\n25, 100, 0.1,\n75, 0, 0.25\n"
+    np.testing.assert_array_equal(read(table(text)).spread, [0.1, np.nan, np.nan])
+    assert main(["compare-data", str(table(text)), "--sweep", str(folder)]) == 0
+    assert "Within the spread: 1 of 1 rows that have one.\n" in capsys.readouterr().out
 
 
 # -- ours ----------------------------------------------------------------------------------------------------

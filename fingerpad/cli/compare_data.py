@@ -106,9 +106,10 @@ class _Compared:
         if count > 1:
             shape = float(np.exp(np.abs(log - log.mean()).max()))
             yield f"Shape alone, ours scaled by one factor ({1 / mean:.3g}): at most a factor of {shape:.3g}."
-        if np.isfinite(self.spread).all():
-            near = np.abs(self.ours - self.measured)[self.within] <= self.spread[self.within]
-            yield f"Within the spread: {near.sum()} of {count}."
+        if (spread := self.within & np.isfinite(self.spread)).any():
+            near = np.abs(self.ours - self.measured)[spread] <= self.spread[spread]
+            which = "" if spread.sum() == count else " rows that have one"
+            yield f"Within the spread: {near.sum()} of {spread.sum()}{which}."
         if count < len(self.ratio):
             none, total = int(np.isnan(self.ours).sum()), len(self.ratio)
             yield from [f"Not compared, since ours has no result there: {none} of {total} rows."] if none else []

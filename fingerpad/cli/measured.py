@@ -8,8 +8,9 @@
     50, 100, 0.31, 0.04
 
 A table with a column in newtons, or of an area, is of a whole finger; without one it is of a cross-section, in N/m.
-The conditions are ``force`` and ``voltage``, each optional; one more column is the quantity, and ``spread`` is its
-standard deviation, in the same unit. Only the source is required of the comments; without a state it is full slip.
+The conditions are ``force`` and ``voltage``, each optional; the sign of a voltage changes no force and is left out. One
+more column is the quantity, and ``spread`` is its standard deviation, in the same unit; a row may be without one. Only
+the source is required of the comments; without a state it is full slip.
 """
 
 import csv
@@ -67,7 +68,7 @@ class Measured:
     """Values by key, ``f_ext`` and ``voltage``; those of the columns that the table has."""
     values: tuple[float, ...]
     spread: tuple[float, ...]
-    """NaN in every row of a table without it."""
+    """NaN in a row without it."""
     about: dict[str, str] = field(default_factory=dict)
     """The comments by name."""
     whole: bool = False
@@ -213,6 +214,9 @@ def _numbers(name: str, line: int, cells: Sequence[str], columns: Sequence[_Colu
     found = []
     for k, column in enumerate(columns):
         where, text = f"{name}, line {line}, column {k + 1}", cells[k] if k < len(cells) else ""
+        if not text and column.name == "spread":
+            found.append(math.nan)
+            continue
         if not text:
             raise SceneError(f"{where}: the {column.name} is missing; leave the row out or give the number")
         try:
@@ -221,9 +225,10 @@ def _numbers(name: str, line: int, cells: Sequence[str], columns: Sequence[_Colu
             value = float(text)
         except ValueError:
             raise SceneError(f"{where}: the {column.name} is {clip(repr(text))}; it must be a number") from None
-        least = 0.0 if column.name in ("voltage", "spread") else None
-        if not math.isfinite(value) or (value < 0 if least is not None else value <= 0):
-            allowed = "0 or more" if least is not None else "greater than 0"
-            raise SceneError(f"{where}: the {column.name} is {clip(text)}; it must be finite and {allowed}")
+        if column.name == "voltage":
+            value = abs(value)
+        allowed = {"voltage": "", "spread": " and 0 or more"}.get(column.name, " and greater than 0")
+        if not math.isfinite(value) or value < 0 or (value == 0 and "greater" in allowed):
+            raise SceneError(f"{where}: the {column.name} is {clip(text)}; it must be finite{allowed}")
         found.append(value * column.factor)
     return found
