@@ -118,3 +118,15 @@ def write(tmp_path):
         return path
 
     return write
+
+
+@pytest.fixture
+def table(tmp_path):
+    """Write a table of measurements with its source, and return its path."""
+
+    def table(text: str, source: str = "# source: Somebody 2020\n") -> Path:
+        path = tmp_path / "mine.csv"
+        path.write_text(source + text, encoding="utf-8")
+        return path
+
+    return table

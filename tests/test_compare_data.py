@@ -7,17 +7,10 @@ import numpy as np
 import pytest
 
 from fingerpad.cli import main, ours
-from fingerpad.cli.compare_data import _Compared
 from fingerpad.cli.measured import Measured, read
-from fingerpad.io.result import Result
 from fingerpad.runs.sweep import sweep
-from fingerpad.scene import Scene, SceneError
-from fingerpad.slices.finger import WholeFinger
-from fingerpad.slices.total import Total
+from fingerpad.scene import Scene
 from tests.commands import ROOT, refused
-from variational.state import ContactState
-
-SOURCE = "# source: Somebody 2020\n"
 
 
 @pytest.fixture(scope="module")
@@ -28,21 +21,11 @@ def folder(tmp_path_factory):
     return place
 
 
-@pytest.fixture
-def table(tmp_path):
-    def table(text, source=SOURCE):
-        file = tmp_path / "mine.csv"
-        file.write_text(source + text, encoding="utf-8")
-        return file
-
-    return table
-
-
 # -- tables --------------------------------------------------------------------------------------------------
 def test_units_are_converted(table):
     """To SI; comments, empty lines and a mark of the byte order are no rows."""
     lines = "# people: 5\n# state: uncharged\n# else\n\nForce (N/mm), contact length (mm), spread (um)\n0.05, 1.2, 30\n"
-    found = read(table(lines, "\ufeff" + SOURCE))
+    found = read(table(lines, "\ufeff# source: Somebody 2020\n"))
     assert (found.quantity, found.state, found.about["people"]) == ("contact length", "uncharged", "5")
     assert found.conditions == {"f_ext": pytest.approx((50.0,))}
     assert found.values == pytest.approx((1.2e-3,)) and found.spread == pytest.approx((3e-5,))
@@ -172,56 +155,6 @@ def test_missing_points_are_not_compared(folder):
     found.curves[1].values[0] = np.nan
     at = found.at(np.array([25.0, 25.0, 75.0, 50.0]), np.array([0.0, 100.0, 100.0, 100.0]))
     assert list(np.isnan(at)) == [False, True, False, True]
-
-
-def state(step, f_ext, voltage=0.0, bone_x=0.0, **more):
-    values = {"f_t": 0.0, "mu_app": 0.0, "f_contact": f_ext, "f_electrostatic": 0.0, "ridges_in_contact": 3}
-    return ContactState(
-        step=step,
-        f_ext=f_ext,
-        voltage=voltage,
-        bone_x=bone_x,
-        bone_height=-1e-5 * f_ext,
-        contact_length=1e-4 * f_ext,
-        **values | more,
-    )
-
-
-def test_press_of_a_run_is_compared(table):
-    """The states on the way down and no later ones; full slip is one state."""
-    steps = (state(1, 10.0), state(2, 20.0), state(3, 20.0, 100.0), state(4, 20.0, 100.0, 1e-3, mu_app=0.4))
-    run = Result(Scene(), "full", steps[1], steps[2], steps[3], steps=steps)
-    pressed = read(table("# state: uncharged\nforce (N/m), depth (mm)\n15, 0.3\n"))
-    found = _Compared(pressed, ours.ours([run], pressed))
-    assert found.ours == pytest.approx([1.5e-4]) and found.ratio == pytest.approx([0.5])
-    slip = read(table("friction (1)\n0.2\n"))
-    assert _Compared(slip, ours.ours([run], slip)).ratio == pytest.approx([2.0])
-    with pytest.raises(SceneError, match="no state full slip"):
-        ours.ours([Result(Scene(), "full", steps[1], None, None, steps=steps[:2])], slip)
-
-
-def test_whole_finger_is_compared(table):
-    """Newtons and mm² are of the runs' whole fingers, by force and voltage; a cross-section has none."""
-    finger = [total(0.4, 8e-5), total(0.6, 1e-4)]
-    slip = [state(4, 40.0, 100.0, mu_app=0.3), state(4, 60.0, 100.0, mu_app=0.3)]
-    runs = [
-        Result(Scene(), "full", None, None, s, finger=WholeFinger({"full_slip": f}, "test"))
-        for s, f in zip(slip, finger, strict=True)
-    ]
-    area = read(table("force (mN), voltage (V), gross area (mm^2), spread (mm^2)\n500, 100, 45, 50\n"))
-    assert area.whole and area.conditions["f_ext"] == pytest.approx((0.5,)) and area.values == pytest.approx((4.5e-5,))
-    assert _Compared(area, ours.ours(runs, area)).ratio == pytest.approx([2.0])
-    friction = read(table("force (N), friction (1)\n0.4, 0.25\n"))
-    assert _Compared(friction, ours.ours(runs[:1], friction)).ratio == pytest.approx([2.0])
-    with pytest.raises(SceneError, match="the run has no newtons"):
-        ours.ours([Result(Scene(), "full", None, None, slip[0])], friction)
-
-
-def total(force, area):
-    """Return a whole finger of one slice, 1 mm thick, whose friction is half its force."""
-    values = {"f_ext": force, "f_t": force / 2, "f_electrostatic": 0.0, "contact_length": area / 5, "gross_width": area}
-    one = np.ones(1)
-    return Total(1e-3, 0 * one, one, 1e-3 * one, force, {name: value * one for name, value in values.items()})
 
 
 # -- the command ---------------------------------------------------------------------------------------------

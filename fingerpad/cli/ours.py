@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from fingerpad.cli import one_scene
 from fingerpad.cli.measured import Measured
 from fingerpad.io.result import Result
 from fingerpad.io.states import PREFIXES, WORDS, before_sliding
@@ -20,6 +21,9 @@ from variational.state import ContactState
 Array = NDArray[np.float64]
 CONDITIONS = {"f_ext": "force", "voltage": "voltage"}
 _NEAR = 1e-6  # relative, of conditions that count as the same
+_SAME = 1e-4  # relative, of values at the same conditions: beyond any tolerance of the solvers
+At = tuple[float, float]
+"""Force and voltage."""
 
 
 class Curve(NamedTuple):
@@ -74,7 +78,7 @@ def read(folders: Sequence[Path], sweep: bool) -> list[Result] | Table:
     """Return the runs in folders, or the sweep in one.
 
     Raises:
-        SceneError: it is not there, or is of the other kind.
+        SceneError: it is not there, is of the other kind, or the runs differ in more than force and voltage.
     """
     runs: list[Result] = []
     for folder in folders:
@@ -86,6 +90,7 @@ def read(folders: Sequence[Path], sweep: bool) -> list[Result] | Table:
         if isinstance(found, Table):
             return found
         runs.append(found)
+    one_scene.refuse_mixed(runs)
     return runs
 
 
@@ -93,17 +98,41 @@ def ours(found: Sequence[Result] | Table, table: Measured) -> Ours:
     """Return the quantity of a table in runs or a sweep.
 
     Raises:
-        SceneError: ours does not have it.
+        SceneError: ours does not have it, or two runs have other values at the same force and voltage.
     """
     if isinstance(found, Table):
         return _of_sweep(found, table)
-    points = {at: value for run in found for at, value in (_whole if table.whole else _section)(run, table)}
+    points = _joined(found, table)
     if not points:
         raise SceneError(f"the run has no state {WORDS[table.state]}, of which {_name(table)} is; compare another run")
     return _curves(points, table)
 
 
-def _section(found: Result, table: Measured) -> Iterator[tuple[tuple[float, float], float]]:
+def _joined(runs: Sequence[Result], table: Measured) -> dict[At, float]:
+    """Return the values of all runs by force and voltage; of one run the last state there.
+
+    Raises:
+        SceneError: two runs have other values at the same force and voltage.
+    """
+    points, of = dict[At, float](), dict[At, Result]()
+    for run in runs:
+        for at, value in (_whole if table.whole else _section)(run, table):
+            place = next((known for known in points if _same(known, at)), at)
+            if of.get(place, run) is not run and not math.isclose(points[place], value, rel_tol=_SAME):
+                raise SceneError(
+                    f"{table.quantity} is {points[place]:.6g} in {one_scene.folder(of[place])} and {value:.6g} in "
+                    f"{one_scene.folder(run)}, both at {at[0]:.6g} {table.force_unit} and {at[1]:g} V; give one of them"
+                )
+            points[place], of[place] = value, run
+    return points
+
+
+def _same(one: At, other: At) -> bool:
+    """Return whether two pairs of force and voltage are the same up to roundoff."""
+    return all(math.isclose(a, b, rel_tol=_NEAR) for a, b in zip(one, other, strict=True))
+
+
+def _section(found: Result, table: Measured) -> Iterator[tuple[At, float]]:
     """Yield force and voltage of each state of the cross-section, and the value there."""
     for state in _states(found, table.state):
         yield (
@@ -112,7 +141,7 @@ def _section(found: Result, table: Measured) -> Iterator[tuple[tuple[float, floa
         )
 
 
-def _whole(found: Result, table: Measured) -> Iterator[tuple[tuple[float, float], float]]:
+def _whole(found: Result, table: Measured) -> Iterator[tuple[At, float]]:
     """Yield the same of the whole finger.
 
     Raises:
@@ -157,7 +186,7 @@ def _of_sweep(found: Table, table: Measured) -> Ours:
             f"the sweep in {clip(str(found.folder), 80)} does not give its {unknown[0]}; "
             "give one over f_ext and voltage"
         )
-    points = dict[tuple[float, float], float]()
+    points = dict[At, float]()
     try:
         for row in found.rows:
             force, voltage = (float(row[key] if key in found.axes else fixed[key]) for key in CONDITIONS)
@@ -169,7 +198,7 @@ def _of_sweep(found: Table, table: Measured) -> Ours:
     return _curves(points, table)
 
 
-def _curves(points: dict[tuple[float, float], float], table: Measured) -> Ours:
+def _curves(points: dict[At, float], table: Measured) -> Ours:
     if all(math.isnan(value) for value in points.values()):
         quantity = "friction coefficient" if table.key == "mu_app" else table.quantity
         raise SceneError(f"ours has no {quantity} of {WORDS[table.state]}, which {_name(table)} has")

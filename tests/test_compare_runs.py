@@ -1,0 +1,152 @@
+"""Runs beside tables of measurements: what of a run is compared, and which runs go together."""
+
+import numpy as np
+import pytest
+
+from fingerpad.cli import main, one_scene, ours
+from fingerpad.cli.compare_data import _Compared
+from fingerpad.cli.measured import read
+from fingerpad.io.result import Result
+from fingerpad.runs.solve import run
+from fingerpad.scene import Scene, SceneError
+from fingerpad.slices import traces
+from fingerpad.slices.finger import WholeFinger
+from fingerpad.slices.total import Total
+from tests.commands import refused
+from variational.state import ContactState
+
+
+def state(step, f_ext, voltage=0.0, bone_x=0.0, **more):
+    values = {"f_t": 0.0, "mu_app": 0.0, "f_contact": f_ext, "f_electrostatic": 0.0, "ridges_in_contact": 3}
+    return ContactState(
+        step=step,
+        f_ext=f_ext,
+        voltage=voltage,
+        bone_x=bone_x,
+        bone_height=-1e-5 * f_ext,
+        contact_length=1e-4 * f_ext,
+        **values | more,
+    )
+
+
+def test_press_of_a_run_is_compared(table):
+    """The states on the way down and no later ones; full slip is one state."""
+    steps = (state(1, 10.0), state(2, 20.0), state(3, 20.0, 100.0), state(4, 20.0, 100.0, 1e-3, mu_app=0.4))
+    run = Result(Scene(), "full", steps[1], steps[2], steps[3], steps=steps)
+    pressed = read(table("# state: uncharged\nforce (N/m), depth (mm)\n15, 0.3\n"))
+    found = _Compared(pressed, ours.ours([run], pressed))
+    assert found.ours == pytest.approx([1.5e-4]) and found.ratio == pytest.approx([0.5])
+    slip = read(table("friction (1)\n0.2\n"))
+    assert _Compared(slip, ours.ours([run], slip)).ratio == pytest.approx([2.0])
+    with pytest.raises(SceneError, match="no state full slip"):
+        ours.ours([Result(Scene(), "full", steps[1], None, None, steps=steps[:2])], slip)
+
+
+def test_whole_finger_is_compared(table):
+    """Newtons and mm² are of the runs' whole fingers, by force and voltage; a cross-section has none."""
+    finger = [total(0.4, 8e-5), total(0.6, 1e-4)]
+    slip = [state(4, 40.0, 100.0, mu_app=0.3), state(4, 60.0, 100.0, mu_app=0.3)]
+    runs = [
+        Result(Scene(), "full", None, None, s, finger=WholeFinger({"full_slip": f}, "test"))
+        for s, f in zip(slip, finger, strict=True)
+    ]
+    area = read(table("force (mN), voltage (V), gross area (mm^2), spread (mm^2)\n500, 100, 45, 50\n"))
+    assert area.whole and area.conditions["f_ext"] == pytest.approx((0.5,)) and area.values == pytest.approx((4.5e-5,))
+    assert _Compared(area, ours.ours(runs, area)).ratio == pytest.approx([2.0])
+    friction = read(table("force (N), friction (1)\n0.4, 0.25\n"))
+    assert _Compared(friction, ours.ours(runs[:1], friction)).ratio == pytest.approx([2.0])
+    with pytest.raises(SceneError, match="the run has no newtons"):
+        ours.ours([Result(Scene(), "full", None, None, slip[0])], friction)
+
+
+def total(force, area):
+    """Return a whole finger of one slice, 1 mm thick, whose friction is half its force."""
+    values = {"f_ext": force, "f_t": force / 2, "f_electrostatic": 0.0, "contact_length": area / 5, "gross_width": area}
+    one = np.ones(1)
+    return Total(1e-3, 0 * one, one, 1e-3 * one, force, {name: value * one for name, value in values.items()})
+
+
+# -- runs together -------------------------------------------------------------------------------------------
+@pytest.fixture
+def together(table, tmp_path, monkeypatch):
+    """Return the arguments that compare runs of a whole finger by the closed form with a table."""
+    monkeypatch.chdir(tmp_path)
+    file = table("force (N), voltage (V), friction (1)\n0.3, 100, 0.3\n")
+
+    def together(*scenes, force="0.3 N"):
+        folders = [f"run{k}" for k in range(len(scenes))]
+        for place, changes in zip(folders, scenes, strict=True):
+            run(Scene(**{"voltage": 100} | changes), model="cylinders", force=force, out=place)
+        return ["compare-data", str(file), "--run", *folders]
+
+    return together
+
+
+def test_runs_of_other_screens_are_refused(together, capsys):
+    """The last of them won, without a word."""
+    said = refused(capsys, *together({"electric": {"d_i": 1e-6}}, {"electric": {"d_i": 5e-6}}))
+    assert said == (
+        "electric.d_i is 1e-06 in run0 and 5e-06 in run1; give runs that differ in force and voltage alone\n"
+    )
+
+
+def test_runs_of_other_voltages_are_joined(together, capsys):
+    """The force in N/m of a result for newtons is another one at each voltage."""
+    assert main(together({}, {"voltage": -150}, {"voltage": 0})) == 0
+    assert "Misfit: ours over measured" in capsys.readouterr().out
+
+
+def test_runs_of_other_models_are_refused(tmp_path):
+    """The model is no key of a scene."""
+    runs = [Result(Scene(), model, None, None, None, folder=tmp_path / model) for model in ("full", "smooth")]
+    with pytest.raises(SceneError, match="model is 'full' in .*full and 'smooth' in .*smooth; give runs"):
+        one_scene.refuse_mixed(runs)
+
+
+def test_runs_of_other_laws_are_refused():
+    """Laws from Python are kept by their text."""
+    runs = [
+        Result(Scene(), "full", None, None, None, record={"parameters": Scene().parameters() | {"laws": law}})
+        for law in ({}, {"friction": "Mine(2)"})
+    ]
+    with pytest.raises(SceneError, match="laws.friction is not given in a run and 'Mine.2.' in a run"):
+        one_scene.refuse_mixed(runs)
+
+
+def test_traces_count_as_the_scene_that_was_given():
+    """Histories of the full model for newtons have forces of their own; other histories differ in force and voltage."""
+
+    def traced(force, **changes):
+        scene = Scene(**changes)
+        record = {"asked": {"force": force, "parameters": scene.parameters()}}
+        return Result(traces.history(scene, "full_slip", 100 * force), "full", None, None, None, record=record)
+
+    one_scene.refuse_mixed([traced(0.3, voltage=100), traced(0.5, voltage=150), Result(Scene(), "full", *[None] * 3)])
+    with pytest.raises(SceneError, match=r"friction is 0\.25 in a run and 0\.3 in a run"):
+        one_scene.refuse_mixed([traced(0.3), traced(0.5, friction=0.3)])
+
+
+def test_histories_may_differ_in_force_and_voltage():
+    """The force may be given by the height of the bone too; other moves are other loads."""
+
+    def history(press, volts, way):
+        loads = [{"name": "press"} | press, {"name": "on", "voltage": volts}, {"name": "off", "bone_x": way}]
+        return Result(Scene(history=loads), "full", None, None, None)
+
+    one_scene.refuse_mixed([history({"f_ext": 20}, 100, 1e-3), history({"bone_height": -1e-3}, 200, 1e-3)])
+    with pytest.raises(SceneError, match=r"history\[2\].bone_x is 0.001 in a run and 0.002 in a run"):
+        one_scene.refuse_mixed([history({"f_ext": 20}, 100, 1e-3), history({"f_ext": 20}, 100, 2e-3)])
+    with pytest.raises(SceneError, match="history is not given in a run and a list of 3 in a run"):
+        one_scene.refuse_mixed([Result(Scene(), "full", None, None, None), history({"f_ext": 20}, 100, 1e-3)])
+
+
+def test_two_values_at_one_place_are_refused(table):
+    """Roundoff of force, voltage and value is none."""
+    friction = read(table("force (N/m), voltage (V), friction (1)\n20, 100, 0.3\n"))
+
+    def slip(mu, f_ext=20.0):
+        return Result(Scene(), "full", None, None, state(4, f_ext, 100.0, mu_app=mu))
+
+    assert len(ours.ours([slip(0.4), slip(0.4 + 1e-7, 20 + 1e-8)], friction).force) == 1
+    with pytest.raises(SceneError, match="friction is 0.4 in a run and 0.41 in a run, both at 20 N/m and 100 V; give"):
+        ours.ours([slip(0.4), slip(0.41)], friction)
