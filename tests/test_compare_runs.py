@@ -66,6 +66,39 @@ def total(force, area):
     return Total(1e-3, 0 * one, one, 1e-3 * one, force, {name: value * one for name, value in values.items()})
 
 
+# -- forces that differ a little -----------------------------------------------------------------------------
+def fingers(*forces):
+    """Return runs of whole fingers under forces (N), each at 50 V more than the last, from 0 V on."""
+    return [
+        Result(
+            Scene(),
+            "full",
+            None,
+            None,
+            state(4, 40.0, 50.0 * k, mu_app=0.3),
+            finger=WholeFinger({"full_slip": total(force, 1e-4 * (k + 1))}, "test"),
+        )
+        for k, force in enumerate(forces)
+    ]
+
+
+def test_forces_within_a_percent_are_one(table):
+    """The newtons of one f_ext differ between voltages: the nearest force of each is taken, also without a column."""
+    runs = fingers(0.3, 0.3015)
+    asked = read(table("force (N), voltage (V), gross area (mm^2)\n0.301, 0, 100\n0.301, 50, 100\n0.305, 0, 100\n"))
+    np.testing.assert_allclose(_Compared(asked, ours.ours(runs, asked)).ratio, [1.0, 2.0, np.nan], rtol=1e-9)
+    free = read(table("voltage (V), gross area (mm^2)\n0, 100\n50, 100\n"))
+    assert _Compared(free, ours.ours(runs, free)).ratio == pytest.approx([1.0, 2.0])
+
+
+def test_voltages_that_do_not_reach_a_force_are_named(table):
+    """The forces of all voltages in one span would hold the force that was asked for."""
+    runs = fingers(0.3, 0.32)
+    asked = read(table("force (N), voltage (V), gross area (mm^2)\n0.31, 50, 100\n"))
+    with pytest.raises(SceneError, match="is within ours, which has 0.3 N at 0 V, 0.32 N at 50 V$"):
+        _Compared(asked, ours.ours(runs, asked))
+
+
 # -- runs together -------------------------------------------------------------------------------------------
 @pytest.fixture
 def together(table, tmp_path, monkeypatch):

@@ -62,10 +62,8 @@ class _Compared:
         self.ours = known.at(self.force, self.voltage)
         self.ratio = self.ours / self.measured
         if np.isnan(self.ours).all():
-            spans = ", ".join(
-                _span(axis, unit) for axis, unit in ((known.force, table.force_unit), (known.voltage, "V"))
-            )
-            raise SceneError(f"no row of {clip(str(table.file), 80)} is within ours, which has {spans}")
+            has = ours.reach(known, table.force_unit)
+            raise SceneError(f"no row of {clip(str(table.file), 80)} is within ours, which has {has}")
         if not self.within.any():
             none = int(np.isnan(self.ours).sum())
             rows = f"{len(self.ours)} rows of {clip(str(table.file), 80)}"
@@ -115,10 +113,6 @@ class _Compared:
             yield from [f"Not compared, since ours has no result there: {none} of {total} rows."] if none else []
             zero = total - count - none
             yield from [f"Not compared, since ours is 0 there: {zero} of {total} rows."] if zero else []
-
-
-def _span(axis: Array, unit: str) -> str:
-    return f"{axis[0]:g} {unit}" if len(axis) == 1 else f"{axis[0]:g} to {axis[-1]:g} {unit}"
 
 
 def draw(file: Path, compared: Sequence[_Compared]) -> None:

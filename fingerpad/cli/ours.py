@@ -21,6 +21,8 @@ from variational.state import ContactState
 Array = NDArray[np.float64]
 CONDITIONS = {"f_ext": "force", "voltage": "voltage"}
 _NEAR = 1e-6  # relative, of conditions that count as the same
+_CLOSE = 0.01  # relative, of forces beyond a curve that its end stands for
+_NAMED = 4  # voltages in a message
 _SAME = 1e-4  # relative, of values at the same conditions: beyond any tolerance of the solvers
 At = tuple[float, float]
 """Force and voltage."""
@@ -34,6 +36,11 @@ class Curve(NamedTuple):
     """Increasing, shape (forces,)."""
     values: Array
     """Shape (forces,); NaN where a run has no result."""
+
+    def inside(self, force: float) -> float:
+        """Return a force; one up to 1 % beyond the curve is its end."""
+        end = float(np.clip(force, self.force[0], self.force[-1]))
+        return end if math.isclose(force, end, rel_tol=_CLOSE) else force
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,11 +64,12 @@ class Ours:
         """Return ours at pairs of force and voltage; NaN outside of ours.
 
         Between two forces ours is taken as linear, between two voltages as linear in U², as which attraction rises.
-        The sign of a voltage does not count.
+        The sign of a voltage does not count. Up to 1 % beyond the forces of a voltage the value at the last one is
+        taken: the newtons of one f_ext differ a little between voltages.
         """
         found = []
         for f, u in zip(force, voltage, strict=True):
-            over = [_between(f, curve.force, curve.values) for curve in self.curves]
+            over = [_between(curve.inside(f), curve.force, curve.values) for curve in self.curves]
             found.append(_between(u**2, self.voltage**2, over))
         return np.array(found)
 
@@ -212,17 +220,36 @@ def _curves(points: dict[At, float], table: Measured) -> Ours:
 def conditions(table: Measured, known: Ours) -> tuple[Array, Array]:
     """Return force and voltage of each row of a table; those it does not have are ours, where ours has a single one.
 
+    Forces that all lie within 1 % are a single one, their mean.
+
     Raises:
         SceneError: ours has several.
     """
     found = []
     for key, axis in (("f_ext", known.force), ("voltage", known.voltage)):
+        if key == "f_ext" and math.isclose(axis[0], axis[-1], rel_tol=_CLOSE):
+            axis = np.array([axis.mean()])
         if key not in table.conditions and len(axis) > 1:
             name = CONDITIONS[key]
             unit = table.force_unit if name == "force" else "V"
             raise SceneError(f"{_name(table)} has no {name}, and ours has {len(axis)}; add a column '{name} ({unit})'")
         found.append(np.array(table.conditions.get(key, (axis[0],) * len(table.values))))
     return found[0], found[1]
+
+
+def reach(known: Ours, force_unit: str) -> str:
+    """Return in words which forces and voltages ours has; the forces of each voltage where they differ."""
+    ends = np.array([(curve.force[0], curve.force[-1]) for curve in known.curves])
+    if np.allclose(ends, ends[0], rtol=_NEAR, atol=0.0):
+        return f"{_span(known.force, force_unit)}, {_span(known.voltage, 'V')}"
+    each = [f"{_span(curve.force, force_unit)} at {curve.voltage:g} V" for curve in known.curves]
+    more = f" and others at {len(each) - _NAMED} more voltages" if len(each) > _NAMED else ""
+    return ", ".join(each[:_NAMED]) + more
+
+
+def _span(axis: Array, unit: str) -> str:
+    single = math.isclose(axis[0], axis[-1], rel_tol=_NEAR)
+    return f"{axis[0]:g} {unit}" if single else f"{axis[0]:g} to {axis[-1]:g} {unit}"
 
 
 def _name(table: Measured) -> str:
