@@ -5,8 +5,10 @@ import re
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from fingerpad.cli import main, ours
+from fingerpad.cli.compare_data import _Compared, _panel
 from fingerpad.cli.measured import Measured, read
 from fingerpad.runs.sweep import sweep
 from fingerpad.scene import Scene
@@ -173,6 +175,22 @@ def test_misfit_is_printed_and_drawn(folder, table, tmp_path, capsys):
     assert "Within the spread: 3 of 3." in out and "no result there: 1 of 4 rows." in out
     assert re.search(r"^ +75 +0 +0\.5 +0\.75 +0\.25 +0\.5$", out, re.MULTILINE)
     assert (tmp_path / "out.png").stat().st_size > 10_000
+
+
+def test_picture_has_the_values_of_the_table(folder, table):
+    """Lines go as the table is interpolated, in U² and not straight; only computed points are marked."""
+    lines = "25, 0, 1\n25, 50, 1\n25, 150, 1\n50, 0, 1\n50, 100, 1\n"
+    found = read(table("force (N/m), voltage (V), friction (1)\n" + lines))
+    each = _Compared(found, ours.ours(ours.read([folder], sweep=True), found))
+    ax = Figure().subplots()
+    _panel(ax, each)
+    drawn = {line.get_label(): line.get_xydata() for line in ax.lines if line.get_label().startswith("ours")}
+    for force in (25, 50):
+        volts, friction = drawn[f"ours, {force} N/m"].T
+        np.testing.assert_array_equal(friction, each.known.at(np.full(len(volts), force), volts))
+        assert len(volts) > 100
+    marked = [line.get_xdata() for line in ax.lines if line.get_marker() == "."]
+    assert [list(volts) for volts in marked] == [[0, 100, 200], []]
 
 
 @pytest.mark.parametrize(

@@ -25,6 +25,7 @@ _EXAMPLES = """
 """
 _SCALES = {"m": ("mm", 1e3), "m^2": ("mm²", 1e6), "N/m": ("N/m", 1.0), "N": ("N", 1.0), "1": ("", 1.0)}
 _NAMED = 4  # curves in the legend of a picture
+_DRAWN = 201  # places of a curve
 
 
 def main(argv: Sequence[str]) -> int:
@@ -131,18 +132,19 @@ def _panel(ax: "Axes", each: _Compared) -> None:
     unit, scale = _SCALES[each.table.unit]
     over_voltage = len(np.unique(each.voltage)) > len(np.unique(each.force))
     x, other = (each.voltage, each.force) if over_voltage else (each.force, each.voltage)
-    along, name = (each.known.voltage, each.table.force_unit) if over_voltage else (each.known.force, "V")
+    known, name = (each.known.voltage, each.table.force_unit) if over_voltage else (each.known.force, "V")
     for k, held in enumerate(np.unique(other)):
-        mine, level = other == held, np.full(len(along), held)
-        curve = each.known.at(level, along) if over_voltage else each.known.at(along, level)
+        mine, colour = other == held, style.CATEGORIES[k % len(style.CATEGORIES)]
+        along, curve, computed = _ours(each.known, known, held, over_voltage)
         plot.curve(ax, k, along, scale * curve, f"ours, {held:g} {name}" if k < _NAMED else "_")
+        ax.plot(along[computed], scale * curve[computed], ".", ms=9, color=colour)
         spread = None if np.isnan(each.spread).all() else scale * each.spread[mine]
         ax.errorbar(
             x[mine],
             scale * each.measured[mine],
             spread,
             fmt=style.MARKERS[k % len(style.MARKERS)],
-            color=style.CATEGORIES[k % len(style.CATEGORIES)],
+            color=colour,
             mfc="white",
             ms=7,
             capsize=3,
@@ -153,3 +155,11 @@ def _panel(ax: "Axes", each: _Compared) -> None:
     ax.set(ylabel=f"{each.table.quantity} ({unit or '–'})", title=plain(clip(each.table.source, 40)))
     ax.set_ylim(bottom=0)
     ax.legend()
+
+
+def _ours(known: ours.Ours, axis: Array, held: float, over_voltage: bool) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Return ours over voltages or forces as the table has it: places, values, and which of them are computed."""
+    along = np.union1d(axis, np.linspace(axis[0], axis[-1], _DRAWN))
+    level = np.full(len(along), held)
+    at = (level, along) if over_voltage else (along, level)
+    return along, known.at(*at), known.computed(*at)

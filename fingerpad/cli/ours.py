@@ -73,6 +73,15 @@ class Ours:
             found.append(_between(u**2, self.voltage**2, over))
         return np.array(found)
 
+    def computed(self, force: Array, voltage: Array) -> NDArray[np.bool_]:
+        """Return which pairs of force and voltage have a value that is not interpolated."""
+        found = np.zeros(len(force), dtype=bool)
+        for curve in self.curves:
+            inside = np.array([curve.inside(f) for f in force])
+            there = np.isclose(inside[:, None], curve.force, rtol=_NEAR, atol=0.0).any(axis=1)
+            found |= there & np.isclose(np.abs(voltage), curve.voltage, rtol=_NEAR, atol=0.0)
+        return found
+
 
 def _between(x: float, known: Array, values: Sequence[float] | Array) -> float:
     """Return a value at one of the known places up to roundoff, or between two of them; NaN beyond."""
