@@ -2,6 +2,7 @@
 
 import csv
 import re
+import shutil
 
 import numpy as np
 import pytest
@@ -113,7 +114,7 @@ def test_row_without_a_spread_is_one(folder, table, capsys):
     text = "force (N/m), voltage (V), friction (1), spread (1)\n25, 0, 0.25, 0.1\n25, 100, 0.1,\n75, 0, 0.25\n"
     np.testing.assert_array_equal(read(table(text)).spread, [0.1, np.nan, np.nan])
     assert main(["compare-data", str(table(text)), "--sweep", str(folder)]) == 0
-    assert "Within the spread: 1 of 1 rows that have one.\n" in capsys.readouterr().out
+    assert "Within the spread: 1 of 1 rows that have a spread.\n" in capsys.readouterr().out
 
 
 # -- ours ----------------------------------------------------------------------------------------------------
@@ -172,7 +173,7 @@ def test_misfit_is_printed_and_drawn(folder, table, tmp_path, capsys):
     assert "friction at full slip: Somebody 2020\ndoi 10.1/x\n" in out
     assert "Misfit: ours over measured 0.5 (geometric mean of 3), at most a factor of 2.\n" in out
     assert "ours scaled by one factor (2): at most a factor of 1.\n" in out
-    assert "Within the spread: 3 of 3." in out and "no result there: 1 of 4 rows." in out
+    assert "±" not in out and "Within the spread: 3 of 3." in out and "no result there: 1 of 4 rows." in out
     assert re.search(r"^ +75 +0 +0\.5 +0\.75 +0\.25 +0\.5$", out, re.MULTILINE)
     assert (tmp_path / "out.png").stat().st_size > 10_000
 
@@ -191,6 +192,23 @@ def test_picture_has_the_values_of_the_table(folder, table):
         assert len(volts) > 100
     marked = [line.get_xdata() for line in ax.lines if line.get_marker() == "."]
     assert [list(volts) for volts in marked] == [[0, 100, 200], []]
+
+
+def test_errors_of_a_sweep_count_with_the_spread(folder, table, tmp_path, capsys):
+    """They are interpolated as the values are; a value without an error has a dash."""
+    rows = "f_ext,voltage,slip_mu_app,slip_mu_app_error,failure\n25,0,0.30,0.02,\n25,100,0.40,0.04,\n25,200,0.5,,\n"
+    place = tmp_path / "kept"
+    shutil.copytree(folder, place)
+    (place / "table.csv").write_text(rows)
+    # 0.375 ± 0.035 at 86.6 V
+    lines = "25, 0, 0.33, 0.011\n25, 86.602540378, 0.33, 0.011\n25, 100, 0.33, 0.02\n25, 200, 0.51, 0.02\n"
+    file = table("force (N/m), voltage (V), friction (1), spread (1)\n" + lines)
+    assert main(["compare-data", str(file), "--sweep", str(place)]) == 0
+    out = capsys.readouterr().out
+    assert re.search(r"^ +25 +86.6 +0.33 +0.011 +0.375 +0.035 +1.14$", out, re.MULTILINE)
+    assert re.search(r"^ +25 +200 +0.51 +0.02 +0.5 +– +0.98$", out, re.MULTILINE)
+    assert "±: estimated discretisation error of ours, of the mesh alone.\n" in out
+    assert "Within the spread plus the error of ours: 3 of 4.\n" in out
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """Runs beside tables of measurements: what of a run is compared, and which runs go together."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -13,7 +15,7 @@ from fingerpad.slices import traces
 from fingerpad.slices.finger import WholeFinger
 from fingerpad.slices.total import Total
 from tests.commands import refused
-from variational.state import ContactState
+from variational.state import ContactState, Errors
 
 
 def state(step, f_ext, voltage=0.0, bone_x=0.0, **more):
@@ -40,6 +42,22 @@ def test_press_of_a_run_is_compared(table):
     assert _Compared(slip, ours.ours([run], slip)).ratio == pytest.approx([2.0])
     with pytest.raises(SceneError, match="no state full slip"):
         ours.ours([Result(Scene(), "full", steps[1], None, None, steps=steps[:2])], slip)
+
+
+def test_errors_of_named_states_are_carried(table):
+    """Of the cross-section and of the whole finger; a step of the press has none, but for the named state's own."""
+    steps = (state(1, 10.0), state(2, 20.0), state(4, 20.0, 100.0, 1e-3, mu_app=0.4))
+    uncharged, slip = replace(steps[1], error=Errors(bone_height=2e-6)), replace(steps[2], error=Errors(mu_app=0.01))
+    finger = WholeFinger({"full_slip": total(0.4, 8e-5)}, "test", {"full_slip": {"contact_area": 3e-7}})
+    run = Result(Scene(), "full", uncharged, None, slip, steps=steps, finger=finger)
+    for text, error in (
+        ("# state: uncharged\nforce (N/m), depth (mm)\n20, 0.2\n10, 0.1\n", [2e-6, np.nan]),
+        ("friction (1)\n0.2\n", [0.01]),
+        ("contact area (mm^2)\n20\n", [3e-7]),
+        ("gross area (mm^2)\n20\n", [np.nan]),
+    ):
+        asked = read(table(text))
+        np.testing.assert_array_equal(_Compared(asked, ours.ours([run], asked)).error, error)
 
 
 def test_whole_finger_is_compared(table):
@@ -181,5 +199,7 @@ def test_two_values_at_one_place_are_refused(table):
         return Result(Scene(), "full", None, None, state(4, f_ext, 100.0, mu_app=mu))
 
     assert len(ours.ours([slip(0.4), slip(0.4 + 1e-7, 20 + 1e-8)], friction).force) == 1
+    near = Result(Scene(), "full", None, None, replace(slip(0.41).full_slip, error=Errors(mu_app=0.02)))
+    ours.ours([slip(0.4), near], friction)  # on another mesh, for an accuracy
     with pytest.raises(SceneError, match="friction is 0.4 in a run and 0.41 in a run, both at 20 N/m and 100 V; give"):
         ours.ours([slip(0.4), slip(0.41)], friction)

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,7 +60,7 @@ class _Compared:
         self.table, self.known = table, known
         self.force, self.voltage = ours.conditions(table, known)
         self.measured, self.spread = np.array(table.values), np.array(table.spread)
-        self.ours = known.at(self.force, self.voltage)
+        self.ours, self.error = known.at(self.force, self.voltage), known.error(self.force, self.voltage)
         self.ratio = self.ours / self.measured
         if np.isnan(self.ours).all():
             has = ours.reach(known, table.force_unit)
@@ -85,17 +85,20 @@ class _Compared:
             Column("measured", "measured", unit, scale),
             Column("spread", "spread", unit, scale),
             Column("ours", "ours", unit, scale),
+            *([Column("error", "±", unit, scale, ".2g")] if np.isfinite(self.error).any() else []),
             Column("ratio", "ours/measured", digits=".3g"),
         ]
         rows = []
         for k in range(len(self.measured)):
             cells = {"force": self.force, "voltage": self.voltage, "measured": self.measured}
-            cells |= {"spread": self.spread, "ours": self.ours, "ratio": self.ratio}
+            cells |= {"spread": self.spread, "ours": self.ours, "error": self.error, "ratio": self.ratio}
             rows.append({name: v if np.isfinite(v := float(values[k])) else None for name, values in cells.items()})
         yield f"{self.table.quantity} at {WORDS[self.table.state]}: {clip(self.table.source, 200)}"
         more = [f"{name} {self.table.about[name]}" for name in ("doi", "url", "people") if name in self.table.about]
         yield from [clip("; ".join(more), 200)] if more else []
         yield text(columns, rows)
+        if np.isfinite(self.error).any():
+            yield "±: estimated discretisation error of ours, of the mesh alone."
         yield from self._misfit()
 
     def _misfit(self) -> Iterator[str]:
@@ -106,9 +109,12 @@ class _Compared:
             shape = float(np.exp(np.abs(log - log.mean()).max()))
             yield f"Shape alone, ours scaled by one factor ({1 / mean:.3g}): at most a factor of {shape:.3g}."
         if (spread := self.within & np.isfinite(self.spread)).any():
-            near = np.abs(self.ours - self.measured)[spread] <= self.spread[spread]
-            which = "" if spread.sum() == count else " rows that have one"
-            yield f"Within the spread: {near.sum()} of {spread.sum()}{which}."
+            known = np.isfinite(self.error[spread])
+            allowed = self.spread[spread] + np.where(known, self.error[spread], 0.0)
+            near = np.abs(self.ours - self.measured)[spread] <= allowed
+            which = "" if spread.sum() == count else " rows that have a spread"
+            plus = " plus the error of ours" if known.any() else ""
+            yield f"Within the spread{plus}: {near.sum()} of {spread.sum()}{which}."
         if count < len(self.ratio):
             none, total = int(np.isnan(self.ours).sum()), len(self.ratio)
             yield from [f"Not compared, since ours has no result there: {none} of {total} rows."] if none else []
@@ -125,6 +131,24 @@ def draw(file: Path, compared: Sequence[_Compared]) -> None:
             _panel(ax, each)
 
 
+class _Curve(NamedTuple):
+    """Ours over voltages or forces, as the table has it; shape (places,) each."""
+
+    along: Array
+    values: Array
+    error: Array
+    computed: NDArray[np.bool_]
+    """Whether a value is not interpolated."""
+
+    @classmethod
+    def of(cls, known: ours.Ours, axis: Array, held: float, over_voltage: bool) -> "_Curve":
+        """Return ours along an axis, where the other condition is held."""
+        along = np.union1d(axis, np.linspace(axis[0], axis[-1], _DRAWN))
+        level = np.full(len(along), held)
+        at = (level, along) if over_voltage else (along, level)
+        return cls(along, known.at(*at), known.error(*at), known.computed(*at))
+
+
 def _panel(ax: "Axes", each: _Compared) -> None:
     from fingerpad.cli import plot
     from fingerpad.io import style
@@ -135,9 +159,12 @@ def _panel(ax: "Axes", each: _Compared) -> None:
     known, name = (each.known.voltage, each.table.force_unit) if over_voltage else (each.known.force, "V")
     for k, held in enumerate(np.unique(other)):
         mine, colour = other == held, style.CATEGORIES[k % len(style.CATEGORIES)]
-        along, curve, computed = _ours(each.known, known, held, over_voltage)
-        plot.curve(ax, k, along, scale * curve, f"ours, {held:g} {name}" if k < _NAMED else "_")
-        ax.plot(along[computed], scale * curve[computed], ".", ms=9, color=colour)
+        found = _Curve.of(each.known, known, held, over_voltage)
+        along, curve, error = found.along, scale * found.values, scale * found.error
+        plot.curve(ax, k, along, curve, f"ours, {held:g} {name}" if k < _NAMED else "_")
+        ax.fill_between(along, curve - error, curve + error, color=colour, alpha=0.2, lw=0)
+        at = found.computed
+        ax.errorbar(along[at], curve[at], error[at], fmt=".", ms=9, capsize=2, color=colour)
         spread = None if np.isnan(each.spread).all() else scale * each.spread[mine]
         ax.errorbar(
             x[mine],
@@ -155,11 +182,3 @@ def _panel(ax: "Axes", each: _Compared) -> None:
     ax.set(ylabel=f"{each.table.quantity} ({unit or '–'})", title=plain(clip(each.table.source, 40)))
     ax.set_ylim(bottom=0)
     ax.legend()
-
-
-def _ours(known: ours.Ours, axis: Array, held: float, over_voltage: bool) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Return ours over voltages or forces as the table has it: places, values, and which of them are computed."""
-    along = np.union1d(axis, np.linspace(axis[0], axis[-1], _DRAWN))
-    level = np.full(len(along), held)
-    at = (level, along) if over_voltage else (along, level)
-    return along, known.at(*at), known.computed(*at)

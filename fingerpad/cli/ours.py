@@ -28,6 +28,14 @@ At = tuple[float, float]
 """Force and voltage."""
 
 
+class Value(NamedTuple):
+    """A quantity of ours at a force and a voltage; SI units."""
+
+    value: float
+    error: float = math.nan
+    """Estimated discretisation error; NaN where none is known."""
+
+
 class Curve(NamedTuple):
     """A quantity of ours over the force at a voltage (V), whose sign changes no force; SI units."""
 
@@ -36,6 +44,8 @@ class Curve(NamedTuple):
     """Increasing, shape (forces,)."""
     values: Array
     """Shape (forces,); NaN where a run has no result."""
+    error: Array
+    """Estimated discretisation errors, shape (forces,); NaN where none is known."""
 
     def inside(self, force: float) -> float:
         """Return a force; one up to 1 % beyond the curve is its end."""
@@ -67,9 +77,19 @@ class Ours:
         The sign of a voltage does not count. Up to 1 % beyond the forces of a voltage the value at the last one is
         taken: the newtons of one f_ext differ a little between voltages.
         """
+        return self._through(force, voltage, [curve.values for curve in self.curves])
+
+    def error(self, force: Array, voltage: Array) -> Array:
+        """Return the discretisation errors of :meth:`at`, interpolated likewise; NaN where one is not known.
+
+        They do not hold the error of the interpolation.
+        """
+        return self._through(force, voltage, [curve.error for curve in self.curves])
+
+    def _through(self, force: Array, voltage: Array, values: Sequence[Array]) -> Array:
         found = []
         for f, u in zip(force, voltage, strict=True):
-            over = [_between(curve.inside(f), curve.force, curve.values) for curve in self.curves]
+            over = [_between(c.inside(f), c.force, known) for c, known in zip(self.curves, values, strict=True)]
             found.append(_between(u**2, self.voltage**2, over))
         return np.array(found)
 
@@ -125,19 +145,20 @@ def ours(found: Sequence[Result] | Table, table: Measured) -> Ours:
     return _curves(points, table)
 
 
-def _joined(runs: Sequence[Result], table: Measured) -> dict[At, float]:
+def _joined(runs: Sequence[Result], table: Measured) -> dict[At, Value]:
     """Return the values of all runs by force and voltage; of one run the last state there.
 
     Raises:
         SceneError: two runs have other values at the same force and voltage.
     """
-    points, of = dict[At, float](), dict[At, Result]()
+    points, of = dict[At, Value](), dict[At, Result]()
     for run in runs:
         for at, value in (_whole if table.whole else _section)(run, table):
             place = next((known for known in points if _same(known, at)), at)
-            if of.get(place, run) is not run and not math.isclose(points[place], value, rel_tol=_SAME):
+            if of.get(place, run) is not run and not _agree(points[place], value):
+                one, other = points[place].value, value.value
                 raise SceneError(
-                    f"{table.quantity} is {points[place]:.6g} in {one_scene.folder(of[place])} and {value:.6g} in "
+                    f"{table.quantity} is {one:.6g} in {one_scene.folder(of[place])} and {other:.6g} in "
                     f"{one_scene.folder(run)}, both at {at[0]:.6g} {table.force_unit} and {at[1]:g} V; give one of them"
                 )
             points[place], of[place] = value, run
@@ -149,16 +170,22 @@ def _same(one: At, other: At) -> bool:
     return all(math.isclose(a, b, rel_tol=_NEAR) for a, b in zip(one, other, strict=True))
 
 
-def _section(found: Result, table: Measured) -> Iterator[tuple[At, float]]:
+def _agree(one: Value, other: Value) -> bool:
+    """Return whether two values of one quantity are the same up to the solvers' tolerances and their known errors."""
+    most = _SAME * abs(one.value) + sum(each.error for each in (one, other) if not math.isnan(each.error))
+    return abs(one.value - other.value) <= most
+
+
+def _section(found: Result, table: Measured) -> Iterator[tuple[At, Value]]:
     """Yield force and voltage of each state of the cross-section, and the value there."""
+    key = "bone_height" if table.key == "depth" else table.key
     for state in _states(found, table.state):
-        yield (
-            (state.f_ext, abs(state.voltage)),
-            -state.bone_height if table.key == "depth" else float(getattr(state, table.key)),
-        )
+        value = float(getattr(state, key))
+        error = float(getattr(state.error, key, math.nan))
+        yield (state.f_ext, abs(state.voltage)), Value(-value if table.key == "depth" else value, error)
 
 
-def _whole(found: Result, table: Measured) -> Iterator[tuple[At, float]]:
+def _whole(found: Result, table: Measured) -> Iterator[tuple[At, Value]]:
     """Yield the same of the whole finger.
 
     Raises:
@@ -170,15 +197,19 @@ def _whole(found: Result, table: Measured) -> Iterator[tuple[At, float]]:
         )
     if table.state in found.finger.states:
         voltage = 0.0 if table.state == "uncharged" else abs(found.named[table.state].voltage)
-        yield (found.finger.f_ext, voltage), found.finger.values(table.state)[table.key]
+        error = found.finger.error.get(table.state, {}).get(table.key, math.nan)
+        yield (found.finger.f_ext, voltage), Value(found.finger.values(table.state)[table.key], error)
 
 
 def _states(found: Result, state: str) -> list[ContactState]:
-    """Return the states of a run: the whole press of the uncharged one, else the named one."""
+    """Return the states of a run: the whole press of the uncharged one, else the named one.
+
+    The named one stands in place of its step: it has errors, and may be of a finer mesh.
+    """
+    named = found.named.get(state)
     pressed = [s for s in before_sliding(found.steps) if s.voltage == 0 and s.ridges_in_contact and s.f_ext > 0]
     if state == "uncharged" and pressed:
-        return pressed
-    named = found.named.get(state)
+        return [named if named is not None and named.step == each.step else each for each in pressed]
     return [] if named is None else [named]
 
 
@@ -203,26 +234,27 @@ def _of_sweep(found: Table, table: Measured) -> Ours:
             f"the sweep in {clip(str(found.folder), 80)} does not give its {unknown[0]}; "
             "give one over f_ext and voltage"
         )
-    points = dict[At, float]()
+    points = dict[At, Value]()
     try:
         for row in found.rows:
             force, voltage = (float(row[key] if key in found.axes else fixed[key]) for key in CONDITIONS)
             at = force, 0.0 if table.state == "uncharged" else abs(voltage)
             if row[column] or at not in points:  # else another run has it, at another voltage or sign of it
-                points[at] = float(row[column] or "nan")
+                points[at] = Value(float(row[column] or "nan"), float(row.get(f"{column}_error") or "nan"))
     except (ValueError, KeyError, TypeError) as error:
         raise SceneError(f"the table of the sweep in {clip(str(found.folder), 80)} cannot be read: {error}") from None
     return _curves(points, table)
 
 
-def _curves(points: dict[At, float], table: Measured) -> Ours:
-    if all(math.isnan(value) for value in points.values()):
+def _curves(points: dict[At, Value], table: Measured) -> Ours:
+    if all(math.isnan(point.value) for point in points.values()):
         quantity = "friction coefficient" if table.key == "mu_app" else table.quantity
         raise SceneError(f"ours has no {quantity} of {WORDS[table.state]}, which {_name(table)} has")
     curves = []
     for voltage in sorted({u for _, u in points}):
         forces = sorted(f for f, u in points if u == voltage)
-        curves.append(Curve(voltage, np.array(forces), np.array([points[f, voltage] for f in forces])))
+        values, errors = (np.array(column) for column in zip(*(points[f, voltage] for f in forces), strict=True))
+        curves.append(Curve(voltage, np.array(forces), values, errors))
     return Ours(tuple(curves))
 
 
