@@ -102,7 +102,7 @@ def test_colours_of_voltages_go_up_to_the_largest_amount(command, voltages, tmp_
     ("argv", "words"),
     [
         (["--plot", "mu.txt"], "mu.txt cannot be a picture; its name must end with one of .png"),
-        (["--plot", "same.png", "--csv", "same.png"], "--plot and --csv are both same.png; give a file for each"),
+        (["--plot", "same.png", "--csv", "same.png"], "the picture and --csv are both same.png; give a file for each"),
         (["demos/scenes/unload.toml"], "history is given; the model 'cylinders' answers for press, charge and slide"),
     ],
 )

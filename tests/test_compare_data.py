@@ -178,6 +178,31 @@ def test_misfit_is_printed_and_drawn(folder, table, tmp_path, capsys):
     assert (tmp_path / "out.png").stat().st_size > 10_000
 
 
+def test_numbers_are_written(folder, table, tmp_path, capsys):
+    """In SI units and unrounded, a row for each row of every table; what is missing is empty."""
+    first = table("force (N/mm), voltage (V), contact length (mm), spread (um)\n0.025, 100, 1, 20\n0.9, 0, 1,\n")
+    second = first.rename(tmp_path / "first.csv"), table("force (N/m), voltage (V), friction (1)\n75, 100, 0.3\n")
+    csv_file = tmp_path / "out.csv"
+    argv = ["compare-data", *map(str, second), "--sweep", str(folder), "--csv", str(csv_file)]
+    assert main(argv) == 0
+    assert capsys.readouterr().out.endswith(f"Written: {csv_file}\n")
+    rows = list(csv.DictReader(csv_file.read_text(encoding="utf-8").splitlines()))
+    assert [(row["quantity"], row["state"], row["unit"]) for row in rows] == [
+        *[("contact length", "full slip", "m")] * 2,
+        ("friction", "full slip", "1"),
+    ]
+    assert rows[0]["table"] == str(tmp_path / "first.csv") and rows[0]["force_unit"] == "N/m"
+    numbers = [float(rows[0][key]) for key in ("force", "voltage", "measured", "spread")]
+    assert numbers == pytest.approx([25, 100, 1e-3, 2e-5], rel=1e-12)
+    assert float(rows[0]["ratio"]) == float(rows[0]["ours"]) / 1e-3
+    assert [rows[1][key] for key in ("spread", "ours", "error", "ratio")] == [""] * 4
+    assert float(rows[2]["ours"]) == known(folder).at(np.array([75.0]), np.array([100.0]))[0]
+    said = refused(capsys, *argv, "--out", str(csv_file))
+    assert "out.csv cannot be a picture" in said
+    picture = str(tmp_path / "out.png")
+    assert "the picture and --csv are both" in refused(capsys, *argv[:-1], picture, "--out", picture)
+
+
 def test_picture_has_the_values_of_the_table(folder, table):
     """Lines go as the table is interpolated, in U² and not straight; only computed points are marked."""
     lines = "25, 0, 1\n25, 50, 1\n25, 150, 1\n50, 0, 1\n50, 100, 1\n"

@@ -1,5 +1,6 @@
 """``fingerpad compare-data``: tables of measurements beside a run or a sweep."""
 
+import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -7,10 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.cli import ours
-from fingerpad.cli.arguments import Parser, echo, path, writable
+from fingerpad.cli import ours, tables
+from fingerpad.cli.arguments import Parser, echo, path
 from fingerpad.cli.measured import Measured, read
-from fingerpad.cli.tables import Column, text
 from fingerpad.io.states import WORDS
 from fingerpad.io.titles import plain
 from fingerpad.scene.messages import SceneError, clip
@@ -20,10 +20,13 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 _EXAMPLES = """
-    fingerpad compare-data mine.csv --sweep results/sweep --out mine.png
+    fingerpad compare-data mine.csv --sweep results/sweep --out mine.png --csv compared.csv
     fingerpad compare-data data/measured/ayyildiz2018.csv --run results/mine
 """
 _SCALES = {"m": ("mm", 1e3), "m^2": ("mm²", 1e6), "N/m": ("N/m", 1.0), "N": ("N", 1.0), "1": ("", 1.0)}
+_ABOUT = ("table", "state", "quantity", "unit", "force_unit")  # of a row in a file, which has rows of every table
+_VALUES = ("force", "voltage", "measured", "spread", "ours", "error", "ratio")
+_COLUMNS = tuple(tables.Column(key, key) for key in (*_ABOUT, *_VALUES))
 _NAMED = 4  # curves in the legend of a picture
 _DRAWN = 201  # places of a curve
 
@@ -39,16 +42,15 @@ def main(argv: Sequence[str]) -> int:
     which = parser.add_mutually_exclusive_group(required=True)
     which.add_argument("--run", nargs="+", type=path, metavar="DIR", help="folders of runs")
     which.add_argument("--sweep", type=path, metavar="DIR", help="folder of a sweep over f_ext, voltage or both")
-    parser.add_out(None, "picture (PNG) of tables and ours")
+    tables.add_files(parser, "picture of tables and ours", "--out")
     args = parser.read(argv)
-    writable(args.out, picture=True)
-    tables = [read(file) for file in args.tables]
+    tables.check_files(args)
+    measured = [read(file) for file in args.tables]
     found = ours.read(args.run or [args.sweep], sweep=args.sweep is not None)
-    compared = [_Compared(table, ours.ours(found, table)) for table in tables]
+    compared = [_Compared(table, ours.ours(found, table)) for table in measured]
     echo("\n\n".join("\n".join(each.lines()) for each in compared))
-    if args.out:
-        draw(args.out, compared)
-        echo(f"Written: {args.out}")
+    rows = [row for each in compared for row in each.rows()]
+    tables.write_files(args, _COLUMNS, rows, lambda file, _: draw(file, compared))
     return 0
 
 
@@ -76,27 +78,30 @@ class _Compared:
         """Return which rows are within ours and have a ratio."""
         return np.isfinite(self.ratio) & (self.ratio > 0)
 
+    def rows(self) -> list[dict[str, str | float | None]]:
+        """Return the rows by name, in SI units; None for what is missing."""
+        table = self.table
+        about = (str(table.file), WORDS[table.state], table.quantity, table.unit, table.force_unit)
+        values = (self.force, self.voltage, self.measured, self.spread, self.ours, self.error, self.ratio)
+        found = ([float(v) if np.isfinite(v) else None for v in row] for row in zip(*values, strict=True))
+        return [dict(zip((*_ABOUT, *_VALUES), (*about, *row), strict=True)) for row in found]
+
     def lines(self) -> Iterator[str]:
         """Yield the table and the misfit as text."""
         unit, scale = _SCALES[self.table.unit]
         columns = [
-            Column("force", "force", self.table.force_unit),
-            Column("voltage", "voltage", "V"),
-            Column("measured", "measured", unit, scale),
-            Column("spread", "spread", unit, scale),
-            Column("ours", "ours", unit, scale),
-            *([Column("error", "±", unit, scale, ".2g")] if np.isfinite(self.error).any() else []),
-            Column("ratio", "ours/measured", digits=".3g"),
+            tables.Column("force", "force", self.table.force_unit),
+            tables.Column("voltage", "voltage", "V"),
+            tables.Column("measured", "measured", unit, scale),
+            tables.Column("spread", "spread", unit, scale),
+            tables.Column("ours", "ours", unit, scale),
+            *([tables.Column("error", "±", unit, scale, ".2g")] if np.isfinite(self.error).any() else []),
+            tables.Column("ratio", "ours/measured", digits=".3g"),
         ]
-        rows = []
-        for k in range(len(self.measured)):
-            cells = {"force": self.force, "voltage": self.voltage, "measured": self.measured}
-            cells |= {"spread": self.spread, "ours": self.ours, "error": self.error, "ratio": self.ratio}
-            rows.append({name: v if np.isfinite(v := float(values[k])) else None for name, values in cells.items()})
         yield f"{self.table.quantity} at {WORDS[self.table.state]}: {clip(self.table.source, 200)}"
         more = [f"{name} {self.table.about[name]}" for name in ("doi", "url", "people") if name in self.table.about]
         yield from [clip("; ".join(more), 200)] if more else []
-        yield text(columns, rows)
+        yield tables.text(columns, self.rows())
         if np.isfinite(self.error).any():
             yield "±: estimated discretisation error of ours, of the mesh alone."
         yield from self._misfit()
@@ -181,4 +186,6 @@ def _panel(ax: "Axes", each: _Compared) -> None:
     ax.set(xlabel="voltage (V)" if over_voltage else force)
     ax.set(ylabel=f"{each.table.quantity} ({unit or '–'})", title=plain(clip(each.table.source, 40)))
     ax.set_ylim(bottom=0)
+    if math.isclose(*ax.get_xlim(), rel_tol=0.05):  # a single force, but for roundoff
+        ax.set_xlim(0, 2 * x.mean())
     ax.legend()

@@ -50,9 +50,9 @@ def write(file: Path, columns: Sequence[Column], rows: Sequence[Mapping[str, Any
     replace(file, out.getvalue())
 
 
-def add_files(parser: Parser, picture: str) -> None:
-    """Add the options of a picture and of a table in a file; ``picture`` is the help of the picture."""
-    parser.add_argument("--plot", type=path, metavar="PNG", help=picture)
+def add_files(parser: Parser, picture: str, option: str = "--plot") -> None:
+    """Add the options of a picture and of a table in a file; ``picture`` is the help of the picture's ``option``."""
+    parser.add_argument(option, dest="plot", type=path, metavar="PNG", help=picture)
     parser.add_argument("--csv", type=path, metavar="CSV", help="table in SI units; results are unrounded")
 
 
@@ -65,7 +65,7 @@ def check_files(args: argparse.Namespace) -> None:
     writable(args.plot, picture=True)
     writable(args.csv)
     if args.plot and args.csv and args.plot.absolute() == args.csv.absolute():
-        raise SceneError(f"--plot and --csv are both {clip(str(args.csv), 80)}; give a file for each")
+        raise SceneError(f"the picture and --csv are both {clip(str(args.csv), 80)}; give a file for each")
 
 
 def write_files(
