@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from fingerpad.cli import ours, tables
 from fingerpad.cli.arguments import Parser, echo, path
+from fingerpad.cli.curves import Array, Ours, reach
 from fingerpad.cli.measured import Measured, read
 from fingerpad.io.states import WORDS
 from fingerpad.io.titles import plain
@@ -18,7 +19,6 @@ from fingerpad.scene.messages import SceneError, clip
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 _EXAMPLES = """
     fingerpad compare-data mine.csv --sweep results/sweep --out mine.png --csv compared.csv
     fingerpad compare-data data/measured/ayyildiz2018.csv --run results/mine
@@ -57,7 +57,7 @@ def main(argv: Sequence[str]) -> int:
 class _Compared:
     """A table of measurements with ours at the same conditions."""
 
-    def __init__(self, table: Measured, known: ours.Ours) -> None:
+    def __init__(self, table: Measured, known: Ours) -> None:
         """Interpolate ours; SceneError where no row of the table is within ours."""
         self.table, self.known = table, known
         self.force, self.voltage = ours.conditions(table, known)
@@ -65,7 +65,7 @@ class _Compared:
         self.ours, self.error = known.at(self.force, self.voltage), known.error(self.force, self.voltage)
         self.ratio = self.ours / self.measured
         if np.isnan(self.ours).all():
-            has = ours.reach(known, table.force_unit)
+            has = reach(known, table.force_unit)
             raise SceneError(f"no row of {clip(str(table.file), 80)} is within ours, which has {has}")
         if not self.within.any():
             none = int(np.isnan(self.ours).sum())
@@ -146,7 +146,7 @@ class _Curve(NamedTuple):
     """Whether a value is not interpolated."""
 
     @classmethod
-    def of(cls, known: ours.Ours, axis: Array, held: float, over_voltage: bool) -> "_Curve":
+    def of(cls, known: Ours, axis: Array, held: float, over_voltage: bool) -> "_Curve":
         """Return ours along an axis, where the other condition is held."""
         along = np.union1d(axis, np.linspace(axis[0], axis[-1], _DRAWN))
         level = np.full(len(along), held)

@@ -2,14 +2,12 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fingerpad.cli import one_scene
+from fingerpad.cli.curves import CLOSE, NEAR, Array, At, Curve, Ours, Value
 from fingerpad.cli.measured import Measured
 from fingerpad.io.result import Result
 from fingerpad.io.states import PREFIXES, WORDS, before_sliding
@@ -18,97 +16,8 @@ from fingerpad.report.source import read as folder_of
 from fingerpad.scene.messages import SceneError, clip
 from variational.state import ContactState
 
-Array = NDArray[np.float64]
 CONDITIONS = {"f_ext": "force", "voltage": "voltage"}
-_NEAR = 1e-6  # relative, of conditions that count as the same
-_CLOSE = 0.01  # relative, of forces beyond a curve that its end stands for
-_NAMED = 4  # voltages in a message
 _SAME = 1e-4  # relative, of values at the same conditions: beyond any tolerance of the solvers
-At = tuple[float, float]
-"""Force and voltage."""
-
-
-class Value(NamedTuple):
-    """A quantity of ours at a force and a voltage; SI units."""
-
-    value: float
-    error: float = math.nan
-    """Estimated discretisation error; NaN where none is known."""
-
-
-class Curve(NamedTuple):
-    """A quantity of ours over the force at a voltage (V), whose sign changes no force; SI units."""
-
-    voltage: float
-    force: Array
-    """Increasing, shape (forces,)."""
-    values: Array
-    """Shape (forces,); NaN where a run has no result."""
-    error: Array
-    """Estimated discretisation errors, shape (forces,); NaN where none is known."""
-
-    def inside(self, force: float) -> float:
-        """Return a force; one up to 1 % beyond the curve is its end."""
-        end = float(np.clip(force, self.force[0], self.force[-1]))
-        return end if math.isclose(force, end, rel_tol=_CLOSE) else force
-
-
-@dataclass(frozen=True, eq=False)
-class Ours:
-    """A quantity of ours over force and voltage; SI units."""
-
-    curves: tuple[Curve, ...]
-    """By growing voltage."""
-
-    @property
-    def force(self) -> Array:
-        """All forces, growing."""
-        return np.unique(np.concatenate([curve.force for curve in self.curves]))
-
-    @property
-    def voltage(self) -> Array:
-        """All voltages, growing."""
-        return np.array([curve.voltage for curve in self.curves])
-
-    def at(self, force: Array, voltage: Array) -> Array:
-        """Return ours at pairs of force and voltage; NaN outside of ours.
-
-        Between two forces ours is taken as linear, between two voltages as linear in U², as which attraction rises.
-        The sign of a voltage does not count. Up to 1 % beyond the forces of a voltage the value at the last one is
-        taken: the newtons of one f_ext differ a little between voltages.
-        """
-        return self._through(force, voltage, [curve.values for curve in self.curves])
-
-    def error(self, force: Array, voltage: Array) -> Array:
-        """Return the discretisation errors of :meth:`at`, interpolated likewise; NaN where one is not known.
-
-        They do not hold the error of the interpolation.
-        """
-        return self._through(force, voltage, [curve.error for curve in self.curves])
-
-    def _through(self, force: Array, voltage: Array, values: Sequence[Array]) -> Array:
-        found = []
-        for f, u in zip(force, voltage, strict=True):
-            over = [_between(c.inside(f), c.force, known) for c, known in zip(self.curves, values, strict=True)]
-            found.append(_between(u**2, self.voltage**2, over))
-        return np.array(found)
-
-    def computed(self, force: Array, voltage: Array) -> NDArray[np.bool_]:
-        """Return which pairs of force and voltage have a value that is not interpolated."""
-        found = np.zeros(len(force), dtype=bool)
-        for curve in self.curves:
-            inside = np.array([curve.inside(f) for f in force])
-            there = np.isclose(inside[:, None], curve.force, rtol=_NEAR, atol=0.0).any(axis=1)
-            found |= there & np.isclose(np.abs(voltage), curve.voltage, rtol=_NEAR, atol=0.0)
-        return found
-
-
-def _between(x: float, known: Array, values: Sequence[float] | Array) -> float:
-    """Return a value at one of the known places up to roundoff, or between two of them; NaN beyond."""
-    near = np.flatnonzero(np.isclose(known, x, rtol=_NEAR, atol=0.0))
-    if near.size:
-        return float(values[near[0]])
-    return float(np.interp(x, known, values)) if known[0] < x < known[-1] else math.nan
 
 
 def read(folders: Sequence[Path], sweep: bool) -> list[Result] | Table:
@@ -167,7 +76,7 @@ def _joined(runs: Sequence[Result], table: Measured) -> dict[At, Value]:
 
 def _same(one: At, other: At) -> bool:
     """Return whether two pairs of force and voltage are the same up to roundoff."""
-    return all(math.isclose(a, b, rel_tol=_NEAR) for a, b in zip(one, other, strict=True))
+    return all(math.isclose(a, b, rel_tol=NEAR) for a, b in zip(one, other, strict=True))
 
 
 def _agree(one: Value, other: Value) -> bool:
@@ -268,7 +177,7 @@ def conditions(table: Measured, known: Ours) -> tuple[Array, Array]:
     """
     found = []
     for key, axis in (("f_ext", known.force), ("voltage", known.voltage)):
-        if key == "f_ext" and math.isclose(axis[0], axis[-1], rel_tol=_CLOSE):
+        if key == "f_ext" and math.isclose(axis[0], axis[-1], rel_tol=CLOSE):
             axis = np.array([axis.mean()])
         if key not in table.conditions and len(axis) > 1:
             name = CONDITIONS[key]
@@ -276,21 +185,6 @@ def conditions(table: Measured, known: Ours) -> tuple[Array, Array]:
             raise SceneError(f"{_name(table)} has no {name}, and ours has {len(axis)}; add a column '{name} ({unit})'")
         found.append(np.array(table.conditions.get(key, (axis[0],) * len(table.values))))
     return found[0], found[1]
-
-
-def reach(known: Ours, force_unit: str) -> str:
-    """Return in words which forces and voltages ours has; the forces of each voltage where they differ."""
-    ends = np.array([(curve.force[0], curve.force[-1]) for curve in known.curves])
-    if np.allclose(ends, ends[0], rtol=_NEAR, atol=0.0):
-        return f"{_span(known.force, force_unit)}, {_span(known.voltage, 'V')}"
-    each = [f"{_span(curve.force, force_unit)} at {curve.voltage:g} V" for curve in known.curves]
-    more = f" and others at {len(each) - _NAMED} more voltages" if len(each) > _NAMED else ""
-    return ", ".join(each[:_NAMED]) + more
-
-
-def _span(axis: Array, unit: str) -> str:
-    single = math.isclose(axis[0], axis[-1], rel_tol=_NEAR)
-    return f"{axis[0]:g} {unit}" if single else f"{axis[0]:g} to {axis[-1]:g} {unit}"
 
 
 def _name(table: Measured) -> str:
