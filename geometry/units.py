@@ -33,6 +33,7 @@ _LONGEST = 60  # characters of a number with its unit
 _POWER = r"(?:\s?(?:\^|\*\*)\s?-?[0-9]|⁻?[¹²³⁴])?"
 _NAME = r"[^\W\d]+" + _POWER
 _NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)\s*(.*?)\s*", re.DOTALL)
+_COMMA = re.compile(r"\s*([+-]?[0-9]+),([0-9]+(?:[eE][+-]?[0-9]+)?)(?![0-9])([^,]*)")
 _UNIT = re.compile(rf"{_NAME}(?:(?:\s*[*/·]\s*|\s+){_NAME})*")  # pint's own texts can be whole calculations
 
 
@@ -44,12 +45,15 @@ def to_si(text: str, unit: str) -> float:
         unit: one of :data:`QUANTITIES`.
 
     Raises:
-        ValueError: it is no number, has no unit, or one of another dimension, or pint is not installed; to follow the
-            text and a semicolon.
+        ValueError: it is no number, has a decimal comma, no unit, or one of another dimension, or pint is not
+            installed; to follow the text and a semicolon.
     """
     parts = _NUMBER.fullmatch(text) if len(text) <= _LONGEST else None
     number, given = parts.groups() if parts else ("1", "")
     wanted = f"it must be a number in {unit} or a text such as '{number} {unit}'"
+    if comma := _COMMA.fullmatch(text[:_LONGEST]):
+        whole, decimals, rest = comma.groups()
+        raise ValueError(f"decimals have points: write '{whole}.{decimals}{rest.rstrip() or f' {unit}'}'")
     if parts is None:
         raise ValueError(wanted)
     if not given:
