@@ -268,6 +268,8 @@ def test_foreign_configuration_is_not_read(tmp_path):
         ("1e-6,2E-6", [1e-6, 2e-6]),
         ("2e-6 m", ["2e-06 m"]),
         ("5eV", ["5.0 eV"]),
+        ("1 um,5 um", ["1.0 um", "5.0 um"]),
+        ("0 V, 0.2 kV", ["0.0 V", "0.2 kV"]),
     ],
 )
 def test_ranges(text, values):
@@ -316,6 +318,7 @@ def test_whole_numbers_stay_whole():
         ("1:2", "x is 1:2; write one value"),
         ("a:b:3", "x is a:b:3; write one value"),
         ("1,,2", "x is 1,,2; write one value"),
+        ("1 um, 5", "x is 1 um, 5; write one value"),
         ("0:1:0", "x is 0:1:0, of 0 values; it must be of 1 to 10000"),
         ("0:1:1", "x is 0:1:1, one value with two ends"),
         ("0:1:3:log", "x is 0:1:3:log; both ends must be greater than 0"),

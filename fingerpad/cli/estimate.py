@@ -40,7 +40,7 @@ def main(argv: Sequence[str]) -> int:
         _EXAMPLES,
     )
     parser.add_scene()
-    parser.add_argument("--f-ext", metavar="RANGE", help="forces (N/m): 75, or 20,50,75, or first:last:count")
+    parser.add_argument("--f-ext", metavar="RANGE", help="forces (N/m): 75, or 20,50,75 or 20:75:3, or with units")
     parser.add_argument("--voltage", metavar="RANGE", help="voltages (V), written likewise")
     tables.add_files(parser, "picture: one curve a force")
     args = parser.read(argv)

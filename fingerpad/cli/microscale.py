@@ -36,7 +36,7 @@ def main(argv: Sequence[str]) -> int:
         _EXAMPLES,
     )
     parser.add_scene()
-    parser.add_argument("--voltage", metavar="RANGE", help="voltages (V): 200, or 0,100, or first:last:count")
+    parser.add_argument("--voltage", metavar="RANGE", help="voltages (V): 200, or 0,100, or 0:200:5, or with units")
     parser.add_argument("--p", metavar="RANGE", default=_PRESSURES, help=f"pressures (Pa); default {_PRESSURES}")
     tables.add_files(parser, "picture")
     args = parser.read(argv)

@@ -2,7 +2,7 @@
 
 ``75`` is one value, ``0, 50, 200`` are three, ``0:200:5`` are five from 0 to 200 at equal distances, both ends among
 them, and ``1e3:1e6:4:log`` are four at equal ratios. Values between the ends are rounded to 12 digits, so that 0.3 is
-0.3. A unit may follow: ``0:0.2:5 kV``.
+0.3. A unit may follow, ``0:0.2:5 kV``, and in a list also each value: ``1 um, 5 um``.
 """
 
 import re
@@ -13,7 +13,11 @@ from fingerpad.scene.messages import SceneError, clip
 
 _MOST = 10_000  # values of one range
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_HOW = "write one value, several as 0, 50, 200, or first:last:count as in 0:200:5 (1e3:1e6:4:log for equal ratios)"
+_UNIT = r"(?![eE][-+]?\d)[A-Za-zµμ°%][^,:]*"
+_HOW = (
+    "write one value, several as 0, 50, 200, or first:last:count as in 0:200:5 (1e3:1e6:4:log for equal ratios), with "
+    "a unit at the end or after each value of a list"
+)
 
 
 def read(name: str, text: str) -> list[float | str]:
@@ -26,7 +30,10 @@ def read(name: str, text: str) -> list[float | str]:
     Raises:
         SceneError: a text that is none of the three.
     """
-    found = re.fullmatch(r"([-+0-9.,:\seE]*?(?::log)?)\s*((?![eE][-+]?\d)[A-Za-zµ°%][^,:]*)?", text.strip())
+    each = [re.fullmatch(rf"({_NUMBER})\s*({_UNIT})", part.strip()) for part in text.split(",")]
+    if len(each) > 1 and all(each):
+        return [f"{float(part[1])!r} {part[2]}" for part in each if part]
+    found = re.fullmatch(rf"([-+0-9.,:\seE]*?(?::log)?)\s*({_UNIT})?", text.strip())
     numbers, unit = (found[1].strip(), (found[2] or "").strip()) if found else ("", "")
     values = _range(name, numbers) if ":" in numbers else _list(numbers)
     if not values:
