@@ -54,6 +54,7 @@ def test_topography_whatever_the_layout(tmp_path, capsys):
         ("1 2 3 4\n" * 4, ["--unit", "um"], "holds heights alone; give --size or --pixel too"),
         ("1 2 3 4\n1 2 3\n", ["--unit", "um", "--size", "1", "1"], "line 2 has 3 of them, the first one 4"),
         ("1 2 3 4\n1 2 x 4\n", ["--unit", "um", "--size", "1", "1"], "line 2 has 'x'; a mark of missing pixels"),
+        ("x (m) y (m) z (m)\n0 0 1\n0 1 2\n1 0 3\n1 1 4\n", ["--unit", "um"], "z in m by its header, and --unit is um"),
         ("1 2 nan nan\n" * 4, ["--unit", "um", "--size", "1", "1"], "8 of 16 heights are missing or infinite"),
         ("no numbers\n", ["--unit", "um", "--size", "1", "1"], "no line of numbers"),
         ("1 2 3 4\n" * 4, ["--unit", "um", "--size", "1", "1", "--missing", "E"], "without its curvature the map is"),

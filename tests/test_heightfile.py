@@ -8,7 +8,8 @@ import pytest
 
 from fingerpad.scene.materials import LengthUnit
 from tests.test_topography import grid, wave
-from variational.roughness.heightfile import UNITS, read, scan
+from variational.roughness.heightfile import read, scan
+from variational.roughness.heightheader import UNITS
 from variational.roughness.heighttext import parse
 from variational.roughness.missing import filled
 
@@ -99,6 +100,15 @@ def test_numbers_that_mark_missing_pixels(tmp_path):
         scan(tmp_path / "map.npy", (1.0, 1.0), missing="void")
 
 
+@pytest.mark.parametrize("mark", ["NODATA_value  -9999", "nodata_value -9999.0", "# NODATA_value: -9999"])
+def test_mark_of_an_esri_grid(mark, tmp_path):
+    """The header's mark is a number, and another one may be given beside it."""
+    header = f"ncols 4\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 1\n{mark}\n"
+    (tmp_path / "map.asc").write_text(header + "1 2 3 4\n5 -9999 7 8\n9 1 -9999.0 3\n4 5 6 -1\n")
+    found = scan(tmp_path / "map.asc", (4.0, 4.0), "um", missing="-1")
+    assert found.missing == 3 and np.ptp(found.map.heights) < 10e-6
+
+
 def test_missing_heights_are_those_of_a_plane():
     """A linear map is harmonic, so that a hole inside it is filled exactly, to roundoff of the solve."""
     x, y = grid((12, 9), (1.0, 1.0))
@@ -172,6 +182,47 @@ def test_points_in_any_order():
     assert found.size == (8.0, 9.0)
     assert np.isnan(found.heights[3, 2])
     np.testing.assert_array_equal(found.heights.ravel()[:-1], points[:, 2])
+
+
+def points(header: str, x_unit: float) -> str:
+    """Return a text of 4 x 3 points at distances of 2 µm and 3 µm, in a unit (m); the heights are from 0 to 3."""
+    places = [(2e-6 * i / x_unit, 3e-6 * j / x_unit, i) for i in range(4) for j in range(3)]
+    return "\n".join([header, *(f"{x:.6g},{y:.6g},{z}" for x, y, z in places)])
+
+
+@pytest.mark.parametrize(
+    ("header", "unit"),
+    [
+        ("x (mm),y (mm),z (µm)", 1e-3),
+        ("# X [nm], Y [nm], Height [um]", 1e-9),
+        ("x/mm,y/mm,z/µm", 1e-3),
+        ("x_mm,y_mm,z_um", 1e-3),
+        ("filtered (10x) in y\nx,y,z (um)", 1e-6),
+    ],
+)
+def test_units_of_points_in_a_header(header, unit, tmp_path):
+    """Coordinates are in the header's unit, whatever that of the heights; places are rounded to six digits."""
+    path = tmp_path / "map.csv"
+    path.write_text(points(header, unit), encoding="utf-8")
+    for given in ("um", None):
+        found = scan(path, unit=given).map
+        assert found.size == pytest.approx((8e-6, 9e-6), rel=1e-5)
+        assert np.ptp(found.heights) == pytest.approx(3e-6)
+
+
+@pytest.mark.parametrize(
+    ("header", "given", "message"),
+    [
+        ("x (mm),y (mm),z (µm)", {"unit": "mm"}, "has z in µm by its header, and unit is mm; give the header's unit"),
+        ("x (mm),y (mm),z", {"unit": "um", "size_unit": "um"}, "has x in mm by its header, and size_unit is um"),
+        ("x (px),y (px),z (um)", {"unit": "um"}, "map.csv: its header gives x in 'px'; a unit of length must be of m,"),
+    ],
+)
+def test_units_against_a_header(header, given, message, tmp_path):
+    path = tmp_path / "map.csv"
+    path.write_text(points(header, 1e-3), encoding="utf-8")
+    with pytest.raises(ValueError, match=message):
+        scan(path, **given)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,8 @@ from pathlib import Path
 from fingerpad.cli.arguments import Parser, echo, path, positive, writable
 from fingerpad.io.titles import plain
 from fingerpad.scene.messages import SceneError, clip
-from variational.roughness.heightfile import UNITS, Found, is_plain, scan
+from variational.roughness.heightfile import Found, is_plain, scan
+from variational.roughness.heightheader import UNITS
 from variational.roughness.spectrum import Fit, power_spectrum, roughness_table
 from variational.roughness.topography import distribution
 
@@ -16,6 +17,12 @@ _EXAMPLES = """
     fingerpad topography skin.csv --unit um --size 100 100
     fingerpad topography points.xyz --unit mm --missing -9999 --plot skin.png
 """
+_OPTIONS = {  # words of the reader's refusals
+    "give the lengths along x and y too": "give --size or --pixel too",
+    "give that of the heights": "give --unit",
+    "and unit is": "and --unit is",
+    "and size_unit is": "and --size-unit is",
+}
 
 
 def main(argv: Sequence[str]) -> int:
@@ -72,8 +79,14 @@ def _scan(args: argparse.Namespace) -> Found:
     except OSError as error:
         raise SceneError(f"{clip(str(args.file), 80)} cannot be read: {error.strerror or error}") from None
     except (ValueError, ImportError) as error:
-        text = str(error).replace("give the lengths along x and y too", "give --size or --pixel too")
-        raise SceneError(text.replace("give that of the heights", "give --unit")) from None
+        raise SceneError(_with_options(str(error))) from None
+
+
+def _with_options(text: str) -> str:
+    """Return a refusal of the reader with the options of this command in place of its arguments."""
+    for words, option in _OPTIONS.items():
+        text = text.replace(words, option)
+    return text
 
 
 def _report(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iterator[str]:

@@ -104,7 +104,7 @@ class Electric(Part):
 
 Length = Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)]
 LengthUnit = Literal["m", "cm", "mm", "um", "µm", "μm", "micron", "nm", "pm"]
-"""Units of a height map, those of ``variational.roughness.heightfile``."""
+"""Units of a height map, those of ``variational.roughness.heightheader``."""
 
 
 class Topography(Part):

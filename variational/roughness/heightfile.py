@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from variational.roughness import heighttext
+from variational.roughness.heightheader import UNITS
 from variational.roughness.missing import filled
 from variational.roughness.topography import HeightMap
 
-UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "micron": 1e-6, "nm": 1e-9, "pm": 1e-12}
 _HIGHEST = 1.0  # m, of what can be roughness
 _TEXT = (".txt", ".csv", ".tsv", ".dat", ".asc", ".xyz", ".prn")
 
@@ -40,6 +40,8 @@ class _Read(NamedTuple):
     unit: str | None
     """Of all of these, of :data:`UNITS`; None if the file has none."""
     layout: str
+    units: dict[str, str]
+    """Units of x, y and z, of :data:`UNITS`, where the header of a text gives them."""
 
 
 def read(path: str | Path, size: tuple[float, float] | None = None) -> HeightMap:
@@ -63,14 +65,14 @@ def scan(
             points x, y, z; any other name is left to SurfaceTopography, which mostly finds lengths and units too.
         size: lengths along x, from the first line of a matrix to its last, and y, along a line. A matrix needs them,
             or those of a pixel; most other files have their own.
-        unit: of heights, of :data:`UNITS`; m if None.
-        size_unit: of lengths along x and y; that of the heights if None.
+        unit: of heights, a key of :data:`variational.roughness.heightheader.UNITS`; if None that of a header, or m.
+        size_unit: of lengths along x and y; if None that of a header, or of the heights.
         missing: how a text marks a missing pixel, beside the usual ways; in ``.npy`` a number.
         pixel: lengths of a pixel along x and y, in place of ``size``.
 
     Raises:
         ValueError: the file is no height map; ``size``, ``unit`` or ``missing`` is missing or one too many; the lengths
-            along x and y seem to be exchanged; or a unit is not known.
+            along x and y seem to be exchanged; a unit is not known, or is another one than in the header.
         ImportError: SurfaceTopography is needed and not installed.
         OSError: the file cannot be opened.
     """
@@ -91,9 +93,14 @@ def scan(
         _refuse_exchanged(path, shape, size)
     if pixel is not None and len(shape) == 2:
         size = (pixel[0] * shape[0], pixel[1] * shape[1])
-    heights = found.heights * _factor(found.unit or unit or "m")
-    lengths, factor = found.size or size or (0.0, 0.0), _factor(found.unit or size_unit or unit or "m")
-    return _named(path, heights, (lengths[0] * factor, lengths[1] * factor), found.layout)
+    for axis, own in found.units.items():
+        name, given = ("unit", unit) if axis == "z" else ("size_unit", size_unit)
+        if given is not None and _factor(given) != _factor(own):
+            raise ValueError(f"{path} has {axis} in {own} by its header, and {name} is {given}; give the header's unit")
+    heights = found.heights * _factor(found.unit or unit or found.units.get("z") or "m")
+    lengths, general = found.size or size or (0.0, 0.0), found.unit or size_unit or unit or found.units.get("z") or "m"
+    x, y = (length * _factor(found.units.get(axis, general)) for axis, length in zip("xy", lengths, strict=True))
+    return _named(path, heights, (x, y), found.layout)
 
 
 def _refuse_exchanged(path: Path, shape: tuple[int, ...], size: tuple[float, float]) -> None:
@@ -142,7 +149,7 @@ def _read(path: Path, missing: str | None) -> _Read:
     if path.suffix.lower() == ".npy":
         return _array(path, missing)
     text = _text(path, missing)
-    return _Read(text.heights, text.size, None, text.layout)
+    return _Read(text.heights, text.size, None, text.layout, text.units)
 
 
 def _array(path: Path, missing: str | None) -> _Read:
@@ -154,7 +161,7 @@ def _array(path: Path, missing: str | None) -> _Read:
         if not heighttext.is_number(missing):
             raise ValueError(f"missing is {missing[:30]!r}; {path} has numbers alone, so it must be one")
         heights[heights == float(missing)] = np.nan
-    return _Read(heights, None, None, f"matrix of {' x '.join(map(str, heights.shape))} pixels by NumPy")
+    return _Read(heights, None, None, f"matrix of {' x '.join(map(str, heights.shape))} pixels by NumPy", {})
 
 
 def _text(path: Path, missing: str | None) -> heighttext.Text:
@@ -194,4 +201,4 @@ def _instrument(path: Path) -> _Read:
     heights = np.ma.filled(found.heights().astype(float), np.nan)
     size = (float(found.physical_sizes[0]), float(found.physical_sizes[1])) if own else None
     layout = f"map of {' x '.join(map(str, heights.shape))} pixels"
-    return _Read(heights, size, None if found.unit is None else "m", layout)
+    return _Read(heights, size, None if found.unit is None else "m", layout, {})

@@ -2,8 +2,9 @@
 
 Numbers are parted by semicolons, tabs, commas or spaces, with a decimal point or a decimal comma. Lines that start with
 ``#``, ``%`` or ``//`` and lines of words at the top are left out. A pixel is missing where the place is empty, or holds
-``nan``, ``na``, ``-``, ``--``, ``***``, ``bad`` or a mark that is given; a line of marks alone is a line of the map.
-Three columns are points of a regular grid.
+``nan``, ``na``, ``-``, ``--``, ``***``, ``bad`` or a mark that is given, also by the header; a line of marks alone is a
+line of the map. Three columns are points of a regular grid, whose header may give units
+(:mod:`variational.roughness.heightheader`).
 """
 
 import math
@@ -12,6 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from variational.roughness import heightheader
 
 Array = NDArray[np.float64]
 _MISSING = {"", "nan", "na", "n/a", "-", "--", "***", "bad"}
@@ -29,6 +32,8 @@ class Text(NamedTuple):
     """Lengths along x and y, in the unit of the text; None of a matrix, which has none."""
     layout: str
     """How the numbers are laid out, in words."""
+    units: dict[str, str]
+    """Units of x, y and z of points that the header gives."""
 
 
 def parse(text: str, missing: str | None = None) -> Text:
@@ -41,12 +46,14 @@ def parse(text: str, missing: str | None = None) -> Text:
     Raises:
         ValueError: a line that does not fit, or no map.
     """
-    lines = [(k, line) for k, line in enumerate(text.splitlines(), start=1) if line.strip()]
+    whole = text.splitlines()
+    lines = [(k, line) for k, line in enumerate(whole, start=1) if line.strip()]
     lines = [(k, line) for k, line in lines if not line.lstrip().startswith(_COMMENT)]
     marks = _MISSING | ({_plain(missing, False), _plain(missing, True)} if missing is not None else set())
     first = next((k for k, (_, line) in enumerate(lines) if _has_numbers(line, marks)), None)
     if first is None:
         raise ValueError("no matrix of numbers: no line of numbers")
+    header = whole[: lines[first][0] - 1]
     separator, comma = _separator([line for _, line in lines[first:]])
     above, lines = lines[:first], lines[first:]
     rows = [_row(k, line, separator, comma, marks) for k, line in lines]
@@ -63,13 +70,15 @@ def parse(text: str, missing: str | None = None) -> Text:
         if len(row) != len(rows[0]):
             raise ValueError(f"no matrix of numbers: line {k} has {len(row)} of them, the first one {len(rows[0])}")
     found = np.array(rows)
-    if missing is not None and is_number(missing):
-        found[found == float(missing)] = np.nan
+    for mark in (missing, heightheader.mark(header)):
+        if mark is not None and is_number(_plain(mark, comma)):
+            found[found == float(_plain(mark, comma))] = np.nan
     layout = f"separated by {_NAMES[separator]}{', decimal commas' if comma else ''}"
     if found.shape[1] == 3 and len(found) > 3:
         heights, size = _grid(found)
-        return Text(heights, size, f"points x, y, z on {heights.shape[0]} x {heights.shape[1]} pixels, {layout}")
-    return Text(found, None, f"matrix of {found.shape[0]} x {found.shape[1]} pixels, {layout}")
+        units = heightheader.units(header)
+        return Text(heights, size, f"points x, y, z on {heights.shape[0]} x {heights.shape[1]} pixels, {layout}", units)
+    return Text(found, None, f"matrix of {found.shape[0]} x {found.shape[1]} pixels, {layout}", {})
 
 
 def _separator(lines: list[str]) -> tuple[str | None, bool]:
