@@ -65,6 +65,22 @@ def test_topography_refuses(text, options, message, tmp_path, capsys):
     assert message in refused(capsys, "topography", str(tmp_path / "map.txt"), *options)
 
 
+def test_unfilled_value_is_refused_by_command_and_scene(tmp_path, capsys):
+    """Each names its own way to say that these pixels are missing."""
+    h = SelfAffine().surface((64, 64), (400e-6, 400e-6), 3).heights * 1e6
+    h[7, :40] = -9999
+    file = tmp_path / "skin.csv"
+    np.savetxt(file, h, delimiter=";")
+    options = ("--unit", "um", "--size", "400", "400")
+    text = refused(capsys, "topography", str(file), *options)
+    assert "-9999 at 40 pixels" in text and 'give --missing="-9999", or --missing="nan" if it was measured' in text
+    assert main(["topography", str(file), *options, "--missing=-9999"]) == 0
+    table = {"file": str(file), "unit": "um", "size": [400, 400]}
+    with pytest.raises(SceneError, match=r'topography: .* give roughness.topography.missing="-9999", or miss'):
+        from_data({"roughness": {"topography": table}})
+    assert from_data({"roughness": {"topography": table | {"missing": "-9999"}}}).roughness.h_rms < 10e-6
+
+
 def test_scene_may_name_a_height_map(tmp_path, capsys):
     """Beside the scene file; h_rms and wavelength are those that the command prints, to its four digits."""
     h = SelfAffine().surface((64, 64), (400e-6, 400e-6), 3).heights

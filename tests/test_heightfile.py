@@ -8,10 +8,12 @@ import pytest
 
 from fingerpad.scene.materials import LengthUnit
 from tests.test_topography import grid, wave
+from variational.roughness import unfilled
 from variational.roughness.heightfile import read, scan
 from variational.roughness.heightheader import UNITS
 from variational.roughness.heighttext import parse
 from variational.roughness.missing import filled
+from variational.roughness.selfaffine import SelfAffine
 
 
 @pytest.mark.parametrize("name", ["map.npy", "map.txt", "map.csv"])
@@ -107,6 +109,57 @@ def test_mark_of_an_esri_grid(mark, tmp_path):
     (tmp_path / "map.asc").write_text(header + "1 2 3 4\n5 -9999 7 8\n9 1 -9999.0 3\n4 5 6 -1\n")
     found = scan(tmp_path / "map.asc", (4.0, 4.0), "um", missing="-1")
     assert found.missing == 3 and np.ptp(found.map.heights) < 10e-6
+
+
+@pytest.mark.parametrize("pixels", [1, 40, 1000])
+@pytest.mark.parametrize("value", [-9999.0, 32767.0, -3.4028234663852886e38])
+@pytest.mark.parametrize("name", ["map.csv", "map.npy"])
+def test_unfilled_value_is_refused(name, value, pixels, tmp_path):
+    """Of heights of some µm; 1000 of 2304 pixels are more than the quartiles bear. As a mark it is missing."""
+    path, h = tmp_path / name, SelfAffine().surface((48, 48), (300e-6, 300e-6), 3).heights * 1e6
+    h.ravel()[:pixels] = value
+    if path.suffix == ".npy":
+        np.save(path, h)
+    else:
+        np.savetxt(path, h, delimiter=",")
+    count, text = "1 pixel" if pixels == 1 else f"{pixels} pixels", repr(value).removesuffix(".0")
+    with pytest.raises(ValueError) as refusal:
+        scan(path, (300.0, 300.0), "um")
+    assert str(refusal.value) == (
+        f"{path} has {text} at {count}, far from all other heights, as a mark of missing pixels; give "
+        f'missing="{text}", or missing="nan" if it was measured'
+    )
+    if pixels == 40:
+        assert scan(path, (300.0, 300.0), "um", missing=text).missing == pixels
+    if value == 32767:
+        assert np.ptp(scan(path, (300.0, 300.0), "um", missing="nan").map.heights) > 0.03
+
+
+def test_both_extreme_values_are_marks():
+    """The other one does not hide either: it does not count among the others."""
+    h = np.random.default_rng(1).normal(size=(20, 20))
+    h[0, :3], h[1, 1] = -9999, 32767
+    assert unfilled.mark(h) == 32767
+    h[1, 1] = np.nan
+    assert unfilled.mark(h) == -9999
+
+
+@pytest.mark.parametrize("width", [1, 3, 20])
+def test_deep_grooves_are_no_marks(width):
+    """Walls are steep and 1000 interquartile ranges deep, but the floor has heights of its own."""
+    h = 0.1 * np.random.default_rng(1).normal(size=(64, 64))
+    h[30 : 30 + width] -= 135.0
+    assert unfilled.mark(h) is None
+
+
+def test_coarse_steps_are_no_marks():
+    """Of heights in whole steps most may be equal, so that the quartiles are."""
+    h = np.zeros((20, 20))
+    h[3, 3:8] = [1, 2, 3, 4, 5]
+    assert unfilled.mark(h) is None
+    assert unfilled.mark(np.zeros((4, 4))) is None
+    h[4, 4] = -9999
+    assert unfilled.mark(h) == -9999
 
 
 def test_missing_heights_are_those_of_a_plane():

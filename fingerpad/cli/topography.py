@@ -20,6 +20,7 @@ _EXAMPLES = """
 _OPTIONS = {  # words of the reader's refusals
     "give the lengths along x and y too": "give --size or --pixel too",
     "give that of the heights": "give --unit",
+    "missing=": "--missing=",
     "and unit is": "and --unit is",
     "and size_unit is": "and --size-unit is",
 }
@@ -47,7 +48,8 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument(
         "--size-unit", choices=[*UNITS], metavar="UNIT", help="of these lengths (default: that of the heights)"
     )
-    parser.add_argument("--missing", metavar="MARK", help="mark of missing pixels, beside nan and empty places")
+    words = "mark of missing pixels, beside nan and empty places; nan if there are no others"
+    parser.add_argument("--missing", metavar="MARK", help=words)
     parser.add_argument("--plot", type=path, metavar="PNG", help="picture of map, heights and spectrum")
     args = parser.read(argv)
     writable(args.plot, picture=True)

@@ -122,7 +122,8 @@ class Topography(Part):
     size_unit: LengthUnit | None = None
     """Unit of these lengths; by default the unit of the heights."""
     missing: str | None = None
-    """Mark of missing pixels in a text, besides nan and empty places, or in a NumPy file, a number there."""
+    """Mark of missing pixels in a text, besides nan and empty places, or in a NumPy file, a number there. Without it a
+    value far from all other heights is refused; "nan" takes all values as measured."""
 
     def roughness(self) -> dict[str, float]:
         """Return h_rms and wavelength (m) of the map.
@@ -142,7 +143,8 @@ class Topography(Part):
         except OSError as error:
             raise ValueError(f"topography.file is {show(self.file)}: {error.strerror or error}") from None
         except (ValueError, ImportError) as error:
-            raise ValueError(f"topography: {error}") from None
+            text = str(error).replace('missing="', 'topography.missing="', 1)
+            raise ValueError(f"topography: {text}") from None
 
 
 class Roughness(Part):

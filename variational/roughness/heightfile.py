@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from variational.roughness import heighttext
+from variational.roughness import heighttext, unfilled
 from variational.roughness.heightheader import UNITS
 from variational.roughness.missing import filled
 from variational.roughness.topography import HeightMap
@@ -67,17 +67,21 @@ def scan(
             or those of a pixel; most other files have their own.
         unit: of heights, a key of :data:`variational.roughness.heightheader.UNITS`; if None that of a header, or m.
         size_unit: of lengths along x and y; if None that of a header, or of the heights.
-        missing: how a text marks a missing pixel, beside the usual ways; in ``.npy`` a number.
+        missing: how a text marks a missing pixel, beside the usual ways; in ``.npy`` a number. Where it is given, a
+            value far from all others is taken as measured.
         pixel: lengths of a pixel along x and y, in place of ``size``.
 
     Raises:
-        ValueError: the file is no height map; ``size``, ``unit`` or ``missing`` is missing or one too many; the lengths
-            along x and y seem to be exchanged; a unit is not known, or is another one than in the header.
+        ValueError: the file is no height map; ``size``, ``unit`` or ``missing`` is missing or one too many; a value
+            seems to mark missing pixels; the lengths along x and y seem to be exchanged; a unit is not known, or is
+            another one than in the header.
         ImportError: SurfaceTopography is needed and not installed.
         OSError: the file cannot be opened.
     """
     path = Path(path)
     found = _read(path, missing)
+    if missing is None and is_plain(path):
+        _refuse_unfilled(path, found.heights)
     if found.unit is not None and (unit is not None or size_unit is not None):
         raise ValueError(f"{path} has its own units; give none")
     if found.unit is None and unit is None and not is_plain(path):
@@ -101,6 +105,22 @@ def scan(
     lengths, general = found.size or size or (0.0, 0.0), found.unit or size_unit or unit or found.units.get("z") or "m"
     x, y = (length * _factor(found.units.get(axis, general)) for axis, length in zip("xy", lengths, strict=True))
     return _named(path, heights, (x, y), found.layout)
+
+
+def _refuse_unfilled(path: Path, heights: NDArray[np.float64]) -> None:
+    """Refuse a value far from all other heights, of which the spectrum would make roughness.
+
+    Raises:
+        ValueError: there is one.
+    """
+    value = unfilled.mark(heights)
+    if value is not None:
+        count, text = int(np.count_nonzero(heights == value)), repr(value).removesuffix(".0")
+        pixels = "1 pixel" if count == 1 else f"{count} pixels"
+        raise ValueError(
+            f"{path} has {text} at {pixels}, far from all other heights, as a mark of missing pixels; give "
+            f'missing="{text}", or missing="nan" if it was measured'
+        )
 
 
 def _refuse_exchanged(path: Path, shape: tuple[int, ...], size: tuple[float, float]) -> None:
@@ -158,7 +178,7 @@ def _array(path: Path, missing: str | None) -> _Read:
     except (ValueError, TypeError, EOFError) as error:
         raise ValueError(f"{path} is no matrix of numbers: {error}") from None
     if missing is not None:
-        if not heighttext.is_number(missing):
+        if not heighttext.is_number(missing) and missing.lower() != "nan":
             raise ValueError(f"missing is {missing[:30]!r}; {path} has numbers alone, so it must be one")
         heights[heights == float(missing)] = np.nan
     return _Read(heights, None, None, f"matrix of {' x '.join(map(str, heights.shape))} pixels by NumPy", {})
