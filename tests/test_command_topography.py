@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from fingerpad.cli import main
+from fingerpad.reduced import cylinders
 from fingerpad.scene import from_data, load
 from fingerpad.scene.messages import SceneError
+from fingerpad.scene.remarks import remarks
 from tests.commands import ROOT, refused
 from variational.roughness.selfaffine import SelfAffine
 
@@ -125,3 +127,51 @@ def test_height_map_and_its_numbers_are_refused():
 def test_file_that_is_none_is_named(name, words, tmp_path, capsys):
     """Before a package for instruments' formats is asked for."""
     assert words in refused(capsys, "topography", str(tmp_path / name))
+
+
+# -- a map of several ridges -------------------------------------------------------------------------------
+REMARK = "m, above half of geometry.ridge_wavelength, 0.000483 m: ridges or the finger's form may count as roughness"
+
+
+def test_map_of_ridges_is_told(tmp_path, capsys):
+    """Ridges of 100 um on 4 x 4 mm; a map of roughness alone has no remark."""
+    h = SelfAffine().surface((96, 96), (4e-3, 4e-3), 3).heights * 1e6
+    ridges = h + 50 * np.cos(2 * np.pi * np.arange(96) * 4000 / 96 / 483)[:, np.newaxis]
+    np.savetxt(tmp_path / "ridges.csv", ridges, delimiter=";")
+    assert main(["topography", str(tmp_path / "ridges.csv"), "--unit", "um", "--size", "4000", "4000"]) == 0
+    assert REMARK in capsys.readouterr().out
+    flat = SelfAffine().surface((64, 64), (400e-6, 400e-6), 3).heights * 1e6
+    np.savetxt(tmp_path / "flat.csv", flat, delimiter=";")
+    assert main(["topography", str(tmp_path / "flat.csv"), "--unit", "um", "--size", "400", "400"]) == 0
+    text = capsys.readouterr().out
+    assert REMARK not in text and "a scene refuses" not in text
+
+
+def test_roughness_as_long_as_ridges_is_told(tmp_path, capsys):
+    """By commands, in a sweep, and in a result's notes."""
+    long = ("--set", "roughness.wavelength=532 um")
+    sweep = ("sweep", "--over", "voltage=0,100", "--model", "cylinders", "--out")
+    check = ("check", "--out", str(tmp_path / "b"))
+    for command in (("estimate",), ("microscale",), (*sweep, str(tmp_path / "a")), check):
+        assert main([*command, *long]) == 0
+        assert f"roughness.wavelength is 0.000532 {REMARK}" in capsys.readouterr().out
+    assert main(["estimate", "--set", "roughness.wavelength=240 um"]) == 0
+    assert REMARK not in capsys.readouterr().out
+    assert any(REMARK in note for note in cylinders.solve(load(None, {"roughness.wavelength": 532e-6})).notes)
+
+
+def test_laws_of_ones_own_have_no_remark():
+    """They do not read the roughness of the scene."""
+    scene = load(None, {"roughness.wavelength": 532e-6})
+    assert remarks(scene) and not remarks(scene.with_laws(closure=scene.closure()))
+
+
+def test_values_that_a_scene_refuses_are_told(tmp_path, capsys):
+    """Heights in nm that are taken for um, with the question of their unit."""
+    h = SelfAffine().surface((64, 64), (400e-6, 400e-6), 3).heights * 1e9
+    np.savetxt(tmp_path / "skin.csv", h, delimiter=";")
+    size = ("--size", "0.4", "0.4", "--size-unit", "mm")
+    assert main(["topography", str(tmp_path / "skin.csv"), "--unit", "um", *size]) == 0
+    line = next(line for line in capsys.readouterr().out.splitlines() if "refuses" in line)
+    assert line.startswith("# a scene refuses these values: roughness.h_rms is 0.00")
+    assert line.endswith("e-06?); is the unit of the heights right?")

@@ -14,6 +14,7 @@ from fingerpad.model.options import ModelOptions, plan
 from fingerpad.model.touching import by_rule
 from fingerpad.scene import Load, Scene
 from fingerpad.scene.laws import used
+from fingerpad.scene.remarks import remarks
 from geometry.sizing import touching_ridges
 
 if TYPE_CHECKING:
@@ -82,6 +83,7 @@ def _aims(load: Load) -> Iterator[str]:
 
 
 def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
+    yield from remarks(scene)
     found, touching = estimate(scene, needed), by_rule(scene)
     ridges = touching_ridges(touching.geometry, touching.mesh)
     if scene.contact.formulation == "augmented":

@@ -12,6 +12,7 @@ from fingerpad.reduced import cylinders
 from fingerpad.reduced.answer import refuse_others
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError
+from fingerpad.scene.remarks import remarks
 
 # Largest errors at full slip against the full runs of the default finger in docs/models.json, over their forces (N/m)
 # and voltages (V); tests/test_command_tables.py compares.
@@ -55,7 +56,7 @@ def main(argv: Sequence[str]) -> int:
     echo(f"Friction coefficient {scene.friction:g}.\n")
     echo(tables.text(_COLUMNS, rows))
     echo("\nmu_app is friction over force, at full slip; contact is the length of skin on the screen.")
-    for note in (PER_LENGTH, *_known(scene, rows), *_places(rows), *lost):
+    for note in (PER_LENGTH, *_known(scene, rows), *(f"{text}." for text in remarks(scene)), *_places(rows), *lost):
         echo(note)
     tables.write_files(args, _COLUMNS, rows, draw)
     return 0

@@ -10,6 +10,7 @@ from fingerpad.cli import ranges, tables
 from fingerpad.cli.arguments import Parser, echo, refuse_twice, scene_of
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError
+from fingerpad.scene.remarks import remarks
 from geometry.units import to_si
 
 _PRESSURES = "1e3:1e6:13:log"
@@ -58,6 +59,8 @@ def main(argv: Sequence[str]) -> int:
     echo(f"The air gap stays constant below {scene.roughness.p_floor * 1e-3:g} kPa (roughness.p_floor) and above")
     echo(f"{closure.full_pressure * 1e-3:.4g} kPa, the pressure at zero separation. ", end="")
     echo(f"A ridge would stick without any force from {closure.threshold():.3g} V.")
+    for text in remarks(scene):
+        echo(f"{text}.")
     tables.write_files(args, _COLUMNS, rows, draw)
     return 0
 

@@ -7,7 +7,9 @@ from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, path, positive, writable
 from fingerpad.io.titles import plain
+from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene.remarks import ridges_as_roughness
 from variational.roughness.heightfile import Found, is_plain, scan
 from variational.roughness.heightheader import UNITS
 from variational.roughness.spectrum import Fit, power_spectrum, roughness_table
@@ -110,6 +112,12 @@ def _report(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iter
         yield f"# roll-off at {fit.wavelength * um:.3g} µm: the largest wavelength"
     else:
         yield "# no roll-off within the map: the shorter side of the map stands for the largest wavelength"
+    for remark in ridges_as_roughness(table["wavelength"], Scene().geometry.ridge_wavelength):
+        yield f"# {remark}"
+    try:
+        from_data({"roughness": {key: float(f"{value:.4g}") for key, value in table.items()}})
+    except SceneError as error:
+        yield f"# a scene refuses these values: {error}; is the unit of the heights right?"
     yield ""
     yield "[roughness]"
     for key, value in table.items():

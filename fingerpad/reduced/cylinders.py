@@ -31,6 +31,7 @@ from fingerpad.reduced.answer import STATES, Stopwatch, at_rest, at_slip, refuse
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import skin_modulus, used
 from fingerpad.scene.messages import show
+from fingerpad.scene.remarks import remarks
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState, hertz_modulus
@@ -170,7 +171,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     footprint = footprint or fitted(scene)
     found: dict[str, ContactState] = {}
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
-    notes, states = [footprint.source, exact, "the bone's height is not in this model"], {}
+    notes, states = [footprint.source, exact, "the bone's height is not in this model", *remarks(scene)], {}
     for state in STATES:
         try:
             ridge = _ridge(scene, footprint, state)

@@ -35,6 +35,7 @@ from fingerpad.reduced.answer import Stopwatch, TooLight, at_rest, at_slip, refu
 from fingerpad.reduced.stages import Stages, ridges
 from fingerpad.richardson import MeshParameter
 from fingerpad.scene import Scene, SceneError, laws
+from fingerpad.scene.remarks import remarks
 from geometry import fingertip, tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
@@ -116,7 +117,7 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: 
     made_in = sum(tables.seconds for tables in used)
     made = f"tables of the ridge took {made_in:.2f} s of processor time when they were made; kept in {folder}"
     counted = "ridges are counted by their mean height, which misses some that barely touch"
-    notes = [made, "receptors are not in this model", counted]
+    notes = [made, "receptors are not in this model", counted, *remarks(scene)]
     least = min(finger.touching for finger in fingers)
     if least < _FEW:
         notes.append(

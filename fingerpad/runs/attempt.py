@@ -26,6 +26,7 @@ from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene
 from fingerpad.scene.laws import coefficient, used
+from fingerpad.scene.remarks import remarks
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
@@ -144,7 +145,7 @@ class Attempt:
         self._writer.take(finger.problem)
         final = {} if refinement is None else refinement.base.views
         named = record.named(final)
-        unknowns, notes, more = finger.unknowns, [*restarts.notes], dict[str, Any]()
+        unknowns, notes, more = finger.unknowns, [*remarks(scene), *restarts.notes], dict[str, Any]()
         notes += [NOTE] if any(load.takes_time for load in scene.loads()) else []
         if refinement is not None:
             named = with_errors(refinement, named)

@@ -29,6 +29,7 @@ from fingerpad.runs.sweep_columns import SHOWN, newtons_of, printed, row, tables
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import clip, show
 from fingerpad.scene.reading import plain, put
+from fingerpad.scene.remarks import remarks
 from variational.state import CONDITIONS, RESULTS
 
 if TYPE_CHECKING:
@@ -216,9 +217,15 @@ def sweep(
         (folder / name).unlink(missing_ok=True)
     replace_json(folder / FILES[-1], {"version": version(), "model": model, "parameters": scene.parameters()})
     done.to_csv(folder / FILES[0])
-    notes = tuple(filter(None, (sweep_dataset.save(done), _older(done, folder / model))))
+    notes = tuple(filter(None, (*_remarks(scenes), sweep_dataset.save(done), _older(done, folder / model))))
     attempt(folder)
     return replace_fields(done, notes=notes)
+
+
+def _remarks(scenes: Sequence[Scene]) -> list[str]:
+    """Return the first remark on a scene, with how many points have one."""
+    found = [said[0] for scene in scenes if (said := remarks(scene))]
+    return [f"{len(found)} of {len(scenes)} points have a remark: {found[0]}"] if found else []
 
 
 def _older(done: Sweep, folder: Path) -> str:
