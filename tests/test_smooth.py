@@ -236,6 +236,12 @@ def test_few_ridges_are_told(answer):
     assert not told[0] and told[1][0].startswith("the skin touches over 2")
 
 
+def test_remarks_on_the_scene_are_notes(answer, monkeypatch):
+    """Whatever they are: a roughness as long as ridges has tables of its own, which take long."""
+    monkeypatch.setattr(smooth, "remarks", lambda scene: ["a remark"])
+    assert "a remark" in smooth.solve(from_data(SCENE), answer[1]).notes
+
+
 @pytest.mark.parametrize(("number", "error"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, SystemExit)])
 @pytest.mark.parametrize("kept", [True, False], ids=["finger", "ridge"])
 def test_signal_ends_it_after_the_step(answer, tmp_path, kept, number, error):
