@@ -110,7 +110,7 @@ def _change(time: Array, value: Array, mean: float) -> float:
     return float(abs(_integral(time[few], value[few], []).real / (time[-1] - time[0]) - mean))
 
 
-def remarks(loads: "Iterable[LoadResult]", least: float) -> list[str]:
+def long_steps(loads: "Iterable[LoadResult]", least: float) -> list[str]:
     """Return a sentence for each load at a constant voltage whose steps are too long for its means.
 
     Args:

@@ -10,7 +10,7 @@ from fingerpad.io import petsc_options
 from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt, Interrupted
 from fingerpad.io.left import in_words
-from fingerpad.io.over_time import NOTE, remarks
+from fingerpad.io.over_time import NOTE, long_steps
 from fingerpad.io.provenance import provenance
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
@@ -165,7 +165,7 @@ class Attempt:
         error = force_error(unknowns, left, finger.solver.force_scale)
         more |= self._comm.bcast(self._path() | totals | {"force_error": error})
         loads = tuple(record.loads(scene.loads()))
-        notes += remarks(loads, error)
+        notes += long_steps(loads, error)
         more |= {"restarts": restarts.table, "laws": used(scene), "provenance": provenance()}
         result = Result(
             scene,
