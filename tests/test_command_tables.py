@@ -10,7 +10,7 @@ import pytest
 from fingerpad.cli import estimate, main, microscale, sweep, tables
 from fingerpad.io import style
 from fingerpad.io.result import Result
-from fingerpad.reduced import cylinders
+from fingerpad.reduced import cylinders, known
 from fingerpad.runs.sweep import sweep as run_sweep
 from fingerpad.scene import Scene, SceneError, from_data, keys, load
 from tests.commands import kept, refused
@@ -21,17 +21,17 @@ from variational.roughness.bam import BearingArea
 def test_known_error_is_that_of_the_kept_runs():
     """The figures printed are the largest differences of closed form and full runs in docs/models.json, rounded up."""
     runs = kept("models.json")["scenes"]
-    assert len(runs) == estimate.KNOWN_RUNS
+    assert len(runs) == known.KNOWN_RUNS
     points = [tuple(float(part.split()[0]) for part in name.split(",")) for name in runs]
-    assert estimate.KNOWN_FORCES == (min(f for f, _ in points), max(f for f, _ in points))
-    assert estimate.KNOWN_VOLTAGES == (min(u for _, u in points), max(u for _, u in points))
-    for key, known in estimate.KNOWN_ERROR.items():
+    assert known.KNOWN_FORCES == (min(f for f, _ in points), max(f for f, _ in points))
+    assert known.KNOWN_VOLTAGES == (min(u for _, u in points), max(u for _, u in points))
+    for key, largest in known.KNOWN_ERROR.items():
         ratios = [
             found["cylinders"]["summary"][f"slip_{key}"] / found["full"]["summary"][f"slip_{key}"]
             for found in runs.values()
         ]
         worst = max(abs(ratio - 1) for ratio in ratios)
-        assert worst <= known < worst + 1e-4
+        assert worst <= largest < worst + 1e-4
 
 
 def test_estimate_is_the_closed_form(tmp_path, capsys):

@@ -148,7 +148,7 @@ def test_map_of_ridges_is_told(tmp_path, capsys):
 
 
 def test_roughness_as_long_as_ridges_is_told(tmp_path, capsys):
-    """By commands, in a sweep, and in a result's notes."""
+    """By commands, in a sweep, and among a result's cautions."""
     long = ("--set", "roughness.wavelength=532 um")
     sweep = ("sweep", "--over", "voltage=0,100", "--model", "cylinders", "--out")
     check = ("check", "--out", str(tmp_path / "b"))
@@ -157,7 +157,7 @@ def test_roughness_as_long_as_ridges_is_told(tmp_path, capsys):
         assert f"roughness.wavelength is 0.000532 {REMARK}" in capsys.readouterr().out
     assert main(["estimate", "--set", "roughness.wavelength=240 um"]) == 0
     assert REMARK not in capsys.readouterr().out
-    assert any(REMARK in note for note in cylinders.solve(load(None, {"roughness.wavelength": 532e-6})).notes)
+    assert any(REMARK in text for text in cylinders.solve(load(None, {"roughness.wavelength": 532e-6})).cautions)
 
 
 def test_laws_of_ones_own_have_no_remark():

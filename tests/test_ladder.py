@@ -64,13 +64,22 @@ def test_length_that_is_given_is_kept():
 
 
 def test_force_beyond_the_runs_is_said():
-    assert "extrapolated" in cylinders.solve(scene(f_ext=2.0)).notes[0]
+    found = cylinders.solve(scene(f_ext=2.0))
+    assert "extrapolated" in found.notes[0]
+    assert any("known of full runs at 5 to 150 N/m and 0 to 200 V" in text for text in found.cautions)
+    assert not cylinders.solve(scene()).cautions
+
+
+def test_other_screen_than_the_runs_is_said():
+    found = cylinders.solve(scene(friction=0.3, electric={"d_i": 2e-6}))
+    assert any("known with the default friction, electric; here" in text for text in found.cautions)
+    assert not cylinders.solve(scene(friction=0.3), cylinders.given(1.5e-3, 16)).cautions, "its length is given"
 
 
 def test_state_past_the_end_of_the_closure_is_said():
     """A tenth of the length bears ten times the pressure, beyond zero separation."""
-    notes = cylinders.solve(scene(voltage=0.0), cylinders.given(0.15e-3, 16)).notes
-    assert any("beyond zero separation" in note for note in notes)
+    cautions = cylinders.solve(scene(voltage=0.0), cylinders.given(0.15e-3, 16)).cautions
+    assert any("beyond zero separation" in text for text in cautions)
 
 
 @pytest.mark.parametrize(

@@ -325,7 +325,7 @@ def test_way_through_the_air_is_no_sliding(tmp_path, titles):
     assert "0.5 mm" in titles["Charged normal contact"]
 
 
-def test_remark_on_the_scene_is_a_note(tmp_path):
+def test_remark_on_the_scene_is_a_caution(tmp_path):
     """A roughness as long as ridges, of a press alone."""
     found = run(from_data(LEAN | {"history": [PRESS], "roughness": {"wavelength": 400e-6}}), tmp_path)
-    assert [note for note in found["notes"] if note.startswith("roughness.wavelength is 0.0004 m, above half of")]
+    assert [text for text in found["cautions"] if text.startswith("roughness.wavelength is 0.0004 m, above half of")]

@@ -232,14 +232,14 @@ def test_contact_beyond_the_fine_skin_is_refused(answer):
 def test_few_ridges_are_told(answer):
     """Of a flat finger with skin that touches over three and over two of them."""
     light = smooth.solve(from_data(SCENE | {"f_ext": 0.5}), answer[1])
-    told = [[note for note in found.notes if "stand apart" in note] for found in (answer[0], light)]
+    told = [[text for text in found.cautions if "stand apart" in text] for found in (answer[0], light)]
     assert not told[0] and told[1][0].startswith("the skin touches over 2")
 
 
-def test_remarks_on_the_scene_are_notes(answer, monkeypatch):
+def test_remarks_on_the_scene_are_cautions(answer, monkeypatch):
     """Whatever they are: a roughness as long as ridges has tables of its own, which take long."""
     monkeypatch.setattr(smooth, "remarks", lambda scene: ["a remark"])
-    assert "a remark" in smooth.solve(from_data(SCENE), answer[1]).notes
+    assert "a remark" in smooth.solve(from_data(SCENE), answer[1]).cautions
 
 
 @pytest.mark.parametrize(("number", "error"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, SystemExit)])

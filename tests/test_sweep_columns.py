@@ -103,3 +103,20 @@ def test_newtons_of_a_whole_finger(tmp_path):
     assert heads.endswith("F_T (N)") and float(line.split()[-1]) == pytest.approx(totals["f_t"], abs=5e-5)
     data = done.to_xarray()
     assert float(data["finger_f_t"].sel(state="full_slip")[0]) == totals["f_t"]
+
+
+def test_cautions_of_points_are_the_sweep_s(tmp_path):
+    """Each with its number of points, in the text, in the file and on the page; pressures that differ are left out."""
+    found = fp.sweep(
+        fp.Scene(), tmp_path, model="cylinders", voltage=[200.0, 400.0], **{"electric.d_i": [1e-6, 100e-6, 50e-6]}
+    )
+    cautions = found.cautions()
+    ours = next(text for text in cautions if text.startswith("the error of this model is known of full runs"))
+    assert ours.endswith("and not at this load (3 of 6 points)")
+    places = [text for text in cautions if text.startswith("full slip: a ridge's mean pressure is where d_eq rises")]
+    count = sum(any(text.startswith("full slip: a mean pressure") for text in each.cautions) for each in found)
+    assert len(places) == 1 and places[0].endswith(f"({count} of 6 points)") and 1 < count < 6
+    assert f"! {ours}" in str(found).splitlines()
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "Limits of validity are reached: " in page and ours in page
+    assert not fp.sweep(fp.Scene(), tmp_path / "known", model="cylinders", voltage=[0.0, 200.0]).cautions()

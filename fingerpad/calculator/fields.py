@@ -9,10 +9,10 @@ from typing import Any
 
 from pydantic import BaseModel, WrapValidator
 
-from fingerpad.cli.estimate import KNOWN_ERROR, KNOWN_FORCES, KNOWN_RUNS, KNOWN_VOLTAGES
 from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.answer import STATES
+from fingerpad.reduced.known import KNOWN_ERROR, KNOWN_FORCES, KNOWN_RUNS, KNOWN_VOLTAGES
 from fingerpad.scene import Scene
 from fingerpad.scene.contradictions import LARGEST_GAP
 from fingerpad.scene.laws import skin_modulus

@@ -6,10 +6,10 @@ import re
 from importlib.resources import files
 
 from fingerpad.calculator.fields import data
-from fingerpad.cli.estimate import KNOWN_ERROR, KNOWN_FORCES, KNOWN_RUNS, KNOWN_VOLTAGES
 from fingerpad.installed import version
 from fingerpad.io.quantities import PER_LENGTH
 from fingerpad.reduced import cylinders
+from fingerpad.reduced.known import KNOWN_ERROR, KNOWN_FORCES, KNOWN_RUNS, KNOWN_VOLTAGES
 from fingerpad.scene import Scene
 
 _TABLE = (20.0, 50.0, 75.0, 100.0, 150.0), (0.0, 50.0, 100.0, 150.0, 200.0)  # N/m, V

@@ -10,14 +10,11 @@ from fingerpad.cli.arguments import Parser, echo, refuse_twice, scene_of
 from fingerpad.io.quantities import PER_LENGTH
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.answer import refuse_others
+from fingerpad.reduced.known import KNOWN_ERROR, KNOWN_FORCES, KNOWN_RUNS, KNOWN_VOLTAGES, changed, outside
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import remarks
 
-# Largest errors at full slip against the full runs of the default finger in docs/models.json, over their forces (N/m)
-# and voltages (V); tests/test_command_tables.py compares.
-KNOWN_ERROR = {"mu_app": 0.0237, "contact_length": 0.0621}
-KNOWN_RUNS, KNOWN_FORCES, KNOWN_VOLTAGES = 40, (5.0, 150.0), (0.0, 200.0)
 _COLUMNS = (
     tables.Column("f_ext", "force", "N/m"),
     tables.Column("voltage", "voltage", "V"),
@@ -109,13 +106,11 @@ def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
     (low, high), (none, most) = KNOWN_FORCES, KNOWN_VOLTAGES
     where = f"{low:g} to {high:g} N/m and {none:g} to {most:g} V"
     said = [f"Known error: mu_app within {mu}, contact within {length} of {KNOWN_RUNS} full runs at {where}."]
-    default = Scene()
-    outside = [r for r in rows if not (low <= r["f_ext"] <= high and none <= abs(r["voltage"]) <= most)]
-    if outside:
-        said.append(f"{len(outside)} of {len(rows)} points are outside of that; their error is not known.")
-    changed = [name for name in ("friction", "electric", "roughness") if getattr(scene, name) != getattr(default, name)]
-    if changed:
-        said.append(f"Those runs have the default {', '.join(changed)}; here the error may be larger.")
+    beyond = sum(outside(row["f_ext"], row["voltage"]) for row in rows)
+    if beyond:
+        said.append(f"{beyond} of {len(rows)} points are outside of that; their error is not known.")
+    if keys := changed(scene):
+        said.append(f"Those runs have the default {', '.join(keys)}; here the error may be larger.")
     return said
 
 

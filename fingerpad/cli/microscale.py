@@ -1,5 +1,6 @@
 """``fingerpad microscale``: air gap, attraction and real area of contact of a rough ridge over its pressure."""
 
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -61,6 +62,9 @@ def main(argv: Sequence[str]) -> int:
     echo(f"A ridge would stick without any force from {closure.threshold():.3g} V.")
     for text in remarks(scene):
         echo(f"{text}.")
+    places = Counter(filter(None, (closure.state(row["p_c"], row["voltage"]) for row in rows)))
+    for place, count in places.items():
+        echo(f"At {count} of {len(rows)} pressures and voltages the pressure is {place}.")
     tables.write_files(args, _COLUMNS, rows, draw)
     return 0
 

@@ -123,7 +123,8 @@ def attributes(result: "Result") -> dict[str, Any]:
     parameters = result.record.get("parameters") or result.scene.parameters()  # the former with laws that are not read
     found: dict[str, Any] = {"title": "fingerpad: a fingertip on a touchscreen", "model": result.model}
     found |= {name: text for name in ("failure", "interrupted") if (text := getattr(result, name))}
-    found |= {"notes": "\n".join(result.notes)} if result.notes else {}
+    for name in ("notes", "cautions"):
+        found |= {name: "\n".join(getattr(result, name))} if getattr(result, name) else {}
     versions = result.record.get("provenance", {})
     found |= {"provenance": json.dumps(versions, default=str)} if versions else {}
     given = {key: _attribute(value) for key, value in flat(parameters).items() if value is not None}

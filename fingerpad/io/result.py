@@ -71,7 +71,9 @@ class Result:
     interrupted: str = ""
     """Name of the signal that ended the run, else empty."""
     notes: tuple[str, ...] = ()
-    """Remarks on the result: sources, omissions, limits of validity."""
+    """Remarks on the result: sources and omissions."""
+    cautions: tuple[str, ...] = ()
+    """Why the numbers may be further off than their errors say: limits of validity that the scene reaches."""
     record: dict[str, Any] = field(default_factory=dict)
     """Further content of ``summary.json``: omissions, restarts, refinement, laws, provenance."""
     folder: Path | None = None
@@ -171,7 +173,8 @@ class Result:
         }
         for name in ("failure", "interrupted"):
             found |= {name: getattr(self, name)} if getattr(self, name) else {}
-        found |= {"notes": list(self.notes)} if self.notes else {}
+        for name in ("notes", "cautions"):
+            found |= {name: list(getattr(self, name))} if getattr(self, name) else {}
         return found | ({"finger": self.finger.to_dict()} if self.finger is not None else {})
 
     @classmethod
@@ -185,7 +188,7 @@ class Result:
         scene = from_data({key: value for key, value in parameters.items() if key not in ("laws", "model")})
         cost = Cost(**{f.name: summary.get(f.name, f.default) for f in fields(Cost)})
         used = {f.name for f in fields(Cost)} | {"parameters", "states", "loads", "failure", "interrupted", "notes"}
-        used |= {"model", "f_ext", "voltage", "full_slip", "finger"}
+        used |= {"cautions", "model", "f_ext", "voltage", "full_slip", "finger"}
         names = (*CONDITIONS, *RESULTS, *_STABILITY, *(f"{f.name}_{kind}" for f in fields(Errors) for kind in _CHANGES))
         used |= {f"{prefix}_{name}" for prefix in PREFIXES.values() for name in names}
         record = {key: value for key, value in summary.items() if key not in used}
@@ -204,6 +207,7 @@ class Result:
             failure=summary.get("failure", ""),
             interrupted=summary.get("interrupted", ""),
             notes=tuple(summary.get("notes", ())),
+            cautions=tuple(summary.get("cautions", ())),
             record=record,
             folder=folder,
             finger=WholeFinger.from_dict(summary["finger"]) if "finger" in summary else None,
@@ -297,7 +301,8 @@ class Result:
             found.append(
                 f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm."
             )
-        return [*found, *([PER_LENGTH] if self.named else []), *self.notes]
+        cautions = [f"! {caution}" for caution in self.cautions]
+        return [*found, *([PER_LENGTH] if self.named else []), *self.notes, *cautions]
 
 
 def _in_time(load: LoadResult, least: float) -> str:

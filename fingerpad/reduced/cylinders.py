@@ -27,6 +27,7 @@ import numpy as np
 from fingerpad.io.place import difference
 from fingerpad.io.result import Cost, Result
 from fingerpad.io.states import PREFIXES, WORDS
+from fingerpad.reduced import known
 from fingerpad.reduced.answer import STATES, Stopwatch, at_rest, at_slip, refuse_others
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import skin_modulus, used
@@ -171,7 +172,8 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     footprint = footprint or fitted(scene)
     found: dict[str, ContactState] = {}
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
-    notes, states = [footprint.source, exact, "the bone's height is not in this model", *remarks(scene)], {}
+    notes, states = (footprint.source, exact, "the bone's height is not in this model"), {}
+    cautions = [*remarks(scene), *([] if footprint.charged else known.cautions(scene))]
     for state in STATES:
         try:
             ridge = _ridge(scene, footprint, state)
@@ -186,15 +188,16 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         }
         found[state] = at_rest(scene, contact) if state == "charged" else at_slip(scene, contact)
         states[state] = ridge
-        notes += _remarks(scene, state, ridge)
+        cautions += _places(scene, state, ridge)
     more: dict[str, Any] = {
         f"{PREFIXES[state]}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
     }
     more["laws"] = used(scene)
     cost = Cost(processor_seconds=clock.seconds())
     return Result(
-        scene, "cylinders", None, found["charged"], found["full_slip"], cost=cost, notes=tuple(notes), record=more
-    )
+        scene, "cylinders", None, found["charged"], found["full_slip"],
+        cost=cost, notes=notes, cautions=tuple(cautions), record=more,
+    )  # fmt: skip
 
 
 def _ridge(scene: Scene, footprint: Footprint, state: str) -> RidgeState:
@@ -206,18 +209,18 @@ def _ridge(scene: Scene, footprint: Footprint, state: str) -> RidgeState:
     return Cylinder(radius, modulus, scene.h_0, closure).under_load(f, scene.voltage)
 
 
-def _remarks(scene: Scene, state: str, ridge: RidgeState) -> list[str]:
+def _places(scene: Scene, state: str, ridge: RidgeState) -> list[str]:
     """Return remarks on the ridges' place on the closure and on other equilibria."""
-    remarks = []
+    found = []
     place = scene.closure().state(ridge.p_c, scene.voltage)
     if place:
-        remarks.append(f"{WORDS[state]}: a mean pressure of {ridge.p_c:.4g} Pa is {place}")
+        found.append(f"{WORDS[state]}: a mean pressure of {ridge.p_c:.4g} Pa is {place}")
     if ridge.others:
         pressures = ", ".join(f"{p:.4g}" for p in ridge.others)
-        remarks.append(
+        found.append(
             f"{WORDS[state]}: further equilibria at a mean pressure of {pressures} Pa, of ridges not on the screen yet"
         )
-    return remarks
+    return found
 
 
 def tip_radius(finger: Fingertip) -> float:

@@ -117,10 +117,10 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: 
     made_in = sum(tables.seconds for tables in used)
     made = f"tables of the ridge took {made_in:.2f} s of processor time when they were made; kept in {folder}"
     counted = "ridges are counted by their mean height, which misses some that barely touch"
-    notes = [made, "receptors are not in this model", counted, *remarks(scene)]
-    least = min(finger.touching for finger in fingers)
+    notes = [made, "receptors are not in this model", counted]
+    least, cautions = min(finger.touching for finger in fingers), remarks(scene)
     if least < _FEW:
-        notes.append(
+        cautions.append(
             f"the skin touches over {math.floor(10 * least) / 10:g} ridges; fewer than {_FEW} stand apart, and this "
             "model spreads them: friction and contact length may be off by more than the error given"
         )
@@ -135,7 +135,9 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: 
     cost = Cost(processor_seconds=clock.seconds(), factorisations=sum(counts), unknowns=size, ranks=comm.size)
     states = (None, named["charged"], named.get("full_slip"))
     more["laws"] = laws.used(scene)
-    return Result(scene, "smooth", *states, cost=cost, notes=tuple(notes), record=more)
+    return Result(
+        scene, "smooth", *states, cost=cost, notes=tuple(notes), cautions=tuple(cautions), record=more
+    )  # fmt: skip
 
 
 def _solved(

@@ -30,6 +30,8 @@ class Table:
     model: str = "full"
     version: str = ""
     """Of the program that made the table; empty where it is not known."""
+    cautions: tuple[str, ...] = ()
+    """Limits of validity that points reach."""
 
 
 def read(folder: Path) -> Result | Table:
@@ -99,7 +101,8 @@ def _sweep(folder: Path) -> Table:
         raise SceneError(f"table.csv in {name} is cut short; give the command of the sweep again to write it anew")
     try:
         asked = dict(json.loads((folder / "sweep.json").read_text(encoding="utf-8")))
-        return Table(folder, axes, rows, dict(asked["parameters"]), str(asked["model"]), str(asked.get("version", "")))
+        more = str(asked["model"]), str(asked.get("version", "")), tuple(map(str, asked.get("cautions", ())))
+        return Table(folder, axes, rows, dict(asked["parameters"]), *more)
     except FileNotFoundError:
         return Table(folder, axes, rows, None)
     except (OSError, ValueError, KeyError, TypeError) as error:

@@ -56,6 +56,8 @@ def _head(table: Table) -> str:
     if failed:
         kind, mark = "fails", "✗ fails"
         words = f"{len(failed)} of {len(table.rows)} points failed; the table of failures says why."
+    elif table.cautions:
+        kind, mark, words = "care", "! care", f"Limits of validity are reached: {'; '.join(table.cautions)}."
     elif missing:
         kind, mark, words = "care", "! care", f"{missing} of {len(table.rows)} points have no full slip."
     return (

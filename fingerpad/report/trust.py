@@ -32,8 +32,9 @@ def findings(result: Result) -> list[Finding]:
     found += _full_slip(result)
     if result.model != "full":
         words = f"The model is {result.model!r}, a cheaper one: see docs/models.md for its error beside the full model."
-        return [*found, Finding("model", CARE, words)]
-    found += [*_mesh(result), *_balance(result), *_stability(result), *_jumps(result), *_restarts(result)]
+        return [*found, Finding("model", CARE, words), *_cautions(result)]
+    for examined in (_cautions, _mesh, _balance, _stability, _jumps, _restarts):
+        found += examined(result)
     return found
 
 
@@ -44,6 +45,11 @@ def verdict(found: list[Finding]) -> tuple[str, str]:
         if worst:
             return kind, f"{first}: {' and '.join(each.what for each in worst)}. {worst[0].words}"
     return GOOD, "Everything that was examined holds: the numbers can be used within their ±."
+
+
+def _cautions(result: Result) -> Iterator[Finding]:
+    for text in result.cautions:
+        yield Finding("limit of validity", CARE, f"{text[0].upper()}{text[1:].removesuffix('.')}.")
 
 
 def _end(result: Result) -> Finding:

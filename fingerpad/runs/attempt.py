@@ -145,7 +145,7 @@ class Attempt:
         self._writer.take(finger.problem)
         final = {} if refinement is None else refinement.base.views
         named = record.named(final)
-        unknowns, notes, more = finger.unknowns, [*remarks(scene), *restarts.notes], dict[str, Any]()
+        unknowns, notes, more = finger.unknowns, [*restarts.notes], dict[str, Any]()
         notes += [NOTE] if any(load.takes_time for load in scene.loads()) else []
         if refinement is not None:
             named = with_errors(refinement, named)
@@ -165,7 +165,6 @@ class Attempt:
         error = force_error(unknowns, left, finger.solver.force_scale)
         more |= self._comm.bcast(self._path() | totals | {"force_error": error})
         loads = tuple(record.loads(scene.loads()))
-        notes += long_steps(loads, error)
         more |= {"restarts": restarts.table, "laws": used(scene), "provenance": provenance()}
         result = Result(
             scene,
@@ -179,6 +178,7 @@ class Attempt:
             failure=failure or broken(named.get("full_slip"), error, mu_0),
             interrupted=self._ended.get("interrupted", ""),
             notes=tuple(notes),
+            cautions=(*remarks(scene), *long_steps(loads, error)),
             record=more,
             folder=self._writer.folder,
             drawing=drawing,

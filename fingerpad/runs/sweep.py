@@ -4,6 +4,7 @@ import csv
 import itertools
 import os
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from dataclasses import replace as replace_fields
@@ -29,7 +30,6 @@ from fingerpad.runs.sweep_columns import SHOWN, newtons_of, printed, row, tables
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import clip, show
 from fingerpad.scene.reading import plain, put
-from fingerpad.scene.remarks import remarks
 from variational.state import CONDITIONS, RESULTS
 
 if TYPE_CHECKING:
@@ -99,6 +99,11 @@ class Sweep:
         """Return a flat row for each point in SI units: axes, :mod:`~fingerpad.runs.sweep_columns`, and failure."""
         return [point | row(result) for point, result in zip(self.points(), self.results, strict=True)]
 
+    def cautions(self) -> list[str]:
+        """Return why numbers may be further off than their errors say, each with how many points it is of."""
+        count = Counter(caution for result in self.results for caution in dict.fromkeys(map(_alike, result.cautions)))
+        return [f"{caution} ({number} of {len(self)} points)" for caution, number in count.items()]
+
     def to_xarray(self) -> "xarray.Dataset":
         """Return the named states along the swept keys as one dataset with units, as ``sweep.nc`` has it.
 
@@ -138,7 +143,7 @@ class Sweep:
         lines = ["At full slip", *_aligned(table)]
         for name, over_time in tables(self.rows(), axes):
             lines += [f"Over time, in the load {name}", *_aligned(over_time)]
-        return "\n".join([*lines, PER_LENGTH, *self.notes])
+        return "\n".join([*lines, PER_LENGTH, *(f"! {caution}" for caution in self.cautions()), *self.notes])
 
 
 def _aligned(table: Sequence[Sequence[str]]) -> list[str]:
@@ -146,6 +151,11 @@ def _aligned(table: Sequence[Sequence[str]]) -> list[str]:
     whole = [line for line in table if len(line) == len(table[0])]
     widths = [max(map(len, column)) for column in zip(*whole, strict=True)]
     return ["   ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=False)) for line in table]
+
+
+def _alike(caution: str) -> str:
+    """Return a caution without the pressures that differ from point to point."""
+    return re.sub(r"a mean pressure of [-+.e\d]+(, [-+.e\d]+)* Pa\b", "a ridge's mean pressure", caution)
 
 
 class _Lines(list[str]):
@@ -215,17 +225,12 @@ def sweep(
     done = Sweep(values, tuple(found), folder)
     for name in FILES[1:]:  # else that of an earlier sweep may stay beside this one's table
         (folder / name).unlink(missing_ok=True)
-    replace_json(folder / FILES[-1], {"version": version(), "model": model, "parameters": scene.parameters()})
+    asked = {"version": version(), "model": model, "parameters": scene.parameters()}
+    replace_json(folder / FILES[-1], asked | {"cautions": done.cautions()})
     done.to_csv(folder / FILES[0])
-    notes = tuple(filter(None, (*_remarks(scenes), sweep_dataset.save(done), _older(done, folder / model))))
+    notes = tuple(filter(None, (sweep_dataset.save(done), _older(done, folder / model))))
     attempt(folder)
     return replace_fields(done, notes=notes)
-
-
-def _remarks(scenes: Sequence[Scene]) -> list[str]:
-    """Return the first remark on a scene, with how many points have one."""
-    found = [said[0] for scene in scenes if (said := remarks(scene))]
-    return [f"{len(found)} of {len(scenes)} points have a remark: {found[0]}"] if found else []
 
 
 def _older(done: Sweep, folder: Path) -> str:

@@ -122,7 +122,7 @@ def _shared(sweep: "Sweep") -> dict[str, Any]:
     every_one = [dataset.attributes(result) for result in sweep.results]
     first = every_one[0]
     texts = [{key: json.dumps(value) for key, value in each.items()} for each in every_one]
-    own = ("parameters", "provenance", "failure", "notes")
+    own = ("parameters", "provenance", "failure", "notes", "cautions")
     return {
         key: value for key, value in first.items() if key not in own and all(t.get(key) == texts[0][key] for t in texts)
     }
