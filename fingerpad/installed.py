@@ -1,5 +1,6 @@
 """What is installed: this package's version; libraries and the compiler of forms, whose absence is one sentence."""
 
+import functools
 import hashlib
 import os
 import shlex
@@ -16,6 +17,7 @@ _PACKAGES = ("geometry", "variational", "fingerpad")
 OPTIONAL = ("dolfinx", "ufl", "basix", "ffcx", "petsc4py", "mpi4py", "gmsh", "matplotlib", COMPILER)
 
 
+@functools.cache
 def version() -> str:
     """Return the version: that of the folder of sources, or of the package that is installed."""
     project = Path(__file__).parents[1] / "pyproject.toml"
@@ -24,6 +26,7 @@ def version() -> str:
     return metadata.version("fingerpad")
 
 
+@functools.cache
 def source() -> str:
     """Return a hash of the program's own files, which tells two states of one version apart."""
     root, found = Path(__file__).resolve().parents[1], hashlib.sha256()

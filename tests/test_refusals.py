@@ -222,7 +222,7 @@ def test_what_is_no_scene_file(tmp_path):
         ('"mesh.contact" = 1', "'mesh.contact' is not a key of a scene;"),
         ('"a\\nb" = 1', "'a\\nb' is not a key of a scene;"),
         (f"{'k' * 100_000} = 1", f"{'k' * 37}... is not a key of a scene;"),
-        (f'voltage = "{"v" * 100_000}"', f"voltage is '{'v' * 56}...; it must be a number"),
+        (f'voltage = "{"v" * 100_000}"', f"voltage is '{'v' * 55}...'; it must be a number"),
         (f"{'k' * 100_000}", "is not TOML: Expected '=' after a key"),
         ("geometry.ridge_profile = []", "geometry.ridge_profile is empty; it must have at least one entry"),
         ("geometry.ridge_profile = [nan]", "geometry.ridge_profile[0] is nan; it must be a finite number"),

@@ -60,7 +60,7 @@ from tests.test_refusals import SCENES, refusal
         ('[[history]]\nname = " "\nf_ext = 1', "history[0].name is ' '; it must have a letter or a digit"),
         (
             f'[[history]]\nname = "{"n" * 300}"\nf_ext = 1',
-            f"history[0].name is '{'n' * 56}...; it must be of 100 bytes at most, since files are named by it",
+            f"history[0].name is '{'n' * 55}...'; it must be of 100 bytes at most, since files are named by it",
         ),
         (
             '[[history]]\nname = "on off"\nf_ext = 1\n[[history]]\nname = "On_off"\nf_ext = 2',

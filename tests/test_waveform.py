@@ -193,10 +193,17 @@ def test_nothing_but_the_voltage_holds_the_skin(offset, allowed):
     )
 
 
+def test_missing_file_is_told_in_the_system_s_words(tmp_path):
+    """The key's name is put before "file" where the message names the key, and not in the system's text."""
+    with pytest.raises(SceneError) as refusal:
+        from_data({"history": [{"name": "wave", "voltage": {"waveform": "file", "file": str(tmp_path / "no.csv")}}]})
+    assert str(refusal.value).endswith("which cannot be read: 'No such file or directory'")
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (None, "which cannot be read: No such file"),
+        (None, "which cannot be read: 'No such file or directory'"),
         ("", "with the header ''; it must be 'time (s),voltage (V)'"),
         ("time (ms),voltage (V)\n0,1\n", "with the header 'time (ms),voltage (V)'"),
         (TABLE + "0,1\n", "times are 1; there must be from 2"),

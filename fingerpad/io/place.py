@@ -46,6 +46,9 @@ T = TypeVar("T")
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP)  # some network file systems
 
 
+_MODEL = {"model": "full"}  # of parameters that name none
+
+
 class Serial:
     """The one rank of a model without MPI, as far as a folder needs it."""
 
@@ -224,7 +227,7 @@ def identity(parameters: Mapping[str, Any]) -> dict[str, Any]:
 def difference(old: Mapping[str, Any], new: Mapping[str, Any], table: str = "") -> str:
     """Return the first key in which two scenes differ, with both values; empty if there is none."""
     for key in sorted(old.keys() | new.keys()):
-        a, b = old.get(key), new.get(key)
+        a, b = (each.get(key, _MODEL.get(key)) for each in (old, new))
         if isinstance(a, dict) and isinstance(b, dict):
             found = difference(a, b, f"{table}{key}.")
             if found:

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.io import terminal
-from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
-from fingerpad.io.states import PREFIXES, STATES, LoadResult, called, load_results
+from fingerpad.io.states import PREFIXES, STATES, LoadResult, load_results
 from fingerpad.scene import Scene, SceneError, from_data
 from fingerpad.scene.laws import coefficient
 from fingerpad.scene.messages import clip
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
     from fingerpad.io.drawing import Drawing
     from fingerpad.slices.finger import WholeFinger
 
-_TITLES = {True: "Cross-section at the end of its last trace", False: "Cross-section at the centre of the finger"}
 _STABILITY = ("stable", "lambda_min", "gain")
 _CHANGES = ("error", "penalty")
 KINDS = ("surface", "finger", "history", "footprint", "time")
@@ -47,7 +45,7 @@ class Cost:
     ranks: int = 1
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Result:
     """Result of a model for a scene; the same on every rank, except for pictures, which rank 0 draws."""
 
@@ -249,82 +247,14 @@ class Result:
                 raise SceneError(f"{name} is not a folder of a finished run") from None
             raise SceneError(f"run {name} cannot be read: its files are not whole, or not of a run ({error})") from None
 
-    # -- text ------------------------------------------------------------------------------------------
     def __str__(self) -> str:
-        """Return the text *Result* at the end of a run: the named states side by side, with units and errors.
+        """Return the text at the end of a run, see :func:`fingerpad.io.result_text.text`."""
+        from fingerpad.io.result_text import text  # it takes a Result
 
-        The whole finger follows; it comes first where the run was asked for a force in newtons.
-        """
-        asked, shown = self.asked_force is not None and self.finger is not None, self.named
-        lines = [_TITLES[self.model == "full"] if asked else "Result"]
-        lines[0] += f" (model '{self.model}')" if self.model != "full" else ""
-        if shown:
-            heads = [called(name, state.voltage).split(" normal") for name, state in shown.items()]
-            rows = [
-                ["", *(head[0] for head in heads)],
-                ["", *(("normal" + head[1]) if head[1:] else "" for head in heads)],
-            ]
-            rows += [row for key in QUANTITIES if (row := self._line(key))]
-            if any(state.stable is not None for state in shown.values()):
-                verdicts = {True: "yes", False: "no", None: "–"}
-                rows.append(["stable", *(verdicts[state.stable] for state in shown.values())])
-            widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-            for first, *rest in rows:
-                cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
-                lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
-        least = self.record.get("force_error", 0.0)
-        lines += [f"  {_in_time(load, least)}" for load in self.loads if load.over_time is not None]
-        lines += [f"  {note}" for note in self._remarks()]
-        finger = [f"{self.finger}"] if self.finger is not None else []
-        return "\n".join([*finger, *lines] if asked else [*lines, *finger])
+        return text(self)
 
-    def _line(self, key: str) -> list[str]:
-        """Return a quantity of the named states as a row of text; empty where it is missing in every state."""
-        quantity, cells = QUANTITIES[key], []
-        for name, state in self.named.items():
-            shown = key not in ("mu_app", "f_t") or name == "full_slip"
-            cells.append(cell(key, getattr(state, key), getattr(state.error, key, math.nan)) if shown else "–")
-        unit = f" ({quantity.unit})" if quantity.unit else ""
-        return [f"{quantity.words}{unit}", *cells] if set(cells) - {"–"} else []
-
-    def _remarks(self) -> list[str]:
-        """Return the lines after the table: failure, missing full slip, meaning of ± and N/m, effect of the penalty."""
-        found = [f"Not finished: {self.failure}"] if self.failure else []
-        asked = any(load.until_full_slip or load.moves for load in self.scene.loads())
-        if asked and self.full_slip is None and not self.failure:
-            reached = any(load.full_slip_reached for load in self.loads)
-            found.append(f"Full slip was {'not held over a further 0.2 mm' if reached else 'not reached'}.")
-        if any(state.error.known() for state in self.named.values()):
-            found.append("±: estimated discretisation error, of the mesh alone.")
-        share = math.nan if self.full_slip is None else self.full_slip.penalty.contact_length
-        if not math.isnan(share):
-            found.append(
-                f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm."
-            )
-        cautions = [f"! {caution}" for caution in self.cautions]
-        return [*found, *([PER_LENGTH] if self.named else []), *self.notes, *cautions]
-
-
-def _in_time(load: LoadResult, least: float) -> str:
-    """Return range and mean of friction in a load over time, and its largest amplitude; of L_R without friction.
-
-    Args:
-        load: over time.
-        least: friction force (N/m) up to which there is none.
-    """
-    passed, f_t = load.over_time, load.extremes["f_t"]
-    assert passed is not None
-    key = "mu_app" if "mu_app" in load.extremes else "f_t"
-    rubs = max(abs(f_t.min), abs(f_t.max)) > least
-    key = key if rubs else "contact_length"
-    quantity, ends, mean = QUANTITIES[key], load.extremes[key], passed.mean[key]
-    unit = f" {quantity.unit}" if quantity.unit else ""
-    words = f"{load.name}: {quantity.words.split()[-1]} {cell(key, ends.min)} to {cell(key, ends.max)}{unit}"
-    words += "" if math.isnan(mean) else f", mean {cell(key, mean)}{unit}"
-    if not (rubs and passed.periods):
-        return words
-    most, frequency = max(zip(passed.f_t_amplitude, passed.frequency, strict=True))
-    return f"{words}; amplitude of f_T at {frequency:.4g} Hz {cell('f_t', most)} N/m"
+    __repr__ = __str__
+    """In a notebook, too: the values of all steps are hundreds of pages."""
 
 
 def _loads(steps: Sequence[ContactState], scene: Scene, summary: Mapping[str, Any]) -> Iterator[LoadResult]:

@@ -11,9 +11,9 @@ from fingerpad.io.states import before_sliding, called
 from fingerpad.report import over_time, parameters, trust
 from fingerpad.report import page as html
 from fingerpad.report.frames import frames
+from fingerpad.report.headline import MARKS, conditions, head
 
 _MM = 1e3
-_MARKS = {trust.GOOD: "✓ holds", trust.CARE: "! care", trust.BAD: "✗ fails"}
 _LINKS = {
     "asked": "Asked", "numbers": "Numbers", "newtons": "Newtons", "trust": "Trust", "finger": "Finger",
     "sliding": "Sliding", "time": "Time", "pictures": "Pictures", "model": "Model", "solver": "Solver",
@@ -34,7 +34,7 @@ _SAID = {
 def page(result: Result) -> str:
     """Return the page of a run."""
     shown = frames(result)
-    title = f"fingerpad: {_conditions(result)}"
+    title = f"fingerpad: {conditions(result)}"
     first = (_numbers, _newtons) if result.asked_force is None else (_newtons, _numbers)
     sections = [
         _asked(result),
@@ -51,57 +51,12 @@ def page(result: Result) -> str:
     ]
     there = [name for section in sections for name in _LINKS if f'id="{name}"' in section]
     links = "".join(f'<a href="#{name}">{_LINKS[name]}</a>' for name in there)
-    body = "\n".join([_head(result), f"<nav>{links}</nav>", *sections])
+    body = "\n".join([head(result), f"<nav>{links}</nav>", *sections])
     return html.page(title, body, {"finger": shown, "steps": _columns(result), "errors": _errors(result)})
 
 
 def _parameters(result: Result) -> Mapping[str, Any]:
     return result.record.get("parameters") or result.scene.parameters()
-
-
-def _conditions(result: Result) -> str:
-    if result.asked_force is not None and result.finger is not None:
-        return f"{result.asked_force:.4g} N on the whole finger, {result.scene.voltage:.4g} V"
-    last = result.full_slip or result.charged or result.last
-    if last is None:
-        return "a run without a result"
-    return f"{last.f_ext:.4g} N/m, {last.voltage:.4g} V"
-
-
-def _head(result: Result) -> str:
-    """Return the finding: the largest number of the page, and whether to rely on it."""
-    kind, words = trust.verdict(trust.findings(result))
-    slip, charged = result.full_slip, result.charged
-    whole = result.finger if result.asked_force is not None else None
-    if whole is not None and "full_slip" in whole.states:
-        number = f"µ<sub>app</sub> = {html.text(whole.shown('full_slip', 'mu_app'))}"
-        force = f"friction force {whole.shown('full_slip', 'f_t')} N"
-        said = f"apparent friction coefficient at full slip, {force}; {_conditions(result)}"
-    elif whole is not None:
-        name = list(whole.states)[-1]
-        number = f"{html.text(whole.shown(name, 'contact_area'))} mm²"
-        said = f"ridge contact area in {whole.heads()[-1]}; {_conditions(result)}"
-    elif slip is not None and math.isnan(slip.mu_app):
-        number = f"f<sub>T</sub> = {html.text(cell('f_t', slip.f_t, slip.error.f_t))} N/m"
-        said = f"friction force at full slip, where no force presses the finger; {_conditions(result)}"
-    elif slip is not None:
-        value = cell("mu_app", slip.mu_app, slip.error.mu_app)
-        number = f"µ<sub>app</sub> = {html.text(value)}"
-        friction = result.scene.friction if "laws" not in _parameters(result) else None
-        factor = f", {abs(slip.mu_app) / friction:.2f} times the {friction:.3g} without attraction" if friction else ""
-        said = f"apparent friction coefficient at full slip{factor}; {_conditions(result)}"
-    elif charged is not None:
-        value = cell("contact_length", charged.contact_length, charged.error.contact_length)
-        number = f"L<sub>R</sub> = {html.text(value)} mm"
-        said = f"contact length in {called('charged', charged.voltage)}; {_conditions(result)}"
-    else:
-        number, said = "No contact state was kept", _conditions(result)
-    where = "" if result.folder is None else f" · {html.text(result.folder.resolve().name)}"
-    return (
-        f'<header><p class="kind">fingerpad · report of a run{where}</p><h1>{number}</h1>'
-        f'<p class="said">{html.text(said)}</p>'
-        f'<p class="verdict {kind}"><b>{_MARKS[kind]}</b> {html.text(words)}</p></header>'
-    )
 
 
 def _asked(result: Result) -> str:
@@ -180,7 +135,7 @@ def _newtons(result: Result) -> str:
 def _trust(result: Result) -> str:
     found = trust.findings(result)
     lines = "".join(
-        f'<li class="{each.verdict}"><b>{_MARKS[each.verdict]}</b> <span><strong>{html.text(each.what)}.</strong> '
+        f'<li class="{each.verdict}"><b>{MARKS[each.verdict]}</b> <span><strong>{html.text(each.what)}.</strong> '
         f"{html.text(each.words)}</span></li>"
         for each in found
     )

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.installed import needed_by
+from fingerpad.installed import needed_by, source, version
 from fingerpad.io import dataset, terminal
 from fingerpad.io.files import replace_json
 from fingerpad.io.place import Place, Serial, on_rank_0
@@ -175,7 +175,7 @@ def _solved(
     if model == "cylinders":
         from fingerpad.reduced import cylinders
 
-        found = cylinders.solve(scene)
+        found = with_versions(cylinders.solve(scene), {"versions": {"fingerpad": version(), "source": source()}})
         return found if out is None else kept(found, out, _ranks(comm))
     with needed_by(f"the model {model!r}"):
         import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
@@ -188,12 +188,14 @@ def _solved(
 
             return full.run(scene, out, comm, lines, bar, resume, asked)
         from fingerpad.io.console import Console
+        from fingerpad.io.provenance import provenance
         from fingerpad.reduced import smooth
 
         _refuse_other_results(scene, model, out, comm, asked)
         console = Console(comm, lines, bar)
         try:
-            return kept(smooth.solve(scene, tables or tables_in(out), comm, console), out, comm)
+            found = with_versions(smooth.solve(scene, tables or tables_in(out), comm, console), provenance())
+            return kept(found, out, comm)
         finally:
             console.close()
 
@@ -232,6 +234,11 @@ def _whole(
     if model != "full":
         return kept(found, out, _ranks(comm), asked)
     return _written(found, _ranks(comm))
+
+
+def with_versions(result: Result, provenance: Mapping[str, Any]) -> Result:
+    """Return the result of a model without a path with the versions that computed it, as a full run has them."""
+    return replace(result, record={**result.record, "provenance": provenance})
 
 
 def _refuse_other_results(

@@ -41,7 +41,7 @@ _MOST = 10_000  # points
 _LIMIT = 4 * 3600.0  # s of processor time for one point
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Sweep:
     """Results over a grid of values; a sequence of them, the last axis fastest."""
 
@@ -144,6 +144,8 @@ class Sweep:
         for name, over_time in tables(self.rows(), axes):
             lines += [f"Over time, in the load {name}", *_aligned(over_time)]
         return "\n".join([*lines, PER_LENGTH, *(f"! {caution}" for caution in self.cautions()), *self.notes])
+
+    __repr__ = __str__
 
 
 def _aligned(table: Sequence[Sequence[str]]) -> list[str]:

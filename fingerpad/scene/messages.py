@@ -63,7 +63,10 @@ def show(value: Any) -> str:
         return {True: "true", False: "false", None: "empty"}[value]
     if isinstance(value, int | float):
         return f"{value:.12g}"
-    return clip(repr(value))
+    text = repr(value)
+    if isinstance(value, str) and len(text) > _MOST_VALUE:
+        return clip(text, _MOST_VALUE - 1) + text[0]  # a quotation that is not closed would go on into the message
+    return clip(text)
 
 
 def key_of(parts: Iterable[int | str]) -> str:

@@ -250,9 +250,9 @@ def _table(file: str) -> dict[str, Any]:
     try:
         lines = list(csv.reader(read_bytes(Path(file)).decode("utf-8-sig").splitlines(), strict=True))
     except OSError as error:
-        raise ValueError(f"{name}, which cannot be read: {error.strerror or error}") from None
+        raise ValueError(f"{name}, which cannot be read: {show(error.strerror or str(error))}") from None
     except (ValueError, csv.Error) as error:
-        raise ValueError(f"{name}, which is no table in CSV: {clip(str(error), 100)}") from None
+        raise ValueError(f"{name}, which is no table in CSV: {show(clip(str(error), 100))}") from None
     rows = [(k, [cell.strip() for cell in row]) for k, row in enumerate(lines, start=1) if any(map(str.strip, row))]
     header = rows[0][1] if rows else []
     if header != [_TIME, _VOLTAGE]:

@@ -1,0 +1,86 @@
+"""A result as text: the named states side by side, the whole finger, loads over time and remarks."""
+
+import math
+
+from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
+from fingerpad.io.result import Result
+from fingerpad.io.states import LoadResult, called
+
+_TITLES = {True: "Cross-section at the end of its last trace", False: "Cross-section at the centre of the finger"}
+
+
+def text(result: Result) -> str:
+    """Return the text *Result* at the end of a run: the named states side by side, with units and errors.
+
+    The whole finger follows; it comes first where the run was asked for a force in newtons.
+    """
+    asked, shown = result.asked_force is not None and result.finger is not None, result.named
+    lines = [_TITLES[result.model == "full"] if asked else "Result"]
+    lines[0] += f" (model '{result.model}')" if result.model != "full" else ""
+    if shown:
+        heads = [called(name, state.voltage).split(" normal") for name, state in shown.items()]
+        rows = [
+            ["", *(head[0] for head in heads)],
+            ["", *(("normal" + head[1]) if head[1:] else "" for head in heads)],
+        ]
+        rows += [row for key in QUANTITIES if (row := _line(result, key))]
+        if any(state.stable is not None for state in shown.values()):
+            verdicts = {True: "yes", False: "no", None: "–"}
+            rows.append(["stable", *(verdicts[state.stable] for state in shown.values())])
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        for first, *rest in rows:
+            cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
+            lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
+    least = result.record.get("force_error", 0.0)
+    lines += [f"  {_in_time(load, least)}" for load in result.loads if load.over_time is not None]
+    lines += [f"  {note}" for note in _remarks(result)]
+    finger = [f"{result.finger}"] if result.finger is not None else []
+    return "\n".join([*finger, *lines] if asked else [*lines, *finger])
+
+
+def _line(result: Result, key: str) -> list[str]:
+    """Return a quantity of the named states as a row of text; empty where it is missing in every state."""
+    quantity, cells = QUANTITIES[key], []
+    for name, state in result.named.items():
+        shown = key not in ("mu_app", "f_t") or name == "full_slip"
+        cells.append(cell(key, getattr(state, key), getattr(state.error, key, math.nan)) if shown else "–")
+    unit = f" ({quantity.unit})" if quantity.unit else ""
+    return [f"{quantity.words}{unit}", *cells] if set(cells) - {"–"} else []
+
+
+def _remarks(result: Result) -> list[str]:
+    """Return the lines after the table: failure, missing full slip, meaning of ± and N/m, effect of the penalty."""
+    found = [f"Not finished: {result.failure}"] if result.failure else []
+    asked = any(load.until_full_slip or load.moves for load in result.scene.loads())
+    if asked and result.full_slip is None and not result.failure:
+        reached = any(load.full_slip_reached for load in result.loads)
+        found.append(f"Full slip was {'not held over a further 0.2 mm' if reached else 'not reached'}.")
+    if any(state.error.known() for state in result.named.values()):
+        found.append("±: estimated discretisation error, of the mesh alone.")
+    share = math.nan if result.full_slip is None else result.full_slip.penalty.contact_length
+    if not math.isnan(share):
+        found.append(f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm.")
+    cautions = [f"! {caution}" for caution in result.cautions]
+    return [*found, *([PER_LENGTH] if result.named else []), *result.notes, *cautions]
+
+
+def _in_time(load: LoadResult, least: float) -> str:
+    """Return range and mean of friction in a load over time, and its largest amplitude; of L_R without friction.
+
+    Args:
+        load: over time.
+        least: friction force (N/m) up to which there is none.
+    """
+    passed, f_t = load.over_time, load.extremes["f_t"]
+    assert passed is not None
+    key = "mu_app" if "mu_app" in load.extremes else "f_t"
+    rubs = max(abs(f_t.min), abs(f_t.max)) > least
+    key = key if rubs else "contact_length"
+    quantity, ends, mean = QUANTITIES[key], load.extremes[key], passed.mean[key]
+    unit = f" {quantity.unit}" if quantity.unit else ""
+    words = f"{load.name}: {quantity.words.split()[-1]} {cell(key, ends.min)} to {cell(key, ends.max)}{unit}"
+    words += "" if math.isnan(mean) else f", mean {cell(key, mean)}{unit}"
+    if not (rubs and passed.periods):
+        return words
+    most, frequency = max(zip(passed.f_t_amplitude, passed.frequency, strict=True))
+    return f"{words}; amplitude of f_T at {frequency:.4g} Hz {cell('f_t', most)} N/m"
