@@ -17,6 +17,7 @@ import fingerpad as fp
 from fingerpad.io import columns, dataset
 from fingerpad.io.over_time import QUANTITIES, OverTime
 from fingerpad.io.result import Result
+from fingerpad.report import run_page
 from fingerpad.runs import sweep_dataset
 from fingerpad.runs.sweep import Sweep
 from fingerpad.scene import from_data
@@ -303,6 +304,22 @@ def test_sites_of_a_sweep_are_those_of_its_states(folder, data, tmp_path):
         np.testing.assert_array_equal(mine[name], data[name].sel(step=state.step, ridge=ridges))
         assert mine[name].notnull().all() and swept[name].sel(state="full_slip").isnull().all()
         assert swept[name].attrs == data[name].attrs
+
+
+def test_report_has_the_sites_of_the_table(folder):
+    """The largest energy density of each named state, and that of each ridge."""
+    result = Result.load(folder)
+    page = run_page.page(result)
+    assert 'href="#receptors"' in page
+    part = page[page.index('id="receptors"') :]
+    part = part[: part.index("</section>")]
+    rows = [row for row in rows_of(folder, "receptors") if int(row["step"]) == result.charged.step]
+    most = max(rows, key=lambda row: float(row["merkel_sed"]))
+    first = part[: part.index("Every ridge")]
+    assert f"<td>{1e-3 * float(most['merkel_sed']):.4g}</td>" in first and f"<td>{most['ridge']}</td>" in first
+    for row in rows:
+        assert f"<td>{1e-3 * float(row['merkel_sed']):.4g}</td>" in part
+    assert "receptors" not in run_page.page(fp.run(model="cylinders")).partition("</nav>")[0]
 
 
 # -- faults ----------------------------------------------------------------------------------------------

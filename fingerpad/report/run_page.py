@@ -8,7 +8,7 @@ from typing import Any
 from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import before_sliding, called
-from fingerpad.report import over_time, parameters, trust
+from fingerpad.report import over_time, parameters, receptors, trust
 from fingerpad.report import page as html
 from fingerpad.report.frames import frames
 from fingerpad.report.headline import MARKS, conditions, head
@@ -16,8 +16,8 @@ from fingerpad.report.headline import MARKS, conditions, head
 _MM = 1e3
 _LINKS = {
     "asked": "Asked", "numbers": "Numbers", "newtons": "Newtons", "trust": "Trust", "finger": "Finger",
-    "sliding": "Sliding", "time": "Time", "pictures": "Pictures", "model": "Model", "solver": "Solver",
-    "parameters": "Parameters", "reproduce": "Reproduce",
+    "sliding": "Sliding", "time": "Time", "receptors": "Receptors", "pictures": "Pictures", "model": "Model",
+    "solver": "Solver", "parameters": "Parameters", "reproduce": "Reproduce",
 }  # fmt: skip
 _OF_FORCE = {
     True: "States of the cross-section on its last trace, each under an external force of its own.",
@@ -43,6 +43,7 @@ def page(result: Result) -> str:
         _finger(shown),
         _sliding(result),
         over_time.section(result),
+        receptors.section(result),
         _pictures(result.folder),
         _model(result),
         _solver(result),
