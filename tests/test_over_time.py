@@ -95,6 +95,24 @@ def test_friction_of_a_charged_cylinder(offset):
             assert max(found[0::2]) < 4e-4 * max(found)
 
 
+def test_spectrum_of_a_file_has_its_carrier():
+    """Four periods of a carrier under an envelope, whose friction is its square: twice the carrier's frequency leads.
+
+    The envelope is e = (1 - cos) / 2, so that e^2 / 2 has the mean 3 / 16 and the amplitudes 1 / 4 and 1 / 16.
+    """
+    time = np.arange(161) / 160 * PERIOD
+    turn = 2 * np.pi * time / PERIOD
+    voltage = 100 * np.sin(4 * turn) * (1 - np.cos(turn)) / 2
+    keys = {"waveform": "file", "times": time.tolist(), "voltages": [round(u, 9) for u in voltage.tolist()]}
+    loads = [{"name": "press", "f_ext": 1.0}, {"name": "wave", "duration": PERIOD, "voltage": keys}]
+    file = from_data({"history": loads}).history[1].wave
+    found = over_time(states(list(zip(time, voltage, strict=True)), lambda u: (u / 100) ** 2), file)
+    assert len(found.frequency) == 161 // 4 and found.frequency[7] == pytest.approx(8 * FREQUENCY)
+    exact = np.zeros(12)
+    exact[[0, 1, 7, 6, 8, 5, 9]] = 1 / 4, 1 / 16, 3 / 16, 1 / 8, 1 / 8, 1 / 32, 1 / 32
+    assert np.abs(np.array(found.f_t_amplitude[:12]) - exact).max() < 4e-3
+
+
 def test_spectrum_of_jumps_and_corners_at_odd_times():
     """Samples need not be evenly spaced, and a jump needs no more than its two samples."""
     rng = np.random.default_rng(1)

@@ -144,6 +144,7 @@ def test_impossible_geometry_and_mesh():
     ("text", "start"),
     [
         ("volts = 3", "volts is not a key of a scene; did you mean voltage?"),
+        ("force = 0.5", "force is not a key of a scene; a force on the whole finger in newtons is asked of a run"),
         ("[mesh]\ncontcat = 1", "mesh.contcat is not a key of mesh; did you mean mesh.contact?"),
         (
             "[materials.dermis]\nnu = 0.4",

@@ -33,8 +33,10 @@ NOTE = (
     "far the finger slides in a period."
 )
 """What a result with a load over time says of it."""
-HARMONICS = 6
-"""Number of amplitudes of the spectrum; the last has 4 samples in each of its periods."""
+HARMONICS, SAMPLED = 6, 4
+"""Number of amplitudes in the spectrum of a wave, and of samples that friction has in a period of the last of them. A
+file, which may be a carrier under a slow envelope, has as many amplitudes as its samples allow, and no fewer."""
+_MOST = 200  # amplitudes
 QUANTITIES = ("mu_app", "f_t", "contact_length", "f_electrostatic")
 """Quantities of which extremes and means are kept."""
 Array = NDArray[np.float64]
@@ -97,8 +99,10 @@ def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime
         return OverTime(start, seconds, mean, mean_change=change)
     if (periods := int(seconds / wave.period + _NEAR)) < 1:
         return OverTime(start, seconds, mean)
-    found = spectrum(time, values["f_t"], wave.period, periods, corners)
-    frequency = tuple(k / wave.period for k in range(1, HARMONICS + 1))
+    samples = int(np.count_nonzero(time >= time[-1] - periods * wave.period)) // periods
+    count = min(max(HARMONICS, samples // SAMPLED), _MOST) if wave.waveform == "file" else HARMONICS
+    found = spectrum(time, values["f_t"], wave.period, periods, corners, count)
+    frequency = tuple(k / wave.period for k in range(1, count + 1))
     return OverTime(start, seconds, mean, periods, frequency, tuple(map(float, found)))
 
 
@@ -133,7 +137,9 @@ def long_steps(loads: "Iterable[LoadResult]", least: float) -> list[str]:
     return found
 
 
-def spectrum(time: Array, value: Array, period: float, periods: int, corners: Sequence[float] = ()) -> Array:
+def spectrum(
+    time: Array, value: Array, period: float, periods: int, corners: Sequence[float] = (), count: int = HARMONICS
+) -> Array:
     """Return the amplitudes at the first multiples of a frequency over the last whole periods.
 
     Args:
@@ -142,12 +148,13 @@ def spectrum(time: Array, value: Array, period: float, periods: int, corners: Se
         period: of the first frequency (s).
         periods: how many, back from the last time.
         corners: times (s) at which the curve has a corner.
+        count: number of multiples.
 
     Returns:
-        Amplitudes in the unit of the samples, shape (:data:`HARMONICS`,).
+        Amplitudes in the unit of the samples, shape (count,).
     """
     first, whole = time[-1] - periods * period, periods * period
-    turns = [2 * np.pi * k / period for k in range(1, HARMONICS + 1)]
+    turns = [2 * np.pi * k / period for k in range(1, count + 1)]
     return np.array([2 / whole * abs(_integral(time, value, corners, turn, first)) for turn in turns])
 
 

@@ -1,6 +1,6 @@
 """The section of a report on loads over time: extremes, means and the spectrum of friction."""
 
-from fingerpad.io.over_time import NOTE
+from fingerpad.io.over_time import HARMONICS, NOTE
 from fingerpad.io.result import Result
 from fingerpad.report import page as html
 
@@ -22,7 +22,8 @@ def section(result: Result) -> str:
                 f"{_MM * passed.mean['contact_length']:.4g}",
             )
         )  # fmt: skip
-        amplitudes = zip(passed.frequency, passed.f_t_amplitude, strict=True)
+        largest = sorted(zip(passed.f_t_amplitude, passed.frequency, strict=True), reverse=True)[:HARMONICS]
+        amplitudes = sorted((frequency, value) for value, frequency in largest)
         spectra += [(load.name, f"{frequency:.4g}", f"{value:.4g}") for frequency, value in amplitudes]
     if not rows:
         return ""

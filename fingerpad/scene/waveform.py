@@ -257,8 +257,10 @@ def _table(file: str) -> dict[str, Any]:
     header = rows[0][1] if rows else []
     if header != [_TIME, _VOLTAGE]:
         raise ValueError(f"{name} with the header {show(','.join(header))}; it must be '{_TIME},{_VOLTAGE}'")
+    if len(rows) - 1 > _POINTS:
+        raise ValueError(f"{name} with {len(rows) - 1} points; there must be from 2 to {_POINTS} of them")
     times, voltages = list[float](), list[float]()
-    for line, row in rows[1 : _POINTS + 2]:
+    for line, row in rows[1:]:
         if len(row) != 2:
             raise ValueError(f"{name}, whose line {line} has {len(row)} cells; it must have 2, a time and a voltage")
         for text, found, allowed in ((row[0], times, _range(Seconds)), (row[1], voltages, _range(Volts))):
