@@ -148,7 +148,7 @@ def _one(scene: Path, folder: Path, model: str) -> None:
     start()
     from fingerpad.io.checkpoint import CheckpointError
     from fingerpad.io.place import PlaceError
-    from fingerpad.runs.solve import kept, solved, tables_in
+    from fingerpad.runs.solve import kept, solved, tables_in, with_versions
     from fingerpad.scene import SceneError, from_kept
 
     asked = from_kept(json.loads(scene.read_text(encoding="utf-8")))
@@ -159,9 +159,11 @@ def _one(scene: Path, folder: Path, model: str) -> None:
             except CheckpointError:  # nothing to go on from
                 solved(asked, model, folder, lines=True, report=False)
         else:
+            from fingerpad.io.provenance import provenance
             from fingerpad.reduced import smooth
 
-            kept(smooth.solve(asked, tables_in(folder.parent), MPI.COMM_WORLD), folder, MPI.COMM_WORLD)
+            found = with_versions(smooth.solve(asked, tables_in(folder.parent), MPI.COMM_WORLD), provenance())
+            kept(found, folder, MPI.COMM_WORLD)
     except PlaceError as error:  # another run is at it, or the disk is full: it may be gone the next time
         print(error, file=sys.stderr)
         sys.exit(os.EX_TEMPFAIL)
