@@ -13,10 +13,10 @@ from fingerpad.scene import Scene, SceneError, override
 from fingerpad.scene.slices import Slices
 from fingerpad.slices import AREA_ERROR, AREA_ERROR_AT_FORCE, FORCE_ERROR
 from fingerpad.slices.finger import MODEL_ERROR, WholeFinger, errors
+from fingerpad.slices.force import newtons
 from fingerpad.slices.profile import cylinder, profile
 from fingerpad.slices.total import BeyondTrace, at_force, at_indentation
 from fingerpad.slices.trace import Trace, TraceError, gross_width, trace
-from fingerpad.slices.traces import newtons
 from variational.state import ContactState, Errors, RidgeStates
 
 R_X, R_Z = 14e-3, 28e-3  # m
@@ -165,8 +165,10 @@ def kept_state(**values) -> ContactState:
 
 # -- results -------------------------------------------------------------------------------------------
 def whole() -> WholeFinger:
-    total = at_force(profile(Slices()), kept(200.0), 0.5, 8)
-    return WholeFinger({"full_slip": total}, "kept runs", {"full_slip": {"f_t": 0.01, "mu_app": 0.02}})
+    shape, trace = Slices(count=8), kept(200.0)
+    total = at_force(profile(shape), trace, 0.5, shape.count)
+    errors = {"full_slip": {"f_t": 0.01, "mu_app": 0.02}}
+    return WholeFinger({"full_slip": total}, "kept runs", errors, {"full_slip": trace}, shape)
 
 
 def test_errors_are_carried_over_in_proportion():
@@ -179,8 +181,27 @@ def test_errors_are_carried_over_in_proportion():
 def test_result_from_its_file():
     """What summary.json holds gives the same finger again."""
     finger = whole()
-    again = WholeFinger.from_dict(json.loads(json.dumps(finger.to_dict())))
+    again = WholeFinger.from_dict(json.loads(json.dumps(finger.to_dict())), Slices(count=8))
     assert again.to_dict() == finger.to_dict() and str(again) == str(finger)
+    assert again.under(0.2).to_dict() == finger.under(0.2).to_dict()
+
+
+def test_finger_under_another_force_is_read_from_its_traces():
+    """The same as if the traces had been made for that force; errors stay in proportion."""
+    finger = whole()
+    less = finger.under("200 mN")
+    direct = at_force(profile(Slices()), kept(200.0), 0.2, 8)
+    assert less.values("full_slip") == WholeFinger({"full_slip": direct}, "").values("full_slip")
+    assert less.f_ext == pytest.approx(0.2, rel=1e-12)
+    ratio = less.values("full_slip")["f_t"] / finger.values("full_slip")["f_t"]
+    assert less.error["full_slip"]["f_t"] == pytest.approx(0.01 * ratio) and ratio < 0.6
+    assert finger.under(0.5).values("full_slip") == finger.values("full_slip")
+    with pytest.raises(SceneError, match="give a trace to a larger force"):
+        finger.under(50.0)
+    with pytest.raises(SceneError, match="force is -1 N"):
+        finger.under(-1.0)
+    with pytest.raises(SceneError, match="read from a file without traces; run the scene again"):
+        WholeFinger(finger.states, "kept runs").under(0.2)
 
 
 def test_text_has_both_errors():

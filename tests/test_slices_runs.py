@@ -296,5 +296,9 @@ def test_report_and_text_of_a_force_begin_with_the_whole_finger(tmp_path):
     text = str(result)
     assert text.startswith("Whole finger, as a sum of slices")
     assert text.index("Cross-section at the centre of the finger (model 'cylinders')") > 0
+    read = fp.Result.load(tmp_path).finger
+    assert read.under(1.0).to_dict() == result.finger.under(1.0).to_dict()
+    less = fp.run(force=1.0, model="cylinders").finger.values("full_slip")
+    assert read.under(1.0).values("full_slip")["f_t"] == pytest.approx(less["f_t"], rel=5e-3), "traces of other points"
     assert fp.Result.load(tmp_path).asked_force == 2.0 and str(fp.Result.load(tmp_path)) == text
     assert fp.run(model="cylinders").asked_force is None

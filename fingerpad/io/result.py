@@ -208,7 +208,7 @@ class Result:
             cautions=tuple(summary.get("cautions", ())),
             record=record,
             folder=folder,
-            finger=WholeFinger.from_dict(summary["finger"]) if "finger" in summary else None,
+            finger=WholeFinger.from_dict(summary["finger"], scene.slices) if "finger" in summary else None,
         )
 
     @classmethod

@@ -205,8 +205,9 @@ def _whole(
 ) -> Result:
     """Return the result of a force on the whole finger, its sums written beside the files of the last trace."""
     from fingerpad.slices import traces
+    from fingerpad.slices.force import newtons
 
-    value, number = traces.newtons(force), itertools.count(1)
+    value, number = newtons(force), itertools.count(1)
     asked = {"force": value, "parameters": scene.parameters()}
     if model != "full":
         _refuse_other_results(scene, model, out, _ranks(comm), asked)

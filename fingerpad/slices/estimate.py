@@ -60,7 +60,8 @@ def estimate(scene: Scene, press: Sequence[ContactState], named: Mapping[str, Co
     # At one indentation the states bear other forces: the least is one that every trace reaches.
     force = min(at_indentation(finger, each, deepest(finger, each), count).totals["f_ext"] for each in traces.values())
     found = {name: at_force(finger, each, force * (1 - 1e-9), count) for name, each in traces.items()}
-    return WholeFinger(in_order(found), SOURCE, {name: errors(found[name], named[name]) for name in found})
+    known = {name: errors(found[name], named[name]) for name in found}
+    return WholeFinger(in_order(found), SOURCE, known, traces, scene.slices)
 
 
 def _thinned(press: Sequence[ContactState]) -> list[ContactState]:

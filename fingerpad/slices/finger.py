@@ -2,16 +2,20 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from fingerpad.io.states import STATES, called
 from fingerpad.richardson import plus_minus
+from fingerpad.scene.messages import SceneError
+from fingerpad.scene.slices import Slices
 from fingerpad.slices import AREA_ERROR_AT_FORCE, FORCE_ERROR
-from fingerpad.slices.total import Total
-from fingerpad.slices.trace import NAMES
+from fingerpad.slices.force import newtons
+from fingerpad.slices.profile import profile
+from fingerpad.slices.total import Total, at_force
+from fingerpad.slices.trace import NAMES, Trace
 from variational.state import ContactState
 
 _SHOWN = {  # words, unit, factor from SI, digits without an error
@@ -55,11 +59,36 @@ class WholeFinger:
     """Where the traces of the cross-section come from, for a reader."""
     error: dict[str, dict[str, float]] = field(default_factory=dict)
     """Estimated discretisation errors of the cross-section by state and quantity, carried over in proportion."""
+    traces: Mapping[str, Trace] = field(default_factory=dict)
+    """Of the cross-section by state, from which :meth:`under` reads other forces; none of an earlier version's file."""
+    shape: Slices = Slices()
+    """The finger along its axis."""
 
     @property
     def f_ext(self) -> float:
         """External force (N)."""
         return next(iter(self.states.values())).totals["f_ext"]
+
+    def under(self, force: float | str) -> "WholeFinger":
+        """Return the same finger under another force, from the same traces: at once, without a run.
+
+        Args:
+            force: in N, as a text such as ``"0.3 N"``, or as a quantity of pint. A trace reaches some percent beyond
+                the force that it was made for.
+
+        Raises:
+            SceneError: no force, or one that a trace does not reach; a file of an earlier version, without traces.
+        """
+        value, finger = newtons(force), profile(self.shape)
+        if not self.traces:
+            raise SceneError("the whole finger was read from a file without traces; run the scene again")
+        states = {name: at_force(finger, self.traces[name], value, self.shape.count) for name in self.states}
+        found = replace(self, states=states)
+        scaled = {
+            name: {key: error * found.values(name)[key] / self.values(name)[key] for key, error in each.items()}
+            for name, each in self.error.items()
+        }
+        return replace(found, error=scaled)
 
     def values(self, name: str) -> dict[str, float]:
         """Return the quantities of a state: N, m², m, and the apparent friction coefficient."""
@@ -73,19 +102,32 @@ class WholeFinger:
         for name, total in self.states.items():
             arrays = {key: values.tolist() for key, values in total.slices().items()}
             found["states"][name] = self.values(name) | {"error": self.error.get(name, {}), "slices": arrays}
+            if name in self.traces:
+                made = self.traces[name]
+                points = {key: values.tolist() for key, values in made.columns.items()}
+                found["states"][name]["trace"] = {"indentation": made.depth.tolist()} | points
         return found
 
     @classmethod
-    def from_dict(cls, data: Mapping[str, Any]) -> "WholeFinger":
-        """Return the finger of :meth:`to_dict`."""
-        states = {}
+    def from_dict(cls, data: Mapping[str, Any], shape: Slices) -> "WholeFinger":
+        """Return the finger of :meth:`to_dict`.
+
+        Args:
+            data: of the dictionary.
+            shape: the finger along its axis, which the dictionary does not have.
+        """
+        states, traces = {}, {}
         for name, state in data["states"].items():
             arrays = {key: np.array(values) for key, values in state["slices"].items()}
             columns = {key: arrays[key] for key in NAMES}
             centre = data["f_ext"] / state["effective_width"]
             places = arrays["z"], arrays["thickness"], arrays["indentation"]
             states[name] = Total(state["indentation"], *places, centre, columns)
-        return cls(states, data["source"], {name: state["error"] for name, state in data["states"].items()})
+            if "trace" in state:
+                points = {key: np.array(values) for key, values in state["trace"].items()}
+                traces[name] = Trace(points.pop("indentation"), points)
+        known = {name: state["error"] for name, state in data["states"].items()}
+        return cls(states, data["source"], known, traces, shape)
 
     def rows(self) -> Iterator[list[str]]:
         """Yield the quantities with unit, and their values in each state with the discretisation error."""

@@ -9,7 +9,7 @@ forces. A trace that ends before the force is reached is made again to a larger 
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -18,14 +18,10 @@ from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.answer import TooLight
 from fingerpad.scene import Scene, SceneError
-from fingerpad.scene.messages import show
-from fingerpad.scene.reading import plain
 from fingerpad.slices.finger import WholeFinger, errors, in_order
 from fingerpad.slices.profile import Profile, profile
 from fingerpad.slices.total import BeyondTrace, at_force
 from fingerpad.slices.trace import Trace, TraceError, trace
-from geometry.bounds import Range
-from geometry.units import to_si
 from variational.state import ContactState
 
 if TYPE_CHECKING:
@@ -33,8 +29,6 @@ if TYPE_CHECKING:
 
     Solve = Callable[[Scene, str], Result]
 
-NEWTONS = Range(1e-5, 200.0, "N")
-"""Forces on a whole finger: the weight of a milligram to that of 20 kg."""
 FORCES = 8
 """Points of a trace of the models "smooth" and "cylinders"."""
 LIGHT = 1 / 30
@@ -53,28 +47,6 @@ class Traced(NamedTuple):
 
     trace: Trace
     result: Result
-
-
-def newtons(force: Any) -> float:
-    """Return a force on a whole finger (N), given as a number, a text with a unit, or a quantity of pint.
-
-    Raises:
-        SceneError: it is none of these, or out of range.
-    """
-    given = plain(force, ("force",))
-    if isinstance(given, str):
-        try:
-            value = to_si(given, "N")
-        except ValueError as error:
-            raise SceneError(f"force is {show(given)}; {error}") from None
-    elif isinstance(given, bool) or not isinstance(given, int | float):
-        shown = given if isinstance(given, bool) else type(force).__name__
-        raise SceneError(f"force is {shown}; it must be a number in N or a text such as '0.5 N'")
-    else:
-        value = float(given)
-    if value not in NEWTONS:
-        raise SceneError(f"force {NEWTONS.words(value, slip=not isinstance(given, str))}")
-    return value
 
 
 def whole(scene: Scene, force: float, model: str, solve: "Solve") -> Result:
@@ -113,7 +85,8 @@ def whole(scene: Scene, force: float, model: str, solve: "Solve") -> Result:
                 f"{model!r} must have at least {_SMALLEST:g} N/m; give a larger force or a shorter finger"
             )
         last = solve(scene.model_copy(update={"f_ext": f_ext}), "")
-    return replace(last, finger=WholeFinger(in_order(totals), source, known))
+    states = {name: each.trace for name, each in found.items()}
+    return replace(last, finger=WholeFinger(in_order(totals), source, known, states, scene.slices))
 
 
 def _wanted(scene: Scene) -> Iterator[str]:
