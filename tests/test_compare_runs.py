@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import fingerpad as fp
 from fingerpad.cli import main, one_scene, ours
 from fingerpad.cli.compare_data import _Compared
 from fingerpad.cli.measured import read
@@ -82,6 +83,20 @@ def total(force, area):
     values = {"f_ext": force, "f_t": force / 2, "f_electrostatic": 0.0, "contact_length": area / 5, "gross_width": area}
     one = np.ones(1)
     return Total(1e-3, 0 * one, one, 1e-3 * one, force, {name: value * one for name, value in values.items()})
+
+
+def test_smaller_forces_are_those_of_the_traces(table):
+    """Of one run to the largest force, as of runs to each; a run of its own wins, and what no trace reaches is left."""
+    runs = [fp.run(fp.Scene(voltage=150.0), model="cylinders", force=force) for force in (0.5, 1.0)]
+    asked = read(table("force (N), friction force (N)\n0.3, 0.1\n0.5, 0.1\n1, 0.1\n3, 0.1\n"))
+    one, both = (ours.ours(given, asked) for given in (runs[1:], runs))
+    force, voltage = np.array([0.3, 0.5, 1.0, 3.0]), np.full(4, 150.0)
+    direct = [run.finger.values("full_slip")["f_t"] for run in runs]
+    assert both.at(force, voltage)[1:3] == pytest.approx(direct, rel=1e-9)
+    assert 1e-6 < abs(one.at(force, voltage)[1] / direct[0] - 1) < 5e-3, "its trace has other points"
+    nearest = runs[0].finger.under(0.3).values("full_slip")["f_t"]
+    assert both.at(force, voltage)[0] == nearest and both.computed(force, voltage).tolist() == [True] * 3 + [False]
+    assert np.isnan(both.at(force, voltage)[3])
 
 
 # -- forces that differ a little -----------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from fingerpad.io.states import PREFIXES, WORDS, before_sliding
 from fingerpad.report.source import Table
 from fingerpad.report.source import read as folder_of
 from fingerpad.scene.messages import SceneError, clip
+from fingerpad.slices.finger import WholeFinger
 from variational.state import ContactState
 
 CONDITIONS = {"f_ext": "force", "voltage": "voltage"}
@@ -71,6 +73,11 @@ def _joined(runs: Sequence[Result], table: Measured) -> dict[At, Value]:
                     f"{one_scene.folder(run)}, both at {at[0]:.6g} {table.force_unit} and {at[1]:g} V; give one of them"
                 )
             points[place], of[place] = value, run
+    if table.whole:  # the run to the least force above has the trace with most points there
+        for run in sorted(runs, key=lambda run: run.finger.f_ext if run.finger else 0.0):
+            for at, value in _traced(run, table):
+                if not any(_same(known, at) for known in points):
+                    points[at] = value
     return points
 
 
@@ -105,9 +112,22 @@ def _whole(found: Result, table: Measured) -> Iterator[tuple[At, Value]]:
             f"the run has no newtons, which {_name(table)} has; run its scene, of press, charge and slide, with --force"
         )
     if table.state in found.finger.states:
-        voltage = 0.0 if table.state == "uncharged" else abs(found.named[table.state].voltage)
-        error = found.finger.error.get(table.state, {}).get(table.key, math.nan)
-        yield (found.finger.f_ext, voltage), Value(found.finger.values(table.state)[table.key], error)
+        yield _of(found, found.finger, table)
+
+
+def _traced(found: Result, table: Measured) -> Iterator[tuple[At, Value]]:
+    """Yield the same under the forces of a table (N) that the traces of a run reach."""
+    if found.finger is None or table.state not in found.finger.states or not found.finger.traces:
+        return
+    for force in dict.fromkeys(table.conditions.get("f_ext", ())):
+        with suppress(SceneError):
+            yield _of(found, found.finger.under(force), table)
+
+
+def _of(found: Result, finger: WholeFinger, table: Measured) -> tuple[At, Value]:
+    voltage = 0.0 if table.state == "uncharged" else abs(found.named[table.state].voltage)
+    error = finger.error.get(table.state, {}).get(table.key, math.nan)
+    return (finger.f_ext, voltage), Value(finger.values(table.state)[table.key], error)
 
 
 def _states(found: Result, state: str) -> list[ContactState]:

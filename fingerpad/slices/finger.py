@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fingerpad.io.states import STATES, called
+from fingerpad.io.states import STATES, WORDS, called
 from fingerpad.richardson import plus_minus
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.slices import Slices
@@ -28,6 +28,7 @@ _SHOWN = {  # words, unit, factor from SI, digits without an error
     "indentation": ("indentation δ", "mm", 1e3, 3),
     "effective_width": ("F_ext over f_ext of the centre", "mm", 1e3, 2),
 }
+_ROUNDOFF = 1e-9
 _FRICTION = "mu_app", "f_t"  # shown at full slip alone
 _OF_SECTION = {  # whose relative error each has; the external force is prescribed
     "mu_app": "mu_app",
@@ -74,7 +75,7 @@ class WholeFinger:
 
         Args:
             force: in N, as a text such as ``"0.3 N"``, or as a quantity of pint. A trace reaches some percent beyond
-                the force that it was made for.
+                the force that it was made for, and down to its first point at the centre of the finger.
 
         Raises:
             SceneError: no force, or one that a trace does not reach; a file of an earlier version, without traces.
@@ -83,6 +84,13 @@ class WholeFinger:
         if not self.traces:
             raise SceneError("the whole finger was read from a file without traces; run the scene again")
         states = {name: at_force(finger, self.traces[name], value, self.shape.count) for name in self.states}
+        for name, total in states.items():
+            first = finger.centre_scale() * float(self.traces[name].columns["f_ext"][0])
+            if total.centre < first * (1 - _ROUNDOFF):
+                raise SceneError(
+                    f"the force is {value:.4g} N, under which the centre of the finger bears {total.centre:.3g} N/m, "
+                    f"and its trace in {WORDS[name]} begins at {first:.3g} N/m; give a larger force"
+                )
         found = replace(self, states=states)
         scaled = {
             name: {key: error * found.values(name)[key] / self.values(name)[key] for key, error in each.items()}
