@@ -1,0 +1,29 @@
+"""What a result prints: states side by side, remarks, and the order where newtons were asked for."""
+
+from dataclasses import replace
+
+import fingerpad as fp
+from fingerpad.io.result_text import text
+from tests.test_slices import whole
+from variational.state import ContactState
+
+
+def slip(**values) -> ContactState:
+    given = {"f_ext": 10.0, "voltage": 100.0, "f_t": 4.0, "mu_app": 0.4, "f_contact": 16.0, "f_electrostatic": 6.0}
+    return ContactState(**given | {"ridges_in_contact": 5, "contact_length": 1e-3} | values)
+
+
+def test_cautions_follow_the_notes_with_a_mark():
+    lines = text(fp.Result(fp.Scene(), "smooth", None, None, slip(), notes=("a note",), cautions=("mind this",)))
+    assert lines.startswith("Result (model 'smooth')")
+    assert lines.splitlines()[-2:] == ["  a note", "  ! mind this"]
+    assert ["friction", "force", "f_T", "(N/m)", "4.000"] in [line.split() for line in lines.splitlines()]
+
+
+def test_whole_finger_comes_first_where_newtons_were_asked_for():
+    run = fp.Result(fp.Scene(), "full", None, None, slip(), finger=whole())
+    assert text(run).startswith("Result\n") and text(run).endswith(str(run.finger))
+    asked = replace(run, record={"asked": {"force": 0.5}})
+    assert text(asked).startswith(str(run.finger))
+    assert "\nCross-section at the end of its last trace\n" in text(asked)
+    assert text(replace(asked, finger=None)).startswith("Result\n"), "a trace was interrupted"
