@@ -53,7 +53,10 @@ def to_si(text: str, unit: str) -> float:
     wanted = f"it must be a number in {unit} or a text such as '{number} {unit}'"
     if comma := _COMMA.fullmatch(text[:_LONGEST]):
         whole, decimals, rest = comma.groups()
-        raise ValueError(f"decimals have points: write '{whole}.{decimals}{rest.rstrip() or f' {unit}'}'")
+        rest = rest.rstrip() or f" {unit}"
+        thousands = len(decimals) == 3 and decimals.isdigit() and whole.lstrip("+-0") != ""
+        other = f", or '{whole}{decimals}{rest}' if the comma parts thousands" if thousands else ""
+        raise ValueError(f"decimals have points: write '{whole}.{decimals}{rest}'{other}")
     if parts is None:
         raise ValueError(wanted)
     if not given:

@@ -160,6 +160,22 @@ def test_roughness_as_long_as_ridges_is_told(tmp_path, capsys):
     assert any(REMARK in text for text in cylinders.solve(load(None, {"roughness.wavelength": 532e-6})).cautions)
 
 
+def test_unit_of_a_header_is_enough(tmp_path, capsys):
+    """Of points whose header has it; a header without that of z needs --unit, also in a scene."""
+    x, y = np.meshgrid(np.arange(64) * 2e-3, np.arange(64) * 2e-3, indexing="ij")
+    z = SelfAffine().surface((64, 64), (128e-6, 128e-6), 3).heights.ravel() * 1e6
+    text = "\n".join(f"{a:.6g},{b:.6g},{c:.6g}" for a, b, c in zip(x.ravel(), y.ravel(), z, strict=True))
+    (tmp_path / "known.csv").write_text(f"x (mm),y (mm),z (um)\n{text}\n", encoding="utf-8")
+    (tmp_path / "half.csv").write_text(f"x (mm),y (mm),z\n{text}\n", encoding="utf-8")
+    assert main(["topography", str(tmp_path / "known.csv")]) == 0
+    assert "128 µm x 128 µm" in capsys.readouterr().out
+    assert "holds numbers without a unit; give --unit" in refused(capsys, "topography", str(tmp_path / "half.csv"))
+    known, half = ({"file": str(tmp_path / name)} for name in ("known.csv", "half.csv"))
+    assert load(None, {"roughness.topography": known}).roughness.h_rms == pytest.approx(np.std(z) * 1e-6, rel=0.5)
+    with pytest.raises(SceneError, match="roughness.topography.unit is missing"):
+        load(None, {"roughness.topography": half})
+
+
 def test_laws_of_ones_own_have_no_remark():
     """They do not read the roughness of the scene."""
     scene = load(None, {"roughness.wavelength": 532e-6})

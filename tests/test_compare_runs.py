@@ -85,6 +85,12 @@ def total(force, area):
     return Total(1e-3, 0 * one, one, 1e-3 * one, force, {name: value * one for name, value in values.items()})
 
 
+def test_sites_that_are_left_out_change_no_value(table):
+    runs = fingers(0.3, 0.3)
+    runs[1] = replace(runs[1], scene=runs[1].scene.replace(output={"receptors": False}))
+    one_scene.refuse_mixed(runs)
+
+
 def test_smaller_forces_are_those_of_the_traces(table):
     """Of one run to the largest force, as of runs to each; a run of its own wins, and what no trace reaches is left."""
     runs = [fp.run(fp.Scene(voltage=150.0), model="cylinders", force=force) for force in (0.5, 1.0)]

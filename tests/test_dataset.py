@@ -306,6 +306,18 @@ def test_sites_of_a_sweep_are_those_of_its_states(folder, data, tmp_path):
         assert swept[name].attrs == data[name].attrs
 
 
+def test_sites_without_a_voltage_are_those_of_both_names(tmp_path):
+    """Uncharged and charged normal contact are one step then; a line that is cut short does not count."""
+    run(from_data(SCENE | {"history": SCENE["history"][:1]}), tmp_path, MPI.COMM_SELF)
+    result = Result.load(tmp_path)
+    assert result.uncharged.step == result.charged.step
+    with (tmp_path / "receptors.csv").open("a", encoding="utf-8") as file:
+        file.write(f"{result.charged.step},5")
+    merkel = dataset.sites(result)["merkel_sed"][1]
+    np.testing.assert_array_equal(merkel[0], merkel[1])
+    assert np.isfinite(merkel[:2]).all() and 'id="receptors"' in run_page.page(result)
+
+
 def test_report_has_the_sites_of_the_table(folder):
     """The largest energy density of each named state, and that of each ridge."""
     result = Result.load(folder)

@@ -52,7 +52,7 @@ def test_lengths_that_are_exchanged(tmp_path):
     assert read(path, (4e-6, 16e-6)).pixel == (1e-6, 2e-6)
     with pytest.raises(ValueError, match=r"4 lines of 8 heights, and x, .* the pixels are not square; exchange"):
         read(path, (8e-6, 4e-6))
-    assert scan(path, pixel=(2e-6, 0.5e-6)).map.size == (8e-6, 4e-6)
+    assert scan(path, unit="m", pixel=(2e-6, 0.5e-6)).map.size == (8e-6, 4e-6)
 
 
 # -- instruments -------------------------------------------------------------------------------------------
@@ -251,6 +251,7 @@ def points(header: str, x_unit: float) -> str:
         ("x/mm,y/mm,z/µm", 1e-3),
         ("x_mm,y_mm,z_um", 1e-3),
         ("filtered (10x) in y\nx,y,z (um)", 1e-6),
+        ("x (millimeters), y (millimeters), z (microns)", 1e-3),
     ],
 )
 def test_units_of_points_in_a_header(header, unit, tmp_path):
@@ -261,6 +262,15 @@ def test_units_of_points_in_a_header(header, unit, tmp_path):
         found = scan(path, unit=given).map
         assert found.size == pytest.approx((8e-6, 9e-6), rel=1e-5)
         assert np.ptp(found.heights) == pytest.approx(3e-6)
+
+
+@pytest.mark.parametrize("header", ["# scan of x, y and z (2024-01-01)\nx,y,z", "x (along finger), y (across), z (up)"])
+def test_words_in_brackets_are_no_units(header, tmp_path):
+    path = tmp_path / "map.csv"
+    path.write_text(points(header, 1e-3), encoding="utf-8")
+    assert scan(path, unit="um", size_unit="mm").map.size == pytest.approx((8e-6, 9e-6), rel=1e-5)
+    with pytest.raises(ValueError, match="holds numbers without a unit"):
+        scan(path)
 
 
 @pytest.mark.parametrize(

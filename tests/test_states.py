@@ -319,6 +319,16 @@ def test_first_touch_is_no_named_state(slides):
     assert press.extremes["contact_length"].max == max(own)
 
 
+def test_path_that_ends_in_a_first_touch_has_no_named_state():
+    """Where the names of its loads are known, as in the report of a run that was cut short."""
+    history = History()
+    history.still("touch", f_ext=0.17)
+    assert not states.named(history.rows, ["press"])
+    assert states.named(history.rows, ["touch"])["uncharged"].f_ext == pytest.approx(0.17)
+    press = next(states.load_results(history.rows, [Load(name="press", f_ext=1.0)], lambda k, end: None))
+    assert press.extremes["f_t"].max == 0.0, "the touch is all there is"
+
+
 @pytest.mark.parametrize(
     ("key", "value", "text"),
     [("f_ext", 75.0, "75.00"), ("f_ext", 0.002, "0.002"), ("f_ext", 3e-15, "0.00"), ("mu_app", math.nan, "–")]

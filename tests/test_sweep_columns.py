@@ -1,6 +1,7 @@
 """A sweep over the amplitude of a drive: what its table, its dataset, its text and its report have of it."""
 
 import csv
+import json
 import math
 
 import numpy as np
@@ -76,6 +77,40 @@ def test_report_begins_with_the_load_over_time(folder):
     assert f"over {KEY}</title>" in page  # and over nothing else: a load's column is no swept key
 
 
+def test_headline_of_a_sweep_is_of_its_waveform(folder, tmp_path):
+    """Not of a press that takes time before it, nor of a wave in which the finger rests; both cares are told."""
+    press = {"load_press_mu_app_min": -1e-18, "load_press_mu_app_max": 1e-18, "load_press_contact_length_mean": 1.0}
+    rest = {f"load_rest_{key}": 0.0 for key in ("mu_app_min", "mu_app_max", "f_t_amplitude", "contact_length_mean")}
+    rows = [
+        {"voltage": 1.0, "slip_contact_length": 1e-3, **press, **more, **rest, "failure": ""}
+        for more in (
+            {f"load_w_{key}": value for key, value in zip(WAVES, (0.2, 0.3, 0.1, 1.0), strict=True)},
+            {f"load_w_{key}": "" for key in WAVES},
+        )
+    ]
+    rows[1] |= {"voltage": 2.0, "slip_contact_length": ""}
+    with (tmp_path / "table.csv").open("w", encoding="utf-8", newline="") as file:
+        out = csv.DictWriter(file, list(rows[0]))
+        out.writeheader()
+        out.writerows(rows)
+    asked = {"parameters": fp.Scene().parameters(), "model": "full", "cautions": ["a", "b", "c", "d"]}
+    (tmp_path / "sweep.json").write_text(json.dumps(asked), encoding="utf-8")
+    page = write(tmp_path).read_text(encoding="utf-8")
+    assert "<h1>µ<sub>app</sub> from 0.200 to 0.300</h1>" in page and "in the load w, over" in page
+    assert "1 of 2 points have no full slip. Limits of validity are reached: a; b; c; and 1 more." in page
+    assert "<li>d</li>" in page
+
+
+WAVES = ("mu_app_min", "mu_app_max", "f_t_amplitude", "contact_length_mean")
+
+
+def test_cautions_that_differ_in_numbers_are_one(tmp_path):
+    cautions = [f"roughness.wavelength is {x:.3g} m, above half" for x in (2.6e-4, 3e-4, 1e-3)]
+    results = [fp.Result(fp.Scene(), "full", None, None, None, cautions=(text, "another")) for text in cautions]
+    found = Sweep({"voltage": (1.0, 2.0, 3.0)}, tuple(results), tmp_path).cautions()
+    assert found == [f"{cautions[0]} (3 of 3 points)", "another (3 of 3 points)"]
+
+
 def test_places_along_a_dimension_are_those_of_labels():
     """Points that have other ridges than the first one."""
     about = {"units": "1", "long_name": "x"}
@@ -106,14 +141,14 @@ def test_newtons_of_a_whole_finger(tmp_path):
 
 
 def test_cautions_of_points_are_the_sweep_s(tmp_path):
-    """Each with its number of points, in the text, in the file and on the page; pressures that differ are left out."""
+    """Each with its number of points, in the text, in the file and on the page."""
     found = fp.sweep(
         fp.Scene(), tmp_path, model="cylinders", voltage=[200.0, 400.0], **{"electric.d_i": [1e-6, 100e-6, 50e-6]}
     )
     cautions = found.cautions()
     ours = next(text for text in cautions if text.startswith("the error of this model is known of full runs"))
     assert ours.endswith("and not at this load (3 of 6 points)")
-    places = [text for text in cautions if text.startswith("full slip: a ridge's mean pressure is where d_eq rises")]
+    places = [text for text in cautions if text.startswith("full slip: a mean pressure") and "d_eq rises" in text]
     count = sum(any(text.startswith("full slip: a mean pressure") for text in each.cautions) for each in found)
     assert len(places) == 1 and places[0].endswith(f"({count} of 6 points)") and 1 < count < 6
     assert f"! {ours}" in str(found).splitlines()

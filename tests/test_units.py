@@ -74,6 +74,8 @@ def test_texts_in_a_file(write):
         ("voltage", "9**9**9 V", "its unit is not known; it must be a number in V or a text such as '9 V'"),
         ("mesh.contact", "1,5 um", "decimals have points: write '1.5 um'"),
         ("f_ext", "0,5 N/m", "decimals have points: write '0.5 N/m'"),
+        ("f_ext", "1,250 N/m", "decimals have points: write '1.250 N/m', or '1250 N/m' if the comma parts thousands"),
+        ("f_ext", "0,250 N/m", "decimals have points: write '0.250 N/m'"),
         ("f_ext", "0,5 N", "decimals have points: write '0.5 N'"),
         ("voltage", "-1,5e2", "decimals have points: write '-1.5e2 V'"),
         ("voltage", "V", "it must be a number in V or a text such as '1 V'"),

@@ -12,7 +12,7 @@ from fingerpad.scene.messages import clip, show
 _FREE = re.compile(
     r"(history\[\d+\]\.)?(f_ext|voltage)"  # the conditions of a measurement,
     r"|history\[\d+\]\.(bone_height|name)"  # the force by another control, and a word for it,
-    r"|output\.(errors|each_load)|numerics\.memory"  # and what changes no value
+    r"|output\.(errors|each_load|receptors)|numerics\.memory"  # and what changes no value
 )
 _MOST = 50  # characters of a folder
 

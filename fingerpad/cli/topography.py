@@ -10,7 +10,7 @@ from fingerpad.io.titles import plain
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.remarks import ridges_as_roughness
-from variational.roughness.heightfile import Found, is_plain, scan
+from variational.roughness.heightfile import Found, NoUnit, scan
 from variational.roughness.heightheader import UNITS
 from variational.roughness.spectrum import Fit, power_spectrum, roughness_table
 from variational.roughness.topography import distribution
@@ -75,11 +75,12 @@ def _scan(args: argparse.Namespace) -> Found:
     Raises:
         SceneError: it cannot be read.
     """
-    if args.unit is None and is_plain(args.file):
-        raise SceneError(f"{clip(str(args.file), 80)} holds numbers without a unit; give --unit, um for example")
     try:
         size, pixel = (None if given is None else (given[0], given[1]) for given in (args.size, args.pixel))
         return scan(args.file, size, args.unit, args.size_unit, args.missing, pixel)
+    except NoUnit:
+        text = f"{clip(str(args.file), 80)} holds numbers without a unit; give --unit, um for example"
+        raise SceneError(text) from None
     except OSError as error:
         raise SceneError(f"{clip(str(args.file), 80)} cannot be read: {error.strerror or error}") from None
     except (ValueError, ImportError) as error:

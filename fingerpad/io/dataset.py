@@ -252,9 +252,12 @@ def _sites(rows: Sequence[Row], axis: Axis, numbers: Sequence[int], end: str) ->
 
 def sites(result: "Result") -> Variables:
     """Return the energy densities at the sites in the named states, of a result in a folder; nothing without any."""
-    steps = {str(state.step): name for name, state in result.named.items()}
     rows: list[Row] = [*_table(result, "receptors_final")]  # on the final mesh, with an accuracy asked for
-    rows = rows or [{**row, "of": steps[row["step"]]} for row in _table(result, "receptors") if row["step"] in steps]
+    if not rows:
+        steps = [(name, str(state.step)) for name, state in result.named.items()]  # at 0 V two names are of one step
+        all_steps = _table(result, "receptors")
+        rows = [{**row, "of": name} for name, step in steps for row in all_steps if row["step"] == step]
+    rows = [row for row in rows if None not in row.values()]  # the last may be cut short
     numbers = sorted({int(row["ridge"]) for row in rows})
     ridge = ("ridge",), np.array(numbers, np.int32), _about(Column("1", "number of the ridge, 0 central"))
     return {"ridge": ridge} | _sites(rows, ("state", "of", list(STATES)), numbers, "") if rows else {}

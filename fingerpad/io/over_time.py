@@ -91,7 +91,7 @@ def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime
     corners = [] if wave is None else wave.corners(seconds)
     values = {name: np.array([getattr(state, name) for state in states]) for name in QUANTITIES}
     mean = {
-        name: math.nan if np.isnan(value).any() else _integral(time, value, corners).real / seconds
+        name: math.nan if np.isnan(value).any() else float(_rule(time, value, corners)[1].sum()) / seconds
         for name, value in values.items()
     }
     if wave is None:
@@ -111,7 +111,7 @@ def _change(time: Array, value: Array, mean: float) -> float:
     few = sorted({*range(0, len(time), 2), len(time) - 1})
     if len(few) == len(time):
         return float(abs(value[-1] - value[0]) / 2)
-    return float(abs(_integral(time[few], value[few], []).real / (time[-1] - time[0]) - mean))
+    return abs(float(_rule(time[few], value[few], ())[1].sum()) / float(time[-1] - time[0]) - mean)
 
 
 def long_steps(loads: "Iterable[LoadResult]", least: float) -> list[str]:
@@ -128,7 +128,7 @@ def long_steps(loads: "Iterable[LoadResult]", least: float) -> list[str]:
             ends = load.extremes.get(key)
             most = 0.0 if ends is None else max(abs(ends.min), abs(ends.max))
             change = changes.get(key, 0.0)
-            if change > _SURE * most and (key != "f_t" or most > least):
+            if change > _SURE * most and (key != "f_t" or load.rubs(least)):
                 found.append(
                     f"In the load {load.name} the mean {words} over time would change by {factor * change:.2g} {unit} "
                     "with every second step alone: its steps are too long for it; give a smaller numerics.step_scale."
@@ -153,28 +153,35 @@ def spectrum(
     Returns:
         Amplitudes in the unit of the samples, shape (count,).
     """
-    first, whole = time[-1] - periods * period, periods * period
-    turns = [2 * np.pi * k / period for k in range(1, count + 1)]
-    return np.array([2 / whole * abs(_integral(time, value, corners, turn, first)) for turn in turns])
+    whole = periods * period
+    at, weighted = _rule(time, value, corners, time[-1] - whole)
+    turns = (2 * np.pi * k / period for k in range(1, count + 1))
+    return np.array([2 / whole * abs(np.sum(weighted * np.exp(-1j * turn * at))) for turn in turns])
 
 
-def _integral(time: Array, value: Array, corners: Sequence[float], turn: float = 0.0, first: float = 0.0) -> complex:
-    """Return the integral of a curve times exp(-i turn t) from a first time on."""
+def _rule(time: Array, value: Array, corners: Sequence[float], first: float = 0.0) -> tuple[Array, Array]:
+    """Return the points of a quadrature from a first time on, and the curve there times the weights."""
     from scipy.interpolate import PchipInterpolator  # not for those who only read scenes
 
-    near, found = _NEAR * (time[-1] - time[0]), 0j
-    jumps = np.flatnonzero(np.diff(time) <= near) + 1
-    bends = [k for k, at in enumerate(time) if any(abs(at - corner) <= near for corner in corners)]
+    near, places, parts = _NEAR * (time[-1] - time[0]), list[Array](), list[Array]()
+    jumps = set(map(int, np.flatnonzero(np.diff(time) <= near) + 1))
+    known = np.sort(np.asarray(corners, dtype=float))
+    beside = np.searchsorted(known, time)
+    bends = np.zeros(len(time), dtype=bool)
+    for k in (beside - 1, beside):
+        there = (k >= 0) & (k < len(known))
+        bends[there] |= np.abs(time[there] - known[k[there]]) <= near
     # A segment begins with the state after a jump; a state in a corner belongs to both.
-    starts = sorted({0, *bends, *map(int, jumps)})
+    starts = sorted({0, *map(int, np.flatnonzero(bends)), *jumps})
     for a, b in zip(starts, [*starts[1:], len(time) - 1], strict=True):
         last = b - 1 if b in jumps else b
         if last <= a:
             continue
         t, f = time[a : last + 1], value[a : last + 1]
-        curve = PchipInterpolator(t, f)
         edges = np.concatenate([[max(first, t[0])], t[t > max(first, t[0]) + near]])
         half = np.diff(edges)[:, None] / 2
         at = edges[:-1, None] + half * (1 + _POINTS)
-        found += complex(np.sum(half * _WEIGHTS * curve(at) * np.exp(-1j * turn * at)))
-    return found
+        places.append(at.ravel())
+        parts.append((half * _WEIGHTS * PchipInterpolator(t, f)(at)).ravel())
+    empty = np.empty(0)
+    return np.concatenate([empty, *places]), np.concatenate([empty, *parts])

@@ -31,7 +31,7 @@ def text(result: Result) -> str:
         for first, *rest in rows:
             cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
             lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
-    least = result.record.get("force_error", 0.0)
+    least = result.record.get("force_error") or 0.0
     lines += [f"  {_in_time(load, least)}" for load in result.loads if load.over_time is not None]
     lines += [f"  {note}" for note in _remarks(result)]
     finger = [f"{result.finger}"] if result.finger is not None else []
@@ -71,11 +71,9 @@ def _in_time(load: LoadResult, least: float) -> str:
         load: over time.
         least: friction force (N/m) up to which there is none.
     """
-    passed, f_t = load.over_time, load.extremes["f_t"]
+    passed, rubs = load.over_time, load.rubs(least)
     assert passed is not None
-    key = "mu_app" if "mu_app" in load.extremes else "f_t"
-    rubs = max(abs(f_t.min), abs(f_t.max)) > least
-    key = key if rubs else "contact_length"
+    key = "contact_length" if not rubs else "mu_app" if "mu_app" in load.extremes else "f_t"
     quantity, ends, mean = QUANTITIES[key], load.extremes[key], passed.mean[key]
     unit = f" {quantity.unit}" if quantity.unit else ""
     words = f"{load.name}: {quantity.words.split()[-1]} {cell(key, ends.min)} to {cell(key, ends.max)}{unit}"

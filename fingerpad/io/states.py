@@ -84,18 +84,23 @@ def unchanged(first: ContactState, row: ContactState, steady: float, least: floa
     return bool(same and all(abs(b - a) <= steady * abs(a) + least for a, b in pairs))
 
 
-def asked_for(rows: Sequence[ContactState]) -> list[ContactState]:
+def asked_for(rows: Sequence[ContactState], names: Sequence[str] = ()) -> list[ContactState]:
     """Return the states on the way of the loads, without those of a first touch, whose depth no load asks for.
 
     A load may have the name of the first touch, whose states then count as its own.
+
+    Args:
+        rows: states of a history.
+        names: of its loads in order; by default those that the last states have, so that of a path that ends in a first
+            touch the touch counts.
     """
-    loads = {row.load_number: row.load for row in rows}
+    loads = {row.load_number: row.load for row in rows} | dict(enumerate(names, start=1))
     return [row for row in rows if row.load != FIRST_TOUCH or loads[row.load_number] == FIRST_TOUCH]
 
 
-def named(rows: Sequence[ContactState]) -> dict[str, ContactState]:
-    """Return the states of :data:`STATES` in a history so far, by name."""
-    asked = {row.step for row in asked_for(rows)}
+def named(rows: Sequence[ContactState], names: Sequence[str] = ()) -> dict[str, ContactState]:
+    """Return the states of :data:`STATES` in a history so far, by name; arguments as of :func:`asked_for`."""
+    asked = {row.step for row in asked_for(rows, names)}
     still = [row for row in before_sliding(rows) if row.ridges_in_contact > 0 and row.step in asked]
     uncharged = still[: next((k for k, row in enumerate(still) if row.voltage != 0), len(still))]
     held = next((row.slip_began for row in reversed(rows) if row.slip_held), None)
@@ -157,6 +162,11 @@ class LoadResult:
     over_time: OverTime | None = None
     """Means over time and spectrum of friction; None where the load takes no time."""
 
+    def rubs(self, least: float) -> bool:
+        """Return whether there is friction in the load, above a force (N/m) up to which it is roundoff."""
+        f_t = self.extremes["f_t"]
+        return max(abs(f_t.min), abs(f_t.max)) > max(least, _ROUNDOFF * abs(self.end.f_ext))
+
     def to_dict(self) -> dict[str, Any]:
         """Return the load's result, ready for JSON."""
         end = {key: getattr(self.end, key) for key in (*CONDITIONS, *RESULTS) if key != "load"}
@@ -204,7 +214,8 @@ def load_result(
     # A waveform has a state of its own at its begin, after a jump from the voltage before.
     begin = [] if wave is not None else before or ([_UNLOADED] if mine[0].time > 0 else [])
     passed = over_time([*begin, *mine], wave)
-    counted = asked_for(mine) if passed is None or wave is not None else [*before, *asked_for(mine)]
+    own = [state for state in mine if state.load != FIRST_TOUCH or name == FIRST_TOUCH] or mine
+    counted = own if passed is None or wave is not None else [*before, *own]
     extremes = {}
     for quantity in QUANTITIES:
         of = attrgetter(quantity)

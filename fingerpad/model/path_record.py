@@ -36,14 +36,15 @@ class PathRecord:
         self.profiles: dict[int, Profile] = {}
         self.ends: dict[str, End] = {}
 
-    def named(self, final: Mapping[str, View]) -> dict[str, ContactState]:
+    def named(self, final: Mapping[str, View], loads: Sequence[str]) -> dict[str, ContactState]:
         """Return the named states with their stability and, on every rank, their skin; collective.
 
         Args:
             final: states on the mesh that the run ended with, whose skin is to be shown, by name.
+            loads: names of the loads in order.
         """
         found = {}
-        for name, state in states.named(self.states).items():
+        for name, state in states.named(self.states, loads).items():
             profile = final[name].profile if name in final else self.profiles.get(state.step)
             numbers = np.arange(0) if state.ridges is None else state.ridges.number
             skin = self._comm.bcast(None if profile is None else profile.skin(numbers))

@@ -17,7 +17,9 @@ def outside(f_ext: float, voltage: float) -> bool:
 def changed(scene: Scene) -> list[str]:
     """Return the keys of a scene that those runs have at their defaults, and the scene has not."""
     default = Scene()
-    return [name for name in ("friction", "electric", "roughness") if getattr(scene, name) != getattr(default, name)]
+    found = [] if scene.friction_law() == default.friction_law() else ["friction"]
+    found += [name for name in ("electric", "roughness") if getattr(scene, name) != getattr(default, name)]
+    return found + ([] if scene.laws.closure is None else ["closure"])
 
 
 def cautions(scene: Scene) -> list[str]:

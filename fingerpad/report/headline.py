@@ -66,8 +66,10 @@ def head(result: Result) -> str:
 
 
 def _timed(result: Result) -> LoadResult | None:
-    """Return the last load with a waveform, where a force presses the finger all the time."""
+    """Return the last load with a waveform, where a force presses the finger all the time and it rubs."""
+    least = result.record.get("force_error") or 0.0
     waves = {load.name for load in result.scene.loads() if load.wave is not None}
     timed = [load for load in result.loads if load.name in waves and load.over_time is not None]
+    timed = [load for load in timed if load.rubs(least)]
     whole = [load for load in timed if not math.isnan(load.over_time.mean["mu_app"])]  # type: ignore[union-attr]
     return whole[-1] if whole else None

@@ -31,7 +31,7 @@ def section(result: Result) -> str:
         ("largest at a Meissner site", *(f"{np.nanmax(meissner[k]):.4g}" for k in there)),
     ]
     every = [
-        (str(ridge), *(_cell(merkel[k, j]) for k in there), *(_cell(np.nanmax(meissner[k, j])) for k in there))
+        (str(ridge), *(_cell(merkel[k, j]) for k in there), *(_cell(meissner[k, j].max()) for k in there))
         for j, ridge in enumerate(ridges)
         if np.isfinite(merkel[there, j]).any()
     ]

@@ -71,7 +71,7 @@ def _unfinished(folder: Path) -> Result:
         raise SceneError(
             f"the run in {clip(str(folder), 80)} has no accepted step yet; make the report when it has one"
         )
-    found = named(steps)
+    found = named(steps, [load.name for load in scene.loads()])
     return Result(
         scene,
         "full",

@@ -17,6 +17,8 @@ _CHARTS = {
     "f_t": "friction force f_T (N/m)",
     "contact_length": "contact length L_R (mm)",
 }
+_TOLD = 3  # cautions in the headline
+_RUBS = 1e-6  # µ_app that is no roundoff
 _IN_TIME = {  # column of a load over time, behind its name
     "mu_app_max": "largest µ_app",
     "mu_app_mean": "mean µ_app",
@@ -43,28 +45,40 @@ def _head(table: Table) -> str:
     else:
         number = "No point reached full slip"
     said = f"at full slip, over {_varied(table)}"
-    for name in loads(table.rows[0])[:1]:  # which a sweep of a waveform is about
-        column = f"{LOAD}_{name}_mu_app"
-        read = ([_read(row.get(f"{column}_{end}")) for row in table.rows] for end in ("min", "max"))
-        least, most = ([value for value in values if value is not None] for values in read)
-        if least and most:
-            said = f"in the load {name}, over {_varied(table)}; {number.replace('<sub>app</sub>', '_app')} at full slip"
-            number = f"µ<sub>app</sub> from {min(least):.3f} to {max(most):.3f}"
+    if (wave := _wave(table)) is not None:  # which a sweep of a waveform is about
+        name, least, most = wave
+        said = f"in the load {name}, over {_varied(table)}"
+        said += f"; {number.replace('<sub>app</sub>', '_app')} at full slip" if slid else ""
+        number = f"µ<sub>app</sub> from {least:z.3f} to {most:z.3f}"
     failed = [row for row in table.rows if row["failure"]]
     missing = len(table.rows) - len(slid) - sum(1 for row in failed if not _slid(row))
     kind, mark, words = "holds", "✓ holds", "Every point was computed."
     if failed:
         kind, mark = "fails", "✗ fails"
         words = f"{len(failed)} of {len(table.rows)} points failed; the table of failures says why."
-    elif table.cautions:
-        kind, mark, words = "care", "! care", f"Limits of validity are reached: {'; '.join(table.cautions)}."
-    elif missing:
-        kind, mark, words = "care", "! care", f"{missing} of {len(table.rows)} points have no full slip."
+    elif missing or table.cautions:
+        kind, mark = "care", "! care"
+        slips = f"{missing} of {len(table.rows)} points have no full slip." if missing else ""
+        limits = f"Limits of validity are reached: {'; '.join(table.cautions[:_TOLD])}" if table.cautions else ""
+        limits += f"; and {len(table.cautions) - _TOLD} more" if len(table.cautions) > _TOLD else ""
+        words = " ".join(filter(None, (slips, f"{limits}." if limits else "")))
     return (
         f'<header><p class="kind">fingerpad · report of a sweep · {html.text(table.folder.resolve().name)}</p>'
         f'<h1>{number}</h1><p class="said">{html.text(said)}</p>'
         f'<p class="verdict {kind}"><b>{mark}</b> {html.text(words)}</p></header>'
     )
+
+
+def _wave(table: Table) -> tuple[str, float, float] | None:
+    """Return the last load with a spectrum in which the finger rubs, and the least and the largest µ_app there."""
+    for name in reversed(loads(table.rows[0])):
+        column = f"{LOAD}_{name}"
+        spectrum = [_read(row.get(f"{column}_f_t_amplitude")) for row in table.rows]
+        read = ([_read(row.get(f"{column}_mu_app_{end}")) for row in table.rows] for end in ("min", "max"))
+        least, most = ([value for value in values if value is not None] for values in read)
+        if any(value is not None for value in spectrum) and least and max(map(abs, least + most)) > _RUBS:
+            return name, min(least), max(most)
+    return None
 
 
 def _slid(row: Mapping[str, Any]) -> bool:
@@ -129,7 +143,11 @@ def _points(table: Table) -> str:
     heads = [_head_of(key) for key in table.axes]
     heads += [f"{QUANTITIES[k].words}{f' ({QUANTITIES[k].unit})' if QUANTITIES[k].unit else ''}" for k in SHOWN]
     return html.section(
-        "points", "Every point", html.table((*heads, ""), rows, "numbers"), html.paragraph(PER_LENGTH, "note")
+        "points",
+        "Every point",
+        html.table((*heads, ""), rows, "numbers"),
+        html.paragraph(PER_LENGTH, "note"),
+        html.items(table.cautions),
     )
 
 

@@ -144,7 +144,7 @@ class Attempt:
         refinement, finger, record = self._refinement, self.simulation.finger, self.report.record
         self._writer.take(finger.problem)
         final = {} if refinement is None else refinement.base.views
-        named = record.named(final)
+        named = record.named(final, [load.name for load in scene.loads()])
         unknowns, notes, more = finger.unknowns, [*restarts.notes], dict[str, Any]()
         notes += [NOTE] if any(load.takes_time for load in scene.loads()) else []
         if refinement is not None:

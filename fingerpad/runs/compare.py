@@ -33,8 +33,8 @@ def table(results: Sequence[Result]) -> str:
     rows.append(["unknowns", *(str(result.cost.unknowns) for result in results)])
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
-    said = {result.model: (*result.notes, *result.cautions, result.failure) for result in results}
-    notes = [f"{model}: {note}" for model, each in said.items() for note in each if note]
+    said = [(result.model, (*result.notes, *result.cautions, result.failure)) for result in results]
+    notes = [f"{model}: {note}" for model, each in said for note in each if note]
     if any(state.error.known() for result in results for state in result.named.values()):
         notes.insert(0, "±: estimated discretisation error")
     return "\n".join(lines + notes)

@@ -100,9 +100,17 @@ class Sweep:
         return [point | row(result) for point, result in zip(self.points(), self.results, strict=True)]
 
     def cautions(self) -> list[str]:
-        """Return why numbers may be further off than their errors say, each with how many points it is of."""
-        count = Counter(caution for result in self.results for caution in dict.fromkeys(map(_alike, result.cautions)))
-        return [f"{caution} ({number} of {len(self)} points)" for caution, number in count.items()]
+        """Return why numbers may be further off than their errors say, each with how many points it is of.
+
+        The numbers in a caution are those of the first point that has it.
+        """
+        first, count = dict[str, str](), Counter[str]()
+        for result in self.results:
+            mine = {_alike(text): text for text in result.cautions}
+            for alike, text in mine.items():
+                first.setdefault(alike, text)
+            count.update(mine.keys())
+        return [f"{first[alike]} ({number} of {len(self)} points)" for alike, number in count.items()]
 
     def to_xarray(self) -> "xarray.Dataset":
         """Return the named states along the swept keys as one dataset with units, as ``sweep.nc`` has it.
@@ -156,8 +164,8 @@ def _aligned(table: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _alike(caution: str) -> str:
-    """Return a caution without the pressures that differ from point to point."""
-    return re.sub(r"a mean pressure of [-+.e\d]+(, [-+.e\d]+)* Pa\b", "a ridge's mean pressure", caution)
+    """Return a caution without its numbers, which differ from point to point."""
+    return re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?(, (?=\d))?", "", caution)
 
 
 class _Lines(list[str]):

@@ -4,7 +4,6 @@ A range is wider than measured values by a factor of ten or more on either side.
 the scene reference, ``docs/scene.md``.
 """
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
@@ -131,15 +130,15 @@ class Topography(Part):
         Raises:
             ValueError: the file cannot be read, or is no height map.
         """
-        from variational.roughness.heightfile import is_plain, scan
+        from variational.roughness.heightfile import NoUnit, scan
         from variational.roughness.spectrum import roughness_table
 
-        file = Path(self.file)
-        if self.unit is None and is_plain(file) and file.exists():
-            raise ValueError(f"topography.unit is missing; {clip(self.file)} holds numbers without a unit")
         try:
             found = scan(self.file, self.size, self.unit, self.size_unit, self.missing, self.pixel)
             return roughness_table(found.map)
+        except NoUnit:
+            text = f"topography.unit is missing; {clip(self.file)} holds numbers without a unit"
+            raise ValueError(text) from None
         except OSError as error:
             raise ValueError(f"topography.file is {show(self.file)}: {error.strerror or error}") from None
         except (ValueError, ImportError) as error:

@@ -7,7 +7,7 @@ if TYPE_CHECKING:
 
 
 def remarks(scene: "Scene") -> list[str]:
-    """Return the remarks on a scene for the notes of its results.
+    """Return the remarks on a scene for the cautions of its results.
 
     There is none on keys that a law or a mesh of its own replaces.
     """

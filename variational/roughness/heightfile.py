@@ -19,6 +19,10 @@ _HIGHEST = 1.0  # m, of what can be roughness
 _TEXT = (".txt", ".csv", ".tsv", ".dat", ".asc", ".xyz", ".prn")
 
 
+class NoUnit(ValueError):  # noqa: N818
+    """A file of numbers that has no unit of heights, where none is given."""
+
+
 class Found(NamedTuple):
     """What a file holds."""
 
@@ -45,8 +49,11 @@ class _Read(NamedTuple):
 
 
 def read(path: str | Path, size: tuple[float, float] | None = None) -> HeightMap:
-    """Return the height map of a file in m; arguments and errors as of :func:`scan`."""
-    return scan(path, size).map
+    """Return the height map of a file, in m where it has no unit; arguments and errors as of :func:`scan`."""
+    try:
+        return scan(path, size).map
+    except NoUnit:
+        return scan(path, size, "m").map
 
 
 def scan(
@@ -65,13 +72,14 @@ def scan(
             points x, y, z; any other name is left to SurfaceTopography, which mostly finds lengths and units too.
         size: lengths along x, from the first line of a matrix to its last, and y, along a line. A matrix needs them,
             or those of a pixel; most other files have their own.
-        unit: of heights, a key of :data:`variational.roughness.heightheader.UNITS`; if None that of a header, or m.
+        unit: of heights, a key of :data:`variational.roughness.heightheader.UNITS`; if None that of the file.
         size_unit: of lengths along x and y; if None that of a header, or of the heights.
         missing: how a text marks a missing pixel, beside the usual ways; in ``.npy`` a number. Where it is given, a
             value far from all others is taken as measured.
         pixel: lengths of a pixel along x and y, in place of ``size``.
 
     Raises:
+        NoUnit: heights without a unit, a ValueError.
         ValueError: the file is no height map; ``size``, ``unit`` or ``missing`` is missing or one too many; a value
             seems to mark missing pixels; the lengths along x and y seem to be exchanged; a unit is not known, or is
             another one than in the header.
@@ -86,6 +94,9 @@ def scan(
         raise ValueError(f"{path} has its own units; give none")
     if found.unit is None and unit is None and not is_plain(path):
         raise ValueError(f"{path} has no unit of its own; give that of the heights")
+    own_unit = found.unit or unit or found.units.get("z")
+    if own_unit is None:
+        raise NoUnit(f"{path} holds numbers without a unit; give that of the heights")
     if found.size is not None and (size is not None or pixel is not None):
         raise ValueError(f"{path} has its own size; give none")
     if found.size is None and size is None and pixel is None:
@@ -101,8 +112,8 @@ def scan(
         name, given = ("unit", unit) if axis == "z" else ("size_unit", size_unit)
         if given is not None and _factor(given) != _factor(own):
             raise ValueError(f"{path} has {axis} in {own} by its header, and {name} is {given}; give the header's unit")
-    heights = found.heights * _factor(found.unit or unit or found.units.get("z") or "m")
-    lengths, general = found.size or size or (0.0, 0.0), found.unit or size_unit or unit or found.units.get("z") or "m"
+    heights = found.heights * _factor(own_unit)
+    lengths, general = found.size or size or (0.0, 0.0), found.unit or size_unit or own_unit
     x, y = (length * _factor(found.units.get(axis, general)) for axis, length in zip("xy", lengths, strict=True))
     return _named(path, heights, (x, y), found.layout)
 
