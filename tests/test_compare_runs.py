@@ -100,6 +100,7 @@ def test_smaller_forces_are_those_of_the_traces(table):
     direct = [run.finger.values("full_slip")["f_t"] for run in runs]
     assert both.at(force, voltage)[1:3] == pytest.approx(direct, rel=1e-9)
     assert 1e-6 < abs(one.at(force, voltage)[1] / direct[0] - 1) < 5e-3, "its trace has other points"
+    assert len(both.curves[0].force) == 3, "0.5 N is that of its own run alone"
     nearest = runs[0].finger.under(0.3).values("full_slip")["f_t"]
     assert both.at(force, voltage)[0] == nearest and both.computed(force, voltage).tolist() == [True] * 3 + [False]
     assert np.isnan(both.at(force, voltage)[3])

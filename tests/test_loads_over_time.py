@@ -286,3 +286,21 @@ def test_mean_from_steps_that_are_too_long_is_told(tmp_path):
     assert abs(means[0] - means[1]) < long.loads[2].over_time.mean_change["f_t"]
     assert long.loads[2].extremes["f_t"].max == pytest.approx(long.loads[1].end.f_t, rel=1e-9), "where it began"
     assert long.to_dict()["loads"][2]["over_time"]["mean_change"]["f_t"] > 0
+
+
+def test_headline_is_not_of_a_wave_in_which_the_finger_rests():
+    """Its friction is roundoff: the contact length is shown."""
+    found = result(PRESS, {"name": "hold", "duration": 1 / 60, "voltage": WAVE})
+    assert not found.loads[1].rubs(found.record["force_error"])
+    shown = page(found)
+    assert "<h1>L<sub>R</sub> = " in shown and "in the load hold, over time" not in shown
+
+
+def test_first_touch_has_no_estimated_errors():
+    """A finger that slides as it is pressed has no normal contact, of which errors could be estimated."""
+    found = result(
+        PRESS | {"bone_x": 1e-4}, {"name": "charge", "voltage": 50.0}, output=FINGER["output"] | {"errors": True}
+    )
+    assert found.charged is None and found.full_slip is not None
+    estimated = found.record["accuracy"]["quantities"]
+    assert estimated and not any(key.startswith("normal_") for key in estimated)
