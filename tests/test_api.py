@@ -318,23 +318,6 @@ def test_models_do_not_overwrite_each_other(tmp_path, change):
     assert (tmp_path / "summary.json").read_bytes() == before
 
 
-def test_cheaper_models_say_what_computed_them(tmp_path):
-    """In their files and reports, as a full run does."""
-    result = fp.run(model="cylinders", out=tmp_path)
-    assert result.record["provenance"]["versions"]["fingerpad"] == fp.__version__
-    page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert f"<blockquote>fingerpad {fp.__version__}: two-scale" in page
-    assert fp.__version__ in fp.Result.load(tmp_path).to_xarray().attrs["provenance"]
-    with pytest.raises(fp.SceneError, match="its model was cylinders, and is full now"):
-        fp.run(out=tmp_path)
-
-
-def test_results_are_shown_as_they_are_printed(tmp_path):
-    """In a notebook: without the values of all steps."""
-    result, curve = fp.run(model="cylinders"), fp.sweep(model="cylinders", out=tmp_path, voltage=[0.0])
-    assert repr(result) == str(result) and repr(curve) == str(curve)
-
-
 def test_scene_of_a_file(tmp_path):
     (tmp_path / "scene.toml").write_text('f_ext = "50 N/m"', encoding="utf-8")
     assert fp.Scene.load(tmp_path / "scene.toml").f_ext == 50.0

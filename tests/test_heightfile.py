@@ -9,7 +9,7 @@ import pytest
 from fingerpad.scene.materials import LengthUnit
 from tests.test_topography import grid, wave
 from variational.roughness import unfilled
-from variational.roughness.heightfile import read, scan
+from variational.roughness.heightfile import scan
 from variational.roughness.heightheader import UNITS
 from variational.roughness.heighttext import parse
 from variational.roughness.missing import filled
@@ -24,7 +24,7 @@ def test_plain_files(tmp_path, name):
         np.save(path, m.heights)
     else:
         np.savetxt(path, m.heights, delimiter="," if path.suffix == ".csv" else " ")
-    found = read(path, m.size)
+    found = scan(path, m.size, "m").map
     np.testing.assert_array_equal(found.heights, m.heights)
     assert found.size == m.size
 
@@ -34,24 +34,24 @@ def test_bad_files(tmp_path):
     (tmp_path / "heights.txt").write_text("1 2 3 4\n" * 4)
     np.save(tmp_path / "line.npy", np.zeros(9))
     with pytest.raises(ValueError, match="give the lengths"):
-        read(tmp_path / "heights.txt")
+        scan(tmp_path / "heights.txt", unit="m")
     with pytest.raises(ValueError, match="no matrix of numbers"):
-        read(tmp_path / "words.txt", (1.0, 1.0))
+        scan(tmp_path / "words.txt", (1.0, 1.0), "m")
     with pytest.raises(ValueError, match="line.npy: heights have shape"):
-        read(tmp_path / "line.npy", (1.0, 1.0))
+        scan(tmp_path / "line.npy", (1.0, 1.0), "m")
     np.save(tmp_path / "high.npy", np.eye(9) * 1e200)
     with pytest.raises(ValueError, match=r"heights over 1e\+200 m, at most 1 m is allowed"):
-        read(tmp_path / "high.npy", (1.0, 1.0))
+        scan(tmp_path / "high.npy", (1.0, 1.0), "m")
 
 
 def test_lengths_that_are_exchanged(tmp_path):
     """Four lines of eight heights in square pixels of 1 um; long pixels are taken if they are given as such."""
     path = tmp_path / "map.npy"
     np.save(path, np.zeros((4, 8)))
-    assert read(path, (4e-6, 8e-6)).pixel == (1e-6, 1e-6)
-    assert read(path, (4e-6, 16e-6)).pixel == (1e-6, 2e-6)
+    assert scan(path, (4e-6, 8e-6), "m").map.pixel == (1e-6, 1e-6)
+    assert scan(path, (4e-6, 16e-6), "m").map.pixel == (1e-6, 2e-6)
     with pytest.raises(ValueError, match=r"4 lines of 8 heights, and x, .* the pixels are not square; exchange"):
-        read(path, (8e-6, 4e-6))
+        scan(path, (8e-6, 4e-6), "m")
     assert scan(path, unit="m", pixel=(2e-6, 0.5e-6)).map.size == (8e-6, 4e-6)
 
 
@@ -61,7 +61,7 @@ def test_instrument_with_a_size_and_unit_of_its_own(tmp_path):
     surface = pytest.importorskip("SurfaceTopography", reason="pip install fingerpad[topography]")
     path, h = tmp_path / "map.nc", np.random.default_rng(1).normal(size=(6, 8))
     surface.Topography(h, (3.0, 4.0), unit="um").to_netcdf(path)
-    found = read(path)
+    found = scan(path).map
     np.testing.assert_allclose(found.heights, h * 1e-6, rtol=1e-12)
     assert found.size == pytest.approx((3e-6, 4e-6), rel=1e-12)
     for given, sentence in (
@@ -315,7 +315,7 @@ def test_without_the_optional_package(monkeypatch, tmp_path):
     monkeypatch.setattr(builtins, "__import__", missing)
     (tmp_path / "scan.vk4").write_bytes(b"")
     with pytest.raises(ImportError, match=r"pip install fingerpad\[topography\]"):
-        read(tmp_path / "scan.vk4")
+        scan(tmp_path / "scan.vk4")
 
 
 def test_units_of_a_scene_are_those_of_the_reader():

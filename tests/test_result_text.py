@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import pytest
+
 import fingerpad as fp
 from fingerpad.io.result_text import text
 from tests.test_slices import whole
@@ -27,3 +29,20 @@ def test_whole_finger_comes_first_where_newtons_were_asked_for():
     assert text(asked).startswith(str(run.finger))
     assert "\nCross-section at the end of its last trace\n" in text(asked)
     assert text(replace(asked, finger=None)).startswith("Result\n"), "a trace was interrupted"
+
+
+def test_cheaper_models_say_what_computed_them(tmp_path):
+    """In their files and reports, as a full run does."""
+    result = fp.run(model="cylinders", out=tmp_path)
+    assert result.record["provenance"]["versions"]["fingerpad"] == fp.__version__
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert f"<blockquote>fingerpad {fp.__version__}: two-scale" in page
+    assert fp.__version__ in fp.Result.load(tmp_path).to_xarray().attrs["provenance"]
+    with pytest.raises(fp.SceneError, match="its model was cylinders, and is full now"):
+        fp.run(out=tmp_path)
+
+
+def test_results_are_shown_as_they_are_printed(tmp_path):
+    """In a notebook: without the values of all steps."""
+    result, curve = fp.run(model="cylinders"), fp.sweep(model="cylinders", out=tmp_path, voltage=[0.0])
+    assert repr(result) == str(result) and repr(curve) == str(curve)

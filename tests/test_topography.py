@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from variational.roughness.bam import BearingArea
-from variational.roughness.heightfile import read
+from variational.roughness.heightfile import scan
 from variational.roughness.missing import filled
 from variational.roughness.selfaffine import SelfAffine, prefactor
 from variational.roughness.spectrum import power_spectrum, roughness_table
@@ -292,12 +292,12 @@ def test_instrument_files(other, tmp_path):
     m = wave()
     kept = other.Topography(m.heights / UM, tuple(v / UM for v in m.size), unit="µm")
     kept.to_netcdf(str(tmp_path / "map.nc"))
-    found = read(tmp_path / "map.nc")
+    found = scan(tmp_path / "map.nc").map
     np.testing.assert_allclose(found.heights, m.heights, rtol=0, atol=1e-12 * UM)
     assert found.size == pytest.approx(m.size, rel=1e-12, abs=0)
     (tmp_path / "words.vk4").write_text("no map")
     with pytest.raises(ValueError, match="no height map of a format"):
-        read(tmp_path / "words.vk4")
+        scan(tmp_path / "words.vk4")
 
 
 def test_imports_without_dolfinx():

@@ -19,7 +19,9 @@ from scipy.io import netcdf_file
 from fingerpad.io import columns
 from fingerpad.io.columns import Column
 from fingerpad.io.files import replace
+from fingerpad.io.load_variables import loads
 from fingerpad.io.states import STATES
+from fingerpad.io.variables import Variable, Variables, array, described
 from fingerpad.scene.reading import flat
 from variational.state import ContactState, Errors, Skin
 
@@ -27,13 +29,11 @@ if TYPE_CHECKING:
     import xarray
 
     from fingerpad.io.result import Result
-    from fingerpad.io.states import LoadResult
     from fingerpad.slices.finger import WholeFinger
 
 FILE = "result.nc"
 COORDINATES = ("step", "load", "state", "ridge", "side", "iteration", "harmonic")
 Row = Mapping[str, Any]
-Variables = dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]
 _MISSING = -1  # of whole numbers of a state that is not there
 _RIDGE_TABLES = ("ridges", "ridges_final", "receptors", "receptors_final")
 
@@ -59,7 +59,7 @@ def dataset(result: "Result") -> "xarray.Dataset":
         steps = [state.step for state in result.steps]
         numbers = sorted({int(row["ridge"]) for name in _RIDGE_TABLES for row in tables[name]})
         found |= _steps(result.steps) | loads(result)
-        found["ridge"] = ("ridge",), np.array(numbers, np.int32), _about(Column("1", "number of the ridge, 0 central"))
+        found["ridge"] = _ridges(numbers)
         for end, dim, key, labels in (("", "step", "step", steps), ("_final", "state", "of", list(STATES))):
             found |= _by_ridge(tables[f"ridges{end}"], (dim, key, labels), numbers, f"ridge{end}_", columns.RIDGES)
             found |= _sites(tables[f"receptors{end}"], (dim, key, labels), numbers, end.removeprefix("_"))
@@ -140,16 +140,16 @@ def _attribute(value: Any) -> Any:
 
 def states(named: Mapping[str, ContactState]) -> Variables:
     """Return the named states along ``state``; NaN, or -1 of a whole number, where a state is missing."""
-    found: Variables = {"state": (("state",), np.array(STATES, object), _about(Column("1", "named state")))}
+    found: Variables = {"state": (("state",), np.array(STATES, object), described(Column("1", "named state")))}
     for name, column in (columns.STATES | columns.STABILITY).items():
         whole = name in ("step", "ridges_in_contact", "stable")
         values = [_number(getattr(named[key], name) if key in named else None, whole) for key in STATES]
-        found[f"state_{name}"] = ("state",), np.array(values, np.int32 if whole else np.float64), _about(column)
+        found[f"state_{name}"] = ("state",), np.array(values, np.int32 if whole else np.float64), described(column)
     for kind, words in columns.CHANGES.items():
         for field in fields(Errors):
             values = [getattr(getattr(named[key], kind), field.name) if key in named else math.nan for key in STATES]
             column = columns.STEPS[field.name]
-            about = _about(Column(column.unit, f"{words} of the {column.meaning}"))
+            about = described(Column(column.unit, f"{words} of the {column.meaning}"))
             found[f"state_{field.name}_{kind}"] = ("state",), np.array(values, np.float64), about
     return found
 
@@ -164,53 +164,7 @@ def _steps(steps: Sequence[ContactState]) -> Variables:
     rows = [state.row() for state in steps]
     for name in rows[0]:
         values = [row[name] for row in rows]
-        found["load_name" if name == "load" else name] = ("step",), _array(values), _about(columns.STEPS[name])
-    return found
-
-
-def loads(result: "Result") -> Variables:
-    """Return the results of the loads along ``load``."""
-    names = _array([load.name for load in result.loads])
-    found: Variables = {"load": (("load",), names, _about(columns.STEPS["load"]))}
-    ends = [load.end.step for load in result.loads]
-    found["load_last_step"] = ("load",), _array(ends), _about(Column("1", "last step of the load"))
-    for name in ("full_slip_reached", "full_slip_held"):
-        slip = Column("1", f"whether full slip was {name.rpartition('_')[2]} in the load")
-        found[f"load_{name}"] = ("load",), _array([getattr(load, name) for load in result.loads]), _about(slip)
-    for quantity in dict.fromkeys(name for load in result.loads for name in load.extremes):
-        for end, words in (("min", "least"), ("max", "largest")):
-            values = [getattr(load.extremes.get(quantity), end, math.nan) for load in result.loads]
-            column = columns.STEPS[quantity]
-            about = _about(Column(column.unit, f"{words} value in the load: {column.meaning}"))
-            found[f"load_{quantity}_{end}"] = ("load",), _array(values), about
-    return found | _over_time(result.loads)
-
-
-def _over_time(loads: "Sequence[LoadResult]") -> Variables:
-    """Return lengths, means and spectra of loads over time; NaN for the other loads, nothing where there are none."""
-    passed = [load.over_time for load in loads]
-    known = [each for each in passed if each is not None]
-    if not known:
-        return {}
-    found: Variables = {}
-    for name, words in (("start", "time at which the load begins"), ("seconds", "length of the load")):
-        values = [math.nan if each is None else getattr(each, name) for each in passed]
-        found[f"load_{name}"] = ("load",), _array(values), _about(Column("s", words))
-    for quantity in known[0].mean:
-        column = columns.STEPS[quantity]
-        values = [math.nan if each is None else each.mean[quantity] for each in passed]
-        about = _about(Column(column.unit, f"mean over time in the load: {column.meaning}"))
-        found[f"load_{quantity}_mean"] = ("load",), _array(values), about
-    harmonics = max(len(each.frequency) for each in known)
-    if harmonics:
-        number = Column("1", "multiple of the frequency of the waveform")
-        found["harmonic"] = ("harmonic",), np.arange(1, harmonics + 1, dtype=np.int32), _about(number)
-        for name, column in columns.SPECTRUM.items():
-            table = np.full((len(loads), harmonics), np.nan)
-            for k, each in enumerate(passed):
-                if each is not None and each.frequency:
-                    table[k] = getattr(each, name)
-            found[f"load_{name}"] = ("load", "harmonic"), table, _about(column)
+        found["load_name" if name == "load" else name] = ("step",), array(values), described(columns.STEPS[name])
     return found
 
 
@@ -233,7 +187,7 @@ def _by_ridge(
         for row in rows:
             where = rank[str(row[key])], place[int(row["ridge"])]
             values[where] = row[name] if text else float(row[name])
-        found[f"{prefix}{'note' if text else name}"] = (dim, "ridge"), values, _about(column)
+        found[f"{prefix}{'note' if text else name}"] = (dim, "ridge"), values, described(column)
     return found
 
 
@@ -246,7 +200,7 @@ def _sites(rows: Sequence[Row], axis: Axis, numbers: Sequence[int], end: str) ->
     dims, left, about = flat["meissner_left"]
     both = np.stack([left, flat["meissner_right"][1]], axis=-1)
     about = about | {"long_name": "strain energy density at the Meissner sites of the ridge, per reference volume"}
-    sides = ("side",), np.array(["left", "right"], object), _about(Column("1", "side of the ridge"))
+    sides = ("side",), np.array(["left", "right"], object), described(Column("1", "side of the ridge"))
     return {f"merkel{end}_sed": flat["merkel_sed"], f"meissner{end}_sed": ((*dims, "side"), both, about), "side": sides}
 
 
@@ -259,8 +213,11 @@ def sites(result: "Result") -> Variables:
         rows = [{**row, "of": name} for name, step in steps for row in all_steps if row["step"] == step]
     rows = [row for row in rows if None not in row.values()]  # the last may be cut short
     numbers = sorted({int(row["ridge"]) for row in rows})
-    ridge = ("ridge",), np.array(numbers, np.int32), _about(Column("1", "number of the ridge, 0 central"))
-    return {"ridge": ridge} | _sites(rows, ("state", "of", list(STATES)), numbers, "") if rows else {}
+    return {"ridge": _ridges(numbers)} | _sites(rows, ("state", "of", list(STATES)), numbers, "") if rows else {}
+
+
+def _ridges(numbers: Sequence[int]) -> Variable:
+    return ("ridge",), np.array(numbers, np.int32), described(Column("1", "number of the ridge, 0 central"))
 
 
 def _coupling(rows: Sequence[Row], steps: Sequence[int]) -> Variables:
@@ -275,8 +232,8 @@ def _coupling(rows: Sequence[Row], steps: Sequence[int]) -> Variables:
     change = Column("1", "relative change of the air gaps in the coupling iteration")
     numbers = np.arange(1, count + 1, dtype=np.int32)
     return {
-        "iteration": (("iteration",), numbers, _about(Column("1", "number of the coupling iteration"))),
-        "coupling_change": (("step", "iteration"), values, _about(change)),
+        "iteration": (("iteration",), numbers, described(Column("1", "number of the coupling iteration"))),
+        "coupling_change": (("step", "iteration"), values, described(change)),
     }
 
 
@@ -291,11 +248,11 @@ def _skin(named: Mapping[str, ContactState]) -> Variables:
         values = np.full((len(STATES), facets, points), np.nan)
         for key, skin in skins.items():
             values[STATES.index(key), : skin.x.shape[0], : skin.x.shape[1]] = getattr(skin, name)
-        found[f"skin_{name}"] = ("state", "facet", "point"), values, _about(column)
+        found[f"skin_{name}"] = ("state", "facet", "point"), values, described(column)
     ridge = np.full((len(STATES), facets), np.nan)
     for key, skin in skins.items():
         ridge[STATES.index(key), : len(skin.ridge)] = skin.ridge
-    found["skin_ridge"] = ("state", "facet"), ridge, _about(Column("1", "number of the ridge of the facet"))
+    found["skin_ridge"] = ("state", "facet"), ridge, described(Column("1", "number of the ridge of the facet"))
     return found
 
 
@@ -313,9 +270,9 @@ def finger(whole: "WholeFinger | None") -> Variables:
             slices[name][STATES.index(state), : len(along)] = along
     found: Variables = {}
     for name, column in columns.FINGER.items():
-        found[f"finger_{name}"] = ("state",), sums[name], _about(column)
+        found[f"finger_{name}"] = ("state",), sums[name], described(column)
     for name, column in columns.SLICES.items():
-        found[f"slice_{name}"] = ("state", "slice"), slices[name], _about(column)
+        found[f"slice_{name}"] = ("state", "slice"), slices[name], described(column)
     return found
 
 
@@ -337,15 +294,3 @@ def _in_memory(steps: Iterable[ContactState]) -> Iterable[dict[str, Any]]:
                 values = {name: getattr(step.ridges, name)[k] for name in ("f_contact", "f_friction", "p_c", "d_eq")}
                 values |= {"contact_length": step.ridges.length[k], "f_electrostatic": step.ridges.f_electrostatic[k]}
                 yield values | {"step": step.step, "ridge": step.ridges.number[k], "state": ""}
-
-
-def _array(values: Sequence[Any]) -> Any:
-    """Return values of one kind as NetCDF 3 holds them."""
-    if isinstance(values[0], str):
-        return np.array(values, object)
-    kind = np.bool_ if isinstance(values[0], bool) else np.int32 if isinstance(values[0], int) else np.float64
-    return np.array(values, kind)
-
-
-def _about(column: Column) -> dict[str, str]:
-    return {"units": column.unit, "long_name": column.meaning}

@@ -95,7 +95,12 @@ def asked_for(rows: Sequence[ContactState], names: Sequence[str] = ()) -> list[C
             touch the touch counts.
     """
     loads = {row.load_number: row.load for row in rows} | dict(enumerate(names, start=1))
-    return [row for row in rows if row.load != FIRST_TOUCH or loads[row.load_number] == FIRST_TOUCH]
+    return [row for row in rows if _counts(row, loads[row.load_number])]
+
+
+def _counts(row: ContactState, load: str) -> bool:
+    """Return whether a state of a load is none of its first touch."""
+    return row.load != FIRST_TOUCH or load == FIRST_TOUCH
 
 
 def named(rows: Sequence[ContactState], names: Sequence[str] = ()) -> dict[str, ContactState]:
@@ -214,7 +219,7 @@ def load_result(
     # A waveform has a state of its own at its begin, after a jump from the voltage before.
     begin = [] if wave is not None else before or ([_UNLOADED] if mine[0].time > 0 else [])
     passed = over_time([*begin, *mine], wave)
-    own = [state for state in mine if state.load != FIRST_TOUCH or name == FIRST_TOUCH] or mine
+    own = [state for state in mine if _counts(state, name)] or mine
     counted = own if passed is None or wave is not None else [*before, *own]
     extremes = {}
     for quantity in QUANTITIES:

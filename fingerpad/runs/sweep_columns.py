@@ -17,12 +17,11 @@ from fingerpad.slices.finger import WholeFinger
 
 SHOWN = ("mu_app", "f_t", "contact_length", "f_electrostatic", "ridges_in_contact")
 """Quantities of a named state."""
-FINGER, LOAD = "finger", "load"
-"""Beginnings of the columns of a whole finger, behind the state's, and of a load over time."""
+LOAD = "load"
+"""Beginning of the columns of a load over time."""
 _NEWTONS = ("f_ext", "f_t", "mu_app", "f_electrostatic", "contact_area")
 _IN_TIME = ("mu_app", "f_t", "contact_length")
 _ENDS = {"min": "least", "max": "largest", "mean": "mean"}
-_DIGITS = 4
 
 
 def row(result: Result) -> dict[str, Any]:
@@ -44,7 +43,7 @@ def _newtons(finger: WholeFinger) -> dict[str, float]:
         for key in _NEWTONS:
             if key in ("mu_app", "f_t") and state != "full_slip":
                 continue
-            name = f"{PREFIXES[state]}_{FINGER}_{key}"
+            name = f"{PREFIXES[state]}_finger_{key}"
             found |= {name: values[key]} | ({f"{name}_error": error[key]} if key in error else {})
     return found
 
@@ -99,10 +98,8 @@ def text(column: str, value: float | None) -> str:
     """Return a value in SI of a load's column as it is printed."""
     if value is None or math.isnan(value):
         return "–"
-    key = next((key for key in _IN_TIME if re.search(rf"_{key}_(min|max|mean)$", column)), None)
-    if key is None:
-        key = "f_t" if column.endswith("amplitude") else None
-    return f"{value:.{_DIGITS}g}" if key is None else cell(key, value)
+    key = next((key for key in _IN_TIME if re.search(rf"_{key}_(min|max|mean|amplitude)$", column)), None)
+    return f"{value:.4g}" if key is None else cell(key, value)
 
 
 def tables(rows: list[dict[str, Any]], axes: Mapping[str, str]) -> Iterator[tuple[str, list[list[str]]]]:

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fingerpad.io import dataset
+from fingerpad.io.load_variables import loads
 from fingerpad.io.states import STATES
+from fingerpad.io.variables import Variables
 from fingerpad.scene.keys import Key, every
 
 if TYPE_CHECKING:
@@ -39,7 +41,7 @@ def of_sweep(sweep: "Sweep") -> "xarray.Dataset":
     shape = [len(values) for values in sweep.axes.values()]
     axes = tuple(sweep.axes)
     points = [dataset.states(result.named) for result in sweep.results]
-    found: dataset.Variables = {"state": points[0].pop("state")}
+    found: Variables = {"state": points[0].pop("state")}
     for name, (dims, _, about) in points[0].items():
         if name != "state":
             values = np.stack([point[name][1] for point in points])
@@ -59,13 +61,13 @@ def of_sweep(sweep: "Sweep") -> "xarray.Dataset":
     return xarray.Dataset(data, coords, _shared(sweep))
 
 
-def _of_point(result: "Result") -> dataset.Variables:
+def _of_point(result: "Result") -> Variables:
     """Return the loads, newtons and sites of a point."""
     sums = {name: each for name, each in dataset.finger(result.finger).items() if "slice" not in each[0]}
-    return (dataset.loads(result) if result.loads else {}) | sums | dataset.sites(result)
+    return (loads(result) if result.loads else {}) | sums | dataset.sites(result)
 
 
-def _more(points: Sequence[dataset.Variables], axes: tuple[str, ...], shape: Sequence[int]) -> dataset.Variables:
+def _more(points: Sequence[Variables], axes: tuple[str, ...], shape: Sequence[int]) -> Variables:
     """Return variables of all points along the swept keys and their own dimensions; NaN where a point has no value.
 
     A place along a dimension that has a coordinate is that of its label: a load by name, a ridge by number.
@@ -78,7 +80,7 @@ def _more(points: Sequence[dataset.Variables], axes: tuple[str, ...], shape: Seq
     if "ridge" in labels:
         labels["ridge"].sort()
     abouts = {name: (dims, about) for point in points for name, (dims, _, about) in point.items()}
-    found: dataset.Variables = {}
+    found: Variables = {}
     for name, (dims, about) in abouts.items():
         if name in labels:
             kind = object if isinstance(labels[name][0], str) else np.int32

@@ -48,14 +48,6 @@ class _Read(NamedTuple):
     """Units of x, y and z, of :data:`UNITS`, where the header of a text gives them."""
 
 
-def read(path: str | Path, size: tuple[float, float] | None = None) -> HeightMap:
-    """Return the height map of a file, in m where it has no unit; arguments and errors as of :func:`scan`."""
-    try:
-        return scan(path, size).map
-    except NoUnit:
-        return scan(path, size, "m").map
-
-
 def scan(
     path: str | Path,
     size: tuple[float, float] | None = None,
