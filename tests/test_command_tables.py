@@ -336,3 +336,11 @@ def test_folder_of_no_run(name, tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(SceneError, match=rf"^{tmp_path / name} is not a folder of a finished run$"):
         Result.load(tmp_path / name)
+
+
+def test_pressures_at_an_end_of_the_closure_are_counted(capsys):
+    """The air gap rises with the pressure under thick insulators; without a voltage the default screen has none."""
+    assert main(["microscale", "--set", "electric.d_i=100 um", "--p", "1e3:1e5:3:log"]) == 0
+    assert "At 3 of 3 pressures and voltages the pressure is where d_eq rises with pressure" in capsys.readouterr().out
+    assert main(["microscale", "--p", "1e3:1e5:3:log", "--voltage", "0"]) == 0
+    assert "pressures and voltages" not in capsys.readouterr().out

@@ -313,3 +313,10 @@ def test_report_that_fails_does_not_cost_the_run(tmp_path, monkeypatch, capsys):
 def data(page: str) -> dict:
     """Return what the charts of a page are drawn from."""
     return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)[1])
+
+
+@pytest.mark.parametrize("model", ["full", "smooth"])
+def test_cautions_are_findings(folder, model):
+    """The page is to be used with care where a limit of validity is reached."""
+    found = trust.findings(replace(Result.load(folder), model=model, cautions=("the model ends here",)))
+    assert [each.verdict for each in found if each.words == "The model ends here."] == [trust.CARE]

@@ -1,6 +1,8 @@
 """Rung 2 on a finger of few ridges, lightly pressed: what it answers, and that it is in balance."""
 
+import json
 import os
+import shutil
 import signal
 from dataclasses import replace
 
@@ -8,9 +10,12 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from fingerpad.installed import source
+from fingerpad.io.result import Result
 from fingerpad.reduced import ridge_cell, smooth, stages
 from fingerpad.reduced.answer import TooLight
 from fingerpad.richardson import ONCE
+from fingerpad.runs import batch
 from fingerpad.scene import SceneError, from_data, load
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
@@ -290,3 +295,13 @@ def test_smooth_outline_is_the_mean_line():
     nearest = [np.hypot(*(flat.point(np.linspace(-5e-3, 5e-3, 20001), 0.0) - p).T).min() for p in mean_line]
     assert max(nearest) < 0.5e-6
     assert finger.bone_centre - smooth.smoothed(finger).bone_centre == pytest.approx(50e-6, rel=1e-9)
+
+
+def test_point_of_a_sweep_names_its_versions(answer, tmp_path):
+    """As a run does: a sweep tells points of another state of the program by them."""
+    shutil.copytree(answer[1], tmp_path / "ridge_tables")
+    asked, place = tmp_path / "asked.json", tmp_path / "point"
+    asked.write_text(json.dumps(from_data(SCENE).parameters()), encoding="utf-8")
+    place.mkdir()
+    batch._one(asked, place, "smooth")
+    assert Result.load(place).record["provenance"]["versions"]["source"] == source()

@@ -99,6 +99,11 @@ def test_headline_of_a_sweep_is_of_its_waveform(folder, tmp_path):
     assert "<h1>µ<sub>app</sub> from 0.200 to 0.300</h1>" in page and "in the load w, over" in page
     assert "1 of 2 points have no full slip. Limits of validity are reached: a; b; c; and 1 more." in page
     assert "<li>d</li>" in page
+    (tmp_path / "table.csv").write_text(
+        (tmp_path / "table.csv").read_text(encoding="utf-8").replace("1.0,0.001,", "1.0,,"), encoding="utf-8"
+    )
+    none = write(tmp_path).read_text(encoding="utf-8")
+    assert "2 of 2 points have no full slip." in none and "No point reached" not in none
 
 
 WAVES = ("mu_app_min", "mu_app_max", "f_t_amplitude", "contact_length_mean")
