@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from fingerpad.io.result import Result as Result
     from fingerpad.model.body import Body as Body
     from fingerpad.runs.solve import run as run
-    from fingerpad.runs.sweep import Sweep as Sweep
     from fingerpad.runs.sweep import sweep as sweep
+    from fingerpad.runs.sweep_results import Sweep as Sweep
     from fingerpad.scene import Scene as Scene
     from fingerpad.scene import SceneError as SceneError
     from variational.contact.augmented import AugmentedLagrangian as AugmentedLagrangian
@@ -40,7 +40,7 @@ _HOMES = {
     "SceneError": "fingerpad.scene",
     "run": "fingerpad.runs.solve",
     "sweep": "fingerpad.runs.sweep",
-    "Sweep": "fingerpad.runs.sweep",
+    "Sweep": "fingerpad.runs.sweep_results",
     "Result": "fingerpad.io.result",
     "ContactState": "variational.state",
     "Body": "fingerpad.model.body",

@@ -9,6 +9,7 @@ HEAVY = ("dolfinx", "ufl", "basix", "ffcx", "petsc4py", "mpi4py", "gmsh")
 LIGHT = (
     "fingerpad.runs.solve",
     "fingerpad.runs.sweep",
+    "fingerpad.runs.sweep_results",
     "fingerpad.io.result",
     "fingerpad.scene",
     "fingerpad.reduced.cylinders",

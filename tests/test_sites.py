@@ -11,7 +11,7 @@ import fingerpad as fp
 from fingerpad.io import dataset
 from fingerpad.io.result import Result
 from fingerpad.report import run_page
-from fingerpad.runs.sweep import Sweep
+from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene import from_data
 from tests.runs import run
 from tests.test_dataset import SCENE, rows_of

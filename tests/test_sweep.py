@@ -19,7 +19,8 @@ from fingerpad.runs import processes
 from fingerpad.runs.batch import key, result, sweep
 from fingerpad.runs.processes import End, Pool
 from fingerpad.runs.processes import run as run_module
-from fingerpad.runs.sweep import Sweep, _older
+from fingerpad.runs.sweep import _older
+from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene import Scene, from_data
 from tests.small_finger import small
 

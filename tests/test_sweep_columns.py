@@ -11,7 +11,7 @@ import xarray
 import fingerpad as fp
 from fingerpad.report.write import write
 from fingerpad.runs import sweep_dataset
-from fingerpad.runs.sweep import Sweep
+from fingerpad.runs.sweep_results import Sweep
 from fingerpad.slices.finger import WholeFinger
 from tests.test_loads_over_time import BY, PRESS, SLIDE, WAVE, scene
 

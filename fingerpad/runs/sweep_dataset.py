@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import xarray
 
     from fingerpad.io.result import Result
-    from fingerpad.runs.sweep import Sweep
+    from fingerpad.runs.sweep_results import Sweep
 
 FILE = "sweep.nc"
 
