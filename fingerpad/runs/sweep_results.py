@@ -1,0 +1,168 @@
+"""Results over a grid of values: as a sequence, as arrays, as a table and as text."""
+
+import csv
+import itertools
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fingerpad.io.files import replace
+from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
+from fingerpad.io.result import Result
+from fingerpad.io.states import STATES
+from fingerpad.runs import sweep_dataset
+from fingerpad.runs.sweep_columns import SHOWN, newtons_of, printed, row, tables
+from variational.state import CONDITIONS, RESULTS
+
+if TYPE_CHECKING:
+    import xarray
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Sweep:
+    """Results over a grid of values; a sequence of them, the last axis fastest."""
+
+    axes: dict[str, tuple[Any, ...]]
+    """Values by key, in SI."""
+    results: tuple[Result, ...]
+    folder: Path | None
+    """Of the results, each in a folder of its own, of ``table.csv`` and of ``sweep.nc``, an absolute path."""
+    notes: tuple[str, ...] = ()
+    """Remarks on the files of the sweep."""
+
+    def __post_init__(self) -> None:
+        """Keep the folder where the program may go to another one."""
+        if self.folder is not None:
+            object.__setattr__(self, "folder", self.folder.absolute())
+
+    def __len__(self) -> int:
+        """Return the number of points."""
+        return len(self.results)
+
+    def __iter__(self) -> Iterator[Result]:
+        """Return the results in order."""
+        return iter(self.results)
+
+    def __getitem__(self, k: int) -> Result:
+        """Return a result by its place."""
+        return self.results[k]
+
+    def points(self) -> list[dict[str, Any]]:
+        """Return the values of the axes at each point, in order."""
+        return [dict(zip(self.axes, values, strict=True)) for values in itertools.product(*self.axes.values())]
+
+    def array(self, quantity: str, state: str = "full_slip") -> NDArray[np.float64]:
+        """Return a quantity of a named state over the grid, NaN where it is not known.
+
+        Args:
+            quantity: a name of :class:`variational.state.ContactState`, such as ``"mu_app"``.
+            state: a name of :data:`fingerpad.io.states.STATES`.
+
+        Returns:
+            Shape (values of the first axis, values of the second, …), SI units.
+
+        Raises:
+            ValueError: no such quantity or state.
+        """
+        if state not in STATES:
+            raise ValueError(f"state is {state!r}; it must be one of {', '.join(STATES)}")
+        if quantity not in (*CONDITIONS[2:], *RESULTS):
+            raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join((*CONDITIONS[2:], *RESULTS))}")
+        found = [result.named.get(state) for result in self.results]
+        values = [np.nan if each is None else float(getattr(each, quantity)) for each in found]
+        return np.array(values).reshape([len(values) for values in self.axes.values()])
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Return a flat row for each point in SI units: axes, :mod:`~fingerpad.runs.sweep_columns`, and failure."""
+        return [point | row(result) for point, result in zip(self.points(), self.results, strict=True)]
+
+    def cautions(self) -> list[str]:
+        """Return why numbers may be further off than their errors say, each with how many points it is of.
+
+        The numbers in a caution are those of the first point that has it.
+        """
+        first, count = dict[str, str](), Counter[str]()
+        for result in self.results:
+            mine = {_alike(text): text for text in result.cautions}
+            for alike, text in mine.items():
+                first.setdefault(alike, text)
+            count.update(mine.keys())
+        return [f"{first[alike]} ({number} of {len(self)} points)" for alike, number in count.items()]
+
+    def to_xarray(self) -> "xarray.Dataset":
+        """Return the named states along the swept keys as one dataset with units, as ``sweep.nc`` has it.
+
+        Raises:
+            ImportError: xarray is not installed.
+        """
+        return sweep_dataset.of_sweep(self)
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write the rows as a table."""
+        rows = self.rows()
+        columns = list(dict.fromkeys(key for row in rows for key in row))
+        columns.sort(key="failure".__eq__)  # last
+        lines = _Lines()
+        table = csv.DictWriter(lines, columns)
+        table.writeheader()
+        table.writerows(rows)
+        replace(Path(path), "".join(lines))
+
+    def __str__(self) -> str:
+        """Return full slip over the axes, and loads over time, as tables with units; ± estimated discretisation errors.
+
+        The last column is friction of the whole finger, where it is known.
+        """
+        axes = {key: _head(key) for key in self.axes}
+        newtons = any(result.finger is not None for result in self.results)
+        heads = [*axes.values(), *(_head(key) for key in SHOWN), *(["F_T (N)"] if newtons else [])]
+        table = [heads]
+        for values, result in zip(self.points(), self.results, strict=True):
+            first = [printed(value) for value in values.values()]
+            state = result.full_slip
+            if state is None:
+                table.append([*first, result.failure or "no full slip"])
+                continue
+            cells = [cell(key, getattr(state, key), getattr(state.error, key, np.nan)) for key in SHOWN]
+            table.append([*first, *cells, *([newtons_of(result)] if newtons else [])])
+        lines = ["At full slip", *_aligned(table)]
+        for name, over_time in tables(self.rows(), axes):
+            lines += [f"Over time, in the load {name}", *_aligned(over_time)]
+        return "\n".join([*lines, PER_LENGTH, *(f"! {caution}" for caution in self.cautions()), *self.notes])
+
+    __repr__ = __str__
+
+
+def _aligned(table: Sequence[Sequence[str]]) -> list[str]:
+    """Return the lines of a table; a line that is cut short ends in words."""
+    whole = [line for line in table if len(line) == len(table[0])]
+    widths = [max(map(len, column)) for column in zip(*whole, strict=True)]
+    return ["   ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=False)) for line in table]
+
+
+def _alike(caution: str) -> str:
+    """Return a caution without its numbers, which differ from point to point."""
+    return re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?(, (?=\d))?", "", caution)
+
+
+class _Lines(list[str]):
+    """Takes the lines of a table."""
+
+    def write(self, line: str) -> None:
+        """Add a line."""
+        self.append(line)
+
+
+def _head(key: str) -> str:
+    if key not in QUANTITIES:
+        meant = sweep_dataset.described(key)
+        return key if meant is None or not meant.unit else f"{key} ({meant.unit})"
+    quantity = QUANTITIES[key]
+    unit = f" ({quantity.unit})" if quantity.unit else ""
+    return f"{quantity.words.split()[-1] if key != 'ridges_in_contact' else 'ridges'}{unit}"
