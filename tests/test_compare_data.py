@@ -125,14 +125,15 @@ def known(folder, **values):
 
 
 def test_ours_is_the_sweep(folder):
-    """At its points to roundoff; between them linear in force and in U²; not beyond."""
+    """At its points to roundoff; between them a power law of the force, and linear in U²; not beyond."""
     with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
         rows = {(float(r["f_ext"]), float(r["voltage"])): float(r["slip_mu_app"]) for r in csv.DictReader(file)}
     found = known(folder)
     for (force, voltage), value in rows.items():
         assert found.at(np.array([force * (1 + 1e-9)]), np.array([voltage]))[0] == pytest.approx(value, rel=1e-12)
     between = found.at(np.array([50.0, 25.0]), np.array([100.0, 50.0]))
-    assert between[0] == pytest.approx((rows[25, 100] + rows[75, 100]) / 2, rel=1e-12)
+    power = np.log(rows[75, 100] / rows[25, 100]) / np.log(3)
+    assert between[0] == pytest.approx(rows[25, 100] * 2**power, rel=1e-12)
     assert between[1] == pytest.approx(0.75 * rows[25, 0] + 0.25 * rows[25, 100], rel=1e-12)
     assert np.isnan(found.at(np.array([10.0, 25.0]), np.array([100.0, 201.0]))).all()
 
@@ -242,7 +243,7 @@ def test_errors_of_a_sweep_count_with_the_spread(folder, table, tmp_path, capsys
         ("force (N/m), friction (1)\n25, 0.3\n", "has no voltage, and ours has 3; add a column 'voltage (V)'"),
         ("voltage (V), friction (1)\n100, 0.3\n", "has no force, and ours has 2; add a column 'force (N/m)'"),
         ("force (N/m), voltage (V), friction (1)\n5, 0, 0.3\n", "is within ours, which has 25 to 75 N/m, 0 to 200 V"),
-        ("force (N), friction (1)\n25, 0.3\n", "the table of the sweep has no newtons, which"),
+        ("force (N), friction (1)\n25, 0.3\n", "has forces in N; sweep force, or give runs by --run"),
         ("force (N/m), voltage (V), depth (mm)\n25, 0, 0.3\n", "the table of the sweep has no depth of full slip"),
     ],
 )

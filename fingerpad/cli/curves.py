@@ -63,9 +63,10 @@ class Ours:
     def at(self, force: Array, voltage: Array) -> Array:
         """Return ours at pairs of force and voltage; NaN outside of ours.
 
-        Between two forces ours is taken as linear, between two voltages as linear in U², as which attraction rises.
-        The sign of a voltage does not count. Up to 1 % beyond the forces of a voltage the value at the last one is
-        taken: the newtons of one f_ext differ a little between voltages.
+        Between two forces ours is taken as a power law, and as linear where it is 0 at one of them. Between two
+        voltages it is taken as linear in U², as which attraction rises. The sign of a voltage does not count. Up to 1 %
+        beyond the forces of a voltage the value at the last one is taken: the newtons of one f_ext differ a little
+        between voltages.
         """
         return self._through(force, voltage, [curve.values for curve in self.curves])
 
@@ -79,7 +80,7 @@ class Ours:
     def _through(self, force: Array, voltage: Array, values: Sequence[Array]) -> Array:
         found = []
         for f, u in zip(force, voltage, strict=True):
-            over = [_between(c.inside(f), c.force, known) for c, known in zip(self.curves, values, strict=True)]
+            over = [_over_force(c.inside(f), c.force, known) for c, known in zip(self.curves, values, strict=True)]
             found.append(_between(u**2, self.voltage**2, over))
         return np.array(found)
 
@@ -91,6 +92,17 @@ class Ours:
             there = np.isclose(inside[:, None], curve.force, rtol=NEAR, atol=0.0).any(axis=1)
             found |= there & np.isclose(np.abs(voltage), curve.voltage, rtol=NEAR, atol=0.0)
         return found
+
+
+def _over_force(x: float, known: Array, values: Array) -> float:
+    """Return a value at one of the known forces up to roundoff, or between two of them; NaN beyond."""
+    if not (known[0] < x < known[-1]):
+        return _between(x, known, values)
+    k = int(np.searchsorted(known, x))
+    ends, at = values[k - 1 : k + 1], known[k - 1 : k + 1]
+    if not np.all(ends > 0):
+        return _between(x, known, values)
+    return float(np.exp(_between(np.log(x), np.log(at), np.log(ends))))
 
 
 def _between(x: float, known: Array, values: Sequence[float] | Array) -> float:

@@ -14,6 +14,7 @@ from fingerpad.io.result import Result
 from fingerpad.io.states import PREFIXES, WORDS, before_sliding
 from fingerpad.report.source import Table
 from fingerpad.report.source import read as folder_of
+from fingerpad.runs.sweep_columns import FORCE
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.slices.finger import WholeFinger
 from variational.state import ContactState
@@ -143,30 +144,36 @@ def _states(found: Result, state: str) -> list[ContactState]:
 
 
 def _of_sweep(found: Table, table: Measured) -> Ours:
-    if table.whole:
-        raise SceneError(f"the table of the sweep has no newtons, which {_name(table)} has; give its runs by --run")
-    others = [axis for axis in found.axes if axis not in CONDITIONS]
+    whole = FORCE in found.axes
+    if whole is not table.whole:
+        mine, other = ("N", "N/m") if table.whole else ("N/m", "N")
+        raise SceneError(
+            f"the sweep in {clip(str(found.folder), 80)} is over forces in {other}, and {_name(table)} has forces in "
+            f"{mine}; sweep {FORCE if table.whole else 'f_ext'}, or give runs by --run"
+        )
+    keys = {FORCE if whole and key == "f_ext" else key: name for key, name in CONDITIONS.items()}
+    others = [axis for axis in found.axes if axis not in keys]
     if others:
         raise SceneError(
             f"the sweep in {clip(str(found.folder), 80)} is over {others[0]}, which no measurement has; "
-            "give one over f_ext and voltage alone"
+            f"give one over {' and '.join(keys)} alone"
         )
-    column = f"{PREFIXES[table.state]}_{table.key}"
+    column = f"{PREFIXES[table.state]}_{'finger_' if whole else ''}{table.key}"
     if column not in found.rows[0]:
         raise SceneError(
             f"the table of the sweep has no {table.quantity} of {WORDS[table.state]}, which {_name(table)} has; "
             "give one of its runs by --run"
         )
     fixed = found.parameters or {}
-    if unknown := [name for key, name in CONDITIONS.items() if key not in found.axes and key not in fixed]:
+    if unknown := [name for key, name in keys.items() if key not in found.axes and key not in fixed]:
         raise SceneError(
             f"the sweep in {clip(str(found.folder), 80)} does not give its {unknown[0]}; "
-            "give one over f_ext and voltage"
+            f"give one over {' and '.join(keys)}"
         )
     points = dict[At, Value]()
     try:
         for row in found.rows:
-            force, voltage = (float(row[key] if key in found.axes else fixed[key]) for key in CONDITIONS)
+            force, voltage = (float(row[key] if key in found.axes else fixed[key]) for key in keys)
             at = force, 0.0 if table.state == "uncharged" else abs(voltage)
             if row[column] or at not in points:  # else another run has it, at another voltage or sign of it
                 points[at] = Value(float(row[column] or "nan"), float(row.get(f"{column}_error") or "nan"))

@@ -6,6 +6,8 @@ from typing import NamedTuple
 from fingerpad.io.states import PREFIXES, WORDS
 from fingerpad.richardson import plus_minus
 
+_NOTHING = 1e-6  # in the units of tables: below it all is roundoff
+
 
 class Quantity(NamedTuple):
     """How a quantity is printed."""
@@ -16,6 +18,26 @@ class Quantity(NamedTuple):
     """Factor from SI to the unit."""
     digits: int
     """Digits after the point, where no error is estimated."""
+
+    @property
+    def title(self) -> str:
+        """Words and unit."""
+        return f"{self.words} ({self.unit})" if self.unit else self.words
+
+    def shown(self, value: float, error: float = math.nan) -> str:
+        """Return a value in the unit of tables, with its error where the error reaches the digits shown.
+
+        Args:
+            value: value in SI; NaN where it is not computed.
+            error: error in SI; NaN where it is not estimated.
+        """
+        if math.isnan(value):
+            return "–"
+        if not math.isnan(error) and error * self.scale >= 0.5 * 10.0**-self.digits:
+            return plus_minus(value * self.scale, error * self.scale)
+        shown = value * self.scale
+        small = _NOTHING < abs(shown) < 0.5 * 10.0**-self.digits
+        return f"{shown:.2g}" if small else f"{shown:z.{self.digits}f}"  # z: no minus before a zero
 
 
 QUANTITIES = {
@@ -29,7 +51,6 @@ QUANTITIES = {
     "ridges_in_contact": Quantity("ridges in contact", "", 1.0, 0),
     "bone_height": Quantity("height of the bone", "mm", 1e3, 4),
 }
-_NOTHING = 1e-6  # in the units of tables: below it all is roundoff
 PER_LENGTH = (
     "N/m: force per metre of finger out of the plane of the cross-section; 75 N/m at the centre of the default finger "
     "are about 0.5 N in all."
@@ -37,21 +58,8 @@ PER_LENGTH = (
 
 
 def cell(key: str, value: float, error: float = math.nan) -> str:
-    """Return a quantity in the unit of tables, with its error where the error reaches the digits shown.
-
-    Args:
-        key: name in :data:`QUANTITIES`.
-        value: value in SI; NaN where it is not computed.
-        error: error in SI; NaN where it is not estimated.
-    """
-    if math.isnan(value):
-        return "–"
-    quantity = QUANTITIES[key]
-    if not math.isnan(error) and error * quantity.scale >= 0.5 * 10.0**-quantity.digits:
-        return plus_minus(value * quantity.scale, error * quantity.scale)
-    shown = value * quantity.scale
-    small = _NOTHING < abs(shown) < 0.5 * 10.0**-quantity.digits
-    return f"{shown:.2g}" if small else f"{shown:z.{quantity.digits}f}"  # z: no minus before a zero
+    """Return a quantity of :data:`QUANTITIES` as :meth:`Quantity.shown` does."""
+    return QUANTITIES[key].shown(value, error)
 
 
 def in_words(key: str) -> str:

@@ -44,8 +44,7 @@ def _line(result: Result, key: str) -> list[str]:
     for name, state in result.named.items():
         shown = key not in ("mu_app", "f_t") or name == "full_slip"
         cells.append(cell(key, getattr(state, key), getattr(state.error, key, math.nan)) if shown else "–")
-    unit = f" ({quantity.unit})" if quantity.unit else ""
-    return [f"{quantity.words}{unit}", *cells] if set(cells) - {"–"} else []
+    return [quantity.title, *cells] if set(cells) - {"–"} else []
 
 
 def _remarks(result: Result) -> list[str]:

@@ -109,7 +109,7 @@ def _numbers(result: Result) -> str:
             for value, error in [(getattr(state, key), getattr(state.error, key, math.nan))]
         ]
         if set(cells) - {"–"}:
-            rows.append((f"{quantity.words}{f' ({quantity.unit})' if quantity.unit else ''}", *cells))
+            rows.append((quantity.title, *cells))
     slip = result.full_slip
     notes = []
     if result.asked_force is not None:

@@ -2,21 +2,19 @@
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
-from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
+from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, Quantity
+from fingerpad.io.states import WORDS
 from fingerpad.report import page as html
 from fingerpad.report import parameters
 from fingerpad.report.source import Table
-from fingerpad.runs.sweep_columns import LOAD, SHOWN, in_time, loads, text
+from fingerpad.runs.sweep_columns import FORCE, LOAD, in_time, loads, shown, text
 from fingerpad.runs.sweep_dataset import described
+from fingerpad.slices.finger import MODEL_ERROR
 
-_CHARTS = {
-    "mu_app": "apparent friction µ_app",
-    "f_t": "friction force f_T (N/m)",
-    "contact_length": "contact length L_R (mm)",
-}
+_CHARTS = ("mu_app", "f_t", "contact_length", "contact_area")
 _TOLD = 3  # cautions in the headline
 _RUBS = 1e-6  # µ_app that is no roundoff
 _IN_TIME = {  # column of a load over time, behind its name
@@ -34,31 +32,37 @@ def page(table: Table) -> str:
     return html.page(title, "\n".join(filter(None, parts)), {"sweep": _curves(table)})
 
 
+def _shown(table: Table) -> tuple[str, dict[str, Quantity]]:
+    """Return the state in words and the columns of it that the page shows."""
+    state, columns = shown(table.rows[0], FORCE in table.axes)
+    return WORDS[state], columns
+
+
 def _head(table: Table) -> str:
-    slid = [row for row in table.rows if _slid(row)]
-    read = ([_read(row.get(f"slip_{key}")) for row in slid] for key in ("mu_app", "f_t"))
-    mu, f_t = ([value for value in values if value is not None] for values in read)
-    if mu:
-        number = f"µ<sub>app</sub> from {min(mu):.3f} to {max(mu):.3f}"
-    elif f_t:
-        number = f"f<sub>T</sub> from {min(f_t):.3f} to {max(f_t):.3f} N/m"
-    else:
-        number = "No point reached full slip"
-    said = f"at full slip, over {_varied(table)}"
+    state, columns = _shown(table)
+    slid = [row for row in table.rows if _reached(row, columns)]
+    number = f"No point reached {state}"
+    for column, quantity in _drawn(columns).values():  # the coefficient of friction first
+        values = [value for row in slid if (value := _read(row.get(column))) is not None]
+        if values:
+            low, high = (f"{value * quantity.scale:.3f}" for value in (min(values), max(values)))
+            number = f"{_symbol(quantity)} from {low} to {high} {quantity.unit}".rstrip()
+            break
+    said = f"{'whole finger at' if FORCE in table.axes else 'at'} {state}, over {_varied(table)}"
     if (wave := _wave(table)) is not None:  # which a sweep of a waveform is about
         name, least, most = wave
         said = f"in the load {name}, over {_varied(table)}"
         said += f"; {number.replace('<sub>app</sub>', '_app')} at full slip" if slid else ""
         number = f"µ<sub>app</sub> from {least:z.3f} to {most:z.3f}"
     failed = [row for row in table.rows if row["failure"]]
-    missing = len(table.rows) - len(slid) - sum(1 for row in failed if not _slid(row))
+    missing = len(table.rows) - len(slid) - sum(1 for row in failed if not _reached(row, columns))
     kind, mark, words = "holds", "✓ holds", "Every point was computed."
     if failed:
         kind, mark = "fails", "✗ fails"
         words = f"{len(failed)} of {len(table.rows)} points failed; the table of failures says why."
     elif missing or table.cautions:
         kind, mark = "care", "! care"
-        slips = f"{missing} of {len(table.rows)} points have no full slip." if missing else ""
+        slips = f"{missing} of {len(table.rows)} points have no {state}." if missing else ""
         limits = f"Limits of validity are reached: {'; '.join(table.cautions[:_TOLD])}" if table.cautions else ""
         limits += f"; and {len(table.cautions) - _TOLD} more" if len(table.cautions) > _TOLD else ""
         words = " ".join(filter(None, (slips, f"{limits}." if limits else "")))
@@ -81,9 +85,20 @@ def _wave(table: Table) -> tuple[str, float, float] | None:
     return None
 
 
-def _slid(row: Mapping[str, Any]) -> bool:
-    """Return whether a point reached full slip; not all of these have a coefficient of friction."""
-    return _read(row.get("slip_contact_length")) is not None
+def _drawn(columns: Mapping[str, Quantity]) -> dict[str, tuple[str, Quantity]]:
+    """Return the columns with a chart by the names of their quantities."""
+    return {key: each for key in _CHARTS for each in columns.items() if each[0].endswith(f"_{key}")}
+
+
+def _symbol(quantity: Quantity) -> str:
+    """Return the symbol of a quantity for the headline, its index below the line; its words where it has none."""
+    name, _, index = quantity.words.split()[-1].partition("_")
+    return f"{html.text(name)}<sub>{html.text(index)}</sub>" if index else html.text(quantity.words)
+
+
+def _reached(row: Mapping[str, Any], columns: Iterable[str]) -> bool:
+    """Return whether a point reached the state of columns; not all that did have a coefficient of friction."""
+    return any(_read(row.get(column)) is not None for column in columns)
 
 
 def _varied(table: Table) -> str:
@@ -112,7 +127,8 @@ def _over_time(table: Table) -> str:
 
 def _charts(table: Table) -> dict[str, tuple[str, str]]:
     """Return the column and the title of each chart by the name of its place on the page."""
-    found = {f"sweep_{key}": (f"slip_{key}", words) for key, words in _CHARTS.items()}
+    drawn = _drawn(_shown(table)[1])
+    found = {f"sweep_{key}": (column, quantity.title) for key, (column, quantity) in drawn.items()}
     for k, name in enumerate(loads(table.rows[0])):
         for key, words in _IN_TIME.items():
             column = f"{LOAD}_{name}_{key}"
@@ -122,31 +138,36 @@ def _charts(table: Table) -> dict[str, tuple[str, str]]:
 
 
 def _study(table: Table) -> str:
-    charts = [html.chart(f"sweep_{key}", f"{words} at full slip over the sweep") for key, words in _CHARTS.items()]
+    state, columns = _shown(table)
+    over = f"at {state} over the sweep"
+    charts = [
+        html.chart(place, f"{words} {over}") for place, (column, words) in _charts(table).items() if column in columns
+    ]
     note = "Bars are estimated discretisation errors, where a run has them."
     without = (
         '<noscript><p class="note">The charts need JavaScript; the table below has the same numbers.</p></noscript>'
     )
-    return html.section("study", "Friction and contact at full slip", without, *charts, html.paragraph(note, "note"))
+    title = f"Friction and contact at {state}"
+    return html.section("study", title, without, *charts, html.paragraph(note, "note"))
 
 
 def _points(table: Table) -> str:
+    state, columns = _shown(table)
     rows = []
     for row in table.rows:
         cells = []
-        for key in SHOWN:
-            value, error = _read(row.get(f"slip_{key}")), _read(row.get(f"slip_{key}_error"))
-            cells.append("–" if value is None else cell(key, value, math.nan if error is None else error))
-        state = "failed" if row["failure"] else "" if _slid(row) else "no full slip"
+        for column, quantity in columns.items():
+            value, error = (_read(row.get(name)) for name in (column, f"{column}_error"))
+            cells.append(quantity.shown(math.nan if value is None else value, math.nan if error is None else error))
+        said = "failed" if row["failure"] else "" if _reached(row, columns) else f"no {state}"
         first, *rest = (_plain(row[key]) for key in table.axes)
-        rows.append((first, *rest, *cells, state))
-    heads = [_head_of(key) for key in table.axes]
-    heads += [f"{QUANTITIES[k].words}{f' ({QUANTITIES[k].unit})' if QUANTITIES[k].unit else ''}" for k in SHOWN]
+        rows.append((first, *rest, *cells, said))
+    heads = [*(_head_of(key) for key in table.axes), *(quantity.title for quantity in columns.values())]
     return html.section(
         "points",
         "Every point",
         html.table((*heads, ""), rows, "numbers"),
-        html.paragraph(PER_LENGTH, "note"),
+        html.paragraph(MODEL_ERROR if FORCE in table.axes else PER_LENGTH, "note"),
         html.items(table.cautions),
     )
 
@@ -205,7 +226,7 @@ def _toml(cell: str) -> str:
 
 def _curves(table: Table) -> dict[str, Any]:
     """Return one curve for each value of all axes but the one along x, which is that with most numbers."""
-    charts = _charts(table)
+    charts, scales = _charts(table), {column: quantity.scale for column, quantity in _shown(table)[1].items()}
     numbers = {key: {row[key] for row in table.rows if _read(row[key]) is not None} for key in table.axes}
     along = max(table.axes, key=lambda key: len(numbers[key]))
     others = [key for key in table.axes if key != along]
@@ -222,7 +243,7 @@ def _curves(table: Table) -> dict[str, Any]:
             "x": [_read(row[along]) if numbers[along] else _plain(row[along]) for row in mine],
         }
         for place, (column, _) in charts.items():
-            scale = QUANTITIES["contact_length"].scale if column.endswith("contact_length") else 1.0
+            scale = scales.get(column, 1.0)
             for end in ("", "_error"):
                 found = [_read(row.get(f"{column}{end}")) for row in mine]
                 curve[f"{place}{end}"] = [None if value is None else value * scale for value in found]
@@ -234,7 +255,7 @@ def _curves(table: Table) -> dict[str, Any]:
 def _head_of(key: str) -> str:
     quantity = QUANTITIES.get(key)
     if quantity:
-        return f"{quantity.words} ({quantity.unit})"
+        return quantity.title
     meant = described(key)
     return f"{key} ({meant.unit})" if meant is not None and meant.unit else key
 

@@ -4,7 +4,7 @@ A scene's folder is named by a hash of all its parameters: run again, a sweep co
 that were cut short go on from their checkpoints. The hash does not depend on the program: after a change of the
 mechanics the folder must be deleted.
 
-    python3 -m fingerpad.runs.batch SCENE.json FOLDER LIMIT MODEL    one run, as the sweep starts it
+    python3 -m fingerpad.runs.batch SCENE.json FOLDER LIMIT MODEL [FORCE]    one run, as the sweep starts it
 """
 
 import fcntl
@@ -31,24 +31,33 @@ _LIMIT = 900.0  # s of processor time for one scene
 _OF_THE_MACHINE = "MUMPS_OUT_OF_MEMORY"  # a failure that says nothing of the scene
 
 
-def key(scene: Scene) -> str:
-    """Return the name under which a scene's results are kept."""
-    return hashlib.sha256(json.dumps(identity(scene.parameters()), sort_keys=True).encode()).hexdigest()[:16]
+def key(scene: Scene, force: float | None = None) -> str:
+    """Return the name under which a scene's results are kept.
+
+    Args:
+        scene: the scene.
+        force: on the whole finger (N), in place of the scene's own; None without one.
+    """
+    kept = identity(scene.parameters())
+    if force is not None:
+        kept = {"force": force, "scene": {name: value for name, value in kept.items() if name != "f_ext"}}
+    return hashlib.sha256(json.dumps(kept, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def result(scene: Scene, folder: Path) -> Summary | None:
+def result(scene: Scene, folder: Path, force: float | None = None) -> Summary | None:
     """Return the summary of a scene that has been run in a sweep's folder to its end, whatever that was.
 
-    A run that was stopped, or had too little memory, has not come to its end.
+    A run that was stopped, or had too little memory, has not come to its end; nor has one of a force with traces alone.
     """
-    summary = _summary(scene, folder)
+    summary = _summary(folder / key(scene, force))
     again = summary is None or summary.get("interrupted") or _OF_THE_MACHINE in summary.get("failure", "")
-    return None if again else summary
+    trace = force is not None and summary is not None and not {"asked", "failure"} & set(summary)
+    return None if again or trace else summary
 
 
-def _summary(scene: Scene, folder: Path) -> Summary | None:
+def _summary(place: Path) -> Summary | None:
     try:
-        return dict(json.loads((folder / key(scene) / "summary.json").read_text(encoding="utf-8")))
+        return dict(json.loads((place / "summary.json").read_text(encoding="utf-8")))
     except (OSError, ValueError, TypeError):  # no file, or one that was damaged
         return None
 
@@ -74,9 +83,12 @@ def times_left(took: Sequence[float], left: int, jobs: int) -> tuple[float, floa
     return (rounds - 1) * low + low / 2, rounds * max(high, 1.25 * low)
 
 
-def _said(summary: Summary) -> str:
+def _said(summary: Summary, force: float | None) -> str:
     """Return what became of a run that did not fail, in words."""
-    mu_app = summary.get("slip_mu_app")
+    slip: Mapping[str, Any] = summary
+    if force is not None:
+        slip = {f"slip_{name}": value for name, value in summary["finger"]["states"].get("full_slip", {}).items()}
+    mu_app = slip.get("slip_mu_app")
     return "done" if mu_app is None else f"done, µ_app {mu_app:.4f}"
 
 
@@ -87,6 +99,7 @@ def sweep(
     limit: float = _LIMIT,
     model: str = "full",
     quiet: bool = False,
+    force: float | None = None,
 ) -> dict[str, Summary]:
     """Run what has not been run yet, with a progress bar.
 
@@ -97,39 +110,47 @@ def sweep(
         limit: seconds of processor time for one scene.
         model: ``"full"`` or ``"smooth"``.
         quiet: whether to print nothing, and show no bar.
+        force: on the whole finger (N), as of :func:`fingerpad.runs.solve.run`.
 
     Returns:
         The summaries by name. That of a run that crashed, took too long, had too little memory or was asked to stop
         holds ``failure`` alone, and it goes on the next time; what it left is in its folder.
     """
-    found = {name: result(scene, folder) for name, scene in scenes.items()}
+    found = {name: result(scene, folder, force) for name, scene in scenes.items()}
     broken: dict[str, Summary] = {}
     took: list[float] = []  # s, of each run
 
     def job(name: str) -> End:
-        place = folder / key(scenes[name])
+        place = folder / key(scenes[name], force)
         place.mkdir(parents=True, exist_ok=True)
         with (place / "lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)  # another sweep may be at it
-            if result(scenes[name], folder) is not None:
+            if result(scenes[name], folder, force) is not None:
                 return End(0, "", "", "")
             (place / "summary.json").unlink(missing_ok=True)  # of a run that says nothing of this one
             (place / "asked.json").write_text(json.dumps(scenes[name].parameters(), indent=1), encoding="utf-8")
             start = time.monotonic()
-            end = run("fingerpad.runs.batch", [str(place / "asked.json"), str(place), str(limit), model], limit)
+            given = [
+                str(place / "asked.json"),
+                str(place),
+                str(limit),
+                model,
+                *([] if force is None else [repr(force)]),
+            ]
+            end = run("fingerpad.runs.batch", given, limit)
             took.append(time.monotonic() - start)
             return end
 
     def done(name: str, end: End, left: int) -> None:
-        summary = result(scenes[name], folder)
+        summary = result(scenes[name], folder, force)
         if summary is None:
             crashed = f"{end.reason}: {end.message}" if end.reason else "INTERRUPTED"
-            said = (_summary(scenes[name], folder) or {}).get("failure", "")
+            said = (_summary(folder / key(scenes[name], force)) or {}).get("failure", "")
             of_process = end.message if end.code == os.EX_TEMPFAIL else crashed
             broken[name] = {"failure": said if _OF_THE_MACHINE in said else of_process}
         if quiet:
             return
-        words = (summary or broken[name]).get("failure") or _said(summary or {})
+        words = (summary or broken[name]).get("failure") or _said(summary or {}, force)
         rest = f"; {between(*times_left(took, left, jobs))} left" if left and took else ""
         text = f"{name}: {words} ({len(missing) - left} of {len(missing)}{rest})"
         bar.console.print(text, highlight=False, markup=False, soft_wrap=True)
@@ -139,31 +160,30 @@ def sweep(
     with progress(quiet) as bar:
         task = bar.add_task("scenes", total=len(missing))
         Pool[str, End](job, jobs).run(missing, done)
-    return {name: result(scene, folder) or broken[name] for name, scene in scenes.items()}
+    return {name: result(scene, folder, force) or broken[name] for name, scene in scenes.items()}
 
 
-def _one(scene: Path, folder: Path, model: str) -> None:
-    from fingerpad.startup import MPI, start
+def _one(scene: Path, folder: Path, model: str, force: float | None) -> None:
+    from fingerpad.startup import start
 
     start()
     from fingerpad.io.checkpoint import CheckpointError
     from fingerpad.io.place import PlaceError
-    from fingerpad.runs.solve import kept, solved, tables_in, with_versions
+    from fingerpad.runs.solve import solved, tables_in
     from fingerpad.scene import SceneError, from_kept
 
     asked = from_kept(json.loads(scene.read_text(encoding="utf-8")))
-    try:
-        if model == "full":
-            try:
-                solved(asked, model, folder, lines=True, report=False, resume=True)
-            except CheckpointError:  # nothing to go on from
-                solved(asked, model, folder, lines=True, report=False)
-        else:
-            from fingerpad.io.provenance import provenance
-            from fingerpad.reduced import smooth
 
-            found = with_versions(smooth.solve(asked, tables_in(folder.parent), MPI.COMM_WORLD), provenance())
-            kept(found, folder, MPI.COMM_WORLD)
+    def solve(resume: bool) -> None:
+        tables = tables_in(folder.parent) if model == "smooth" else None  # of all points
+        path = model == "full"  # the others are listed by the sweep alone
+        solved(asked, model, folder, lines=path, bar=path, report=False, force=force, resume=resume, tables=tables)
+
+    try:
+        try:
+            solve(resume=model == "full" and force is None)
+        except CheckpointError:  # nothing to go on from
+            solve(resume=False)
     except PlaceError as error:  # another run is at it, or the disk is full: it may be gone the next time
         print(error, file=sys.stderr)
         sys.exit(os.EX_TEMPFAIL)
@@ -173,4 +193,4 @@ def _one(scene: Path, folder: Path, model: str) -> None:
 
 if __name__ == "__main__":
     limit_processor_time(float(sys.argv[3]))
-    _one(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[4])
+    _one(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[4], float(sys.argv[5]) if sys.argv[5:] else None)

@@ -119,6 +119,7 @@ def solved(
     report: bool = True,
     force: float | str | None = None,
     resume: bool = False,
+    tables: Path | None = None,
 ) -> Result:
     """Return what a model answers to a scene with all its laws; collective; arguments as of :func:`run`.
 
@@ -132,13 +133,14 @@ def solved(
         report: whether ``report.html`` is written beside the results.
         force: on the whole finger, as of :func:`run`.
         resume: whether the full model goes on from where a run in the folder was cut short.
+        tables: folder of the ridge's tables of the smooth finger; by default that of :func:`tables_in`.
     """
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     if force is None:
-        result = _solved(scene, model, out, comm, lines, bar, resume)
+        result = _solved(scene, model, out, comm, lines, bar, resume, tables=tables)
     else:
-        result = _whole(scene, force, model, out, comm, lines, bar)
+        result = _whole(scene, force, model, out, comm, lines, bar, tables)
     whole = not (result.interrupted and force is not None)  # a force without all of its traces is no result
     if report and whole and out is not None and _ranks(comm).rank == 0:
         from fingerpad.report.write import attempt, draw_footprint
@@ -170,7 +172,7 @@ def _solved(
         bar: whether to show a bar.
         resume: whether to go on.
         asked: of which the scene is a trace, see :class:`fingerpad.io.place.Place`.
-        tables: folder of the ridge's tables; by default that of :func:`tables_in`.
+        tables: as of :func:`solved`.
     """
     if model == "cylinders":
         from fingerpad.reduced import cylinders
@@ -201,7 +203,14 @@ def _solved(
 
 
 def _whole(
-    scene: Scene, force: float | str, model: str, out: Path | None, comm: "MPI.Comm | None", lines: bool, bar: bool
+    scene: Scene,
+    force: float | str,
+    model: str,
+    out: Path | None,
+    comm: "MPI.Comm | None",
+    lines: bool,
+    bar: bool,
+    tables: Path | None = None,
 ) -> Result:
     """Return the result of a force on the whole finger, its sums written beside the files of the last trace."""
     from fingerpad.slices import traces
@@ -211,7 +220,8 @@ def _whole(
     asked = {"force": value, "parameters": scene.parameters()}
     if model != "full":
         _refuse_other_results(scene, model, out, _ranks(comm), asked)
-    own, tables = out if model == "full" else None, tables_in(out) if model == "smooth" else None
+    own = out if model == "full" else None
+    tables = tables or (tables_in(out) if model == "smooth" else None)
     told = lines and model == "smooth" and terminal.rank() == 0
 
     def solve(each: Scene, name: str) -> Result:

@@ -18,8 +18,9 @@ from fingerpad.io.folder import check_folder
 from fingerpad.io.result import Result
 from fingerpad.model.check import check
 from fingerpad.report.write import attempt
-from fingerpad.runs import sweep_dataset
+from fingerpad.runs import over_force, sweep_dataset
 from fingerpad.runs.solve import MODELS, checked, solved
+from fingerpad.runs.sweep_columns import FORCE
 from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import clip, show
@@ -52,7 +53,10 @@ def sweep(
         jobs: points that are run at a time.
         model: as of :func:`fingerpad.runs.solve.run`.
         quiet: whether to print no line for each point, and show no progress bar.
-        **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``.
+        **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``. An axis ``force``
+            is of external forces on the whole finger, in N or as texts with units, in place of ``f_ext``: see
+            ``force`` of :func:`fingerpad.runs.solve.run`. The other axes' scenes are run once, to the largest force,
+            and each result's ``finger`` is under its own force; tables and arrays are then of the whole finger.
 
     Raises:
         SceneError: a key or a value that a scene cannot have, no values, a scene with laws of its own, which other
@@ -69,15 +73,21 @@ def sweep(
         raise SceneError(f"out is {show(out)}; it must be the path of a folder")
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
-    scenes = _scenes(scene, axes)
-    values = _values(scenes, axes)
+    _refuse_axes(scene, axes)
+    of_scene = {key: values for key, values in axes.items() if key != FORCE}
+    scenes = [_with(scene, point) for point in _points(of_scene)]
+    values = _values(scenes, of_scene)
+    forces = over_force.forces(axes, scenes)
     folder = Path(out)
     _claim(folder)
+    largest = max(forces, default=None)
     if model == "cylinders":
-        found = [_closed(each) for each in scenes]
+        found = [_closed(each, largest) for each in scenes]
     else:
-        points = [dict(zip(values, point, strict=True)) for point in itertools.product(*values.values())]
-        found = _in_processes(scenes, points, folder, jobs, model, quiet)
+        found = _in_processes(scenes, _points(values), folder, jobs, model, quiet, largest)
+    if forces:
+        values = {key: values.get(key, forces) for key in axes}
+        found = over_force.at_each(found, values)
     done = Sweep(values, tuple(found), folder)
     for name in FILES[1:]:  # else that of an earlier sweep may stay beside this one's table
         (folder / name).unlink(missing_ok=True)
@@ -108,8 +118,13 @@ def _claim(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
 
 
-def _scenes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> list[Scene]:
-    """Return the scenes of all points, checked."""
+def _points(axes: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
+    """Return the values of each point by key, the last axis fastest."""
+    return [dict(zip(axes, point, strict=True)) for point in itertools.product(*axes.values())]
+
+
+def _refuse_axes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> None:
+    """Refuse a sweep over what cannot be one."""
     if not axes:
         raise SceneError("the sweep has no axis; give values of at least one key, such as voltage=[0, 100, 200]")
     for key, values in axes.items():
@@ -129,7 +144,6 @@ def _scenes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> list[Scene]:
     count = int(np.prod([len(values) for values in axes.values()]))
     if count > _MOST:
         raise SceneError(f"the sweep has {count} points; at most {_MOST} are allowed")
-    return [_with(scene, dict(zip(axes, point, strict=True))) for point in itertools.product(*axes.values())]
 
 
 def _values(scenes: Sequence[Scene], axes: Mapping[str, Sequence[Any]]) -> dict[str, tuple[Any, ...]]:
@@ -162,15 +176,21 @@ def _at(scene: Scene, key: str) -> Any:
     return value
 
 
-def _closed(scene: Scene) -> Result:
+def _closed(scene: Scene, force: float | None) -> Result:
     try:
-        return solved(scene, "cylinders")
+        return solved(scene, "cylinders", force=force)
     except SceneError as error:
         return Result(scene, "cylinders", None, None, None, failure=str(error))
 
 
 def _in_processes(
-    scenes: Sequence[Scene], points: Sequence[Mapping[str, Any]], folder: Path, jobs: int, model: str, quiet: bool
+    scenes: Sequence[Scene],
+    points: Sequence[Mapping[str, Any]],
+    folder: Path,
+    jobs: int,
+    model: str,
+    quiet: bool,
+    force: float | None,
 ) -> list[Result]:
     """Return the results of scenes, those that can be run in processes of their own, kept by their parameters."""
     from fingerpad.runs import batch
@@ -179,17 +199,19 @@ def _in_processes(
     refused, named = {}, {}
     for scene, point in zip(scenes, points, strict=True):
         words = ", ".join(f"{key} {show(value)}" for key, value in point.items())
+        words += "" if force is None else f"{', ' if words else ''}to {force:g} N"
+        key = batch.key(scene, force)
         try:
             check(scene)
-            named[f"{words} ({batch.key(scene)})"] = scene
+            named[f"{words} ({key})"] = scene
         except SceneError as error:
-            refused[batch.key(scene)] = Result(scene, model, None, None, None, failure=str(error))
-    found = batch.sweep(named, place, jobs, _LIMIT, model, quiet)
+            refused[key] = Result(scene, model, None, None, None, failure=str(error))
+    found = batch.sweep(named, place, jobs, _LIMIT, model, quiet, force)
     results = dict(refused)
     for name, scene in named.items():
-        summary, key = found[name], batch.key(scene)
+        summary, key = found[name], batch.key(scene, force)
         if set(summary) == {"failure"}:
             results[key] = Result(scene, model, None, None, None, failure=summary["failure"])
         else:
             results[key] = Result.load(place / key)
-    return [results[batch.key(scene)] for scene in scenes]
+    return [results[batch.key(scene, force)] for scene in scenes]

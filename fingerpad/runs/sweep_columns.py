@@ -2,7 +2,7 @@
 
 A load over time, such as a drive waveform, has no named state: ``load_NAME_mu_app_max`` is the largest coefficient in
 it, ``load_NAME_f_t_amplitude`` the largest amplitude in the spectrum of friction and ``load_NAME_f_t_frequency`` the
-frequency of that.
+frequency of that. A sweep over the force in newtons has columns of the whole finger alone.
 """
 
 import math
@@ -10,22 +10,34 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from fingerpad.io.quantities import QUANTITIES, cell
+from fingerpad.io.quantities import QUANTITIES, Quantity, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import PREFIXES, STATES, LoadResult
+from fingerpad.slices.finger import QUANTITIES as OF_FINGER
 from fingerpad.slices.finger import WholeFinger
 
 SHOWN = ("mu_app", "f_t", "contact_length", "f_electrostatic", "ridges_in_contact")
 """Quantities of a named state."""
 LOAD = "load"
 """Beginning of the columns of a load over time."""
-_NEWTONS = ("f_ext", "f_t", "mu_app", "f_electrostatic", "contact_area")
+FORCE = "force"
+"""Axis of the force on the whole finger (N), which is no key of a scene."""
+_WHOLE = ("mu_app", "f_t", "f_electrostatic", "contact_area", "gross_area")
+_FRICTION = ("mu_app", "f_t")  # at full slip alone
+_NEWTONS = ("f_ext", *_WHOLE, "indentation")
 _IN_TIME = ("mu_app", "f_t", "contact_length")
 _ENDS = {"min": "least", "max": "largest", "mean": "mean"}
 
 
-def row(result: Result) -> dict[str, Any]:
-    """Return the values of a point in SI units by column, and its failure."""
+def row(result: Result, whole: bool = False) -> dict[str, Any]:
+    """Return the values of a point in SI units by column, and its failure.
+
+    Args:
+        result: of the point.
+        whole: whether it is one of several forces in newtons of a run, whose cross-section is of none of them.
+    """
+    if whole:
+        return (_newtons(result.finger) if result.finger is not None else {}) | {"failure": result.failure}
     values = result.values()
     names = [f"{PREFIXES[state]}_{key}" for state in STATES for key in SHOWN]
     cells = {key: values.get(key) for name in names for key in (name, f"{name}_error") if key in values}
@@ -41,9 +53,9 @@ def _newtons(finger: WholeFinger) -> dict[str, float]:
     for state in finger.states:
         values, error = finger.values(state), finger.error.get(state, {})
         for key in _NEWTONS:
-            if key in ("mu_app", "f_t") and state != "full_slip":
+            if key in _FRICTION and state != "full_slip":
                 continue
-            name = f"{PREFIXES[state]}_finger_{key}"
+            name = _of_finger(state, key)
             found |= {name: values[key]} | ({f"{name}_error": error[key]} if key in error else {})
     return found
 
@@ -62,6 +74,29 @@ def _in_time(load: LoadResult) -> dict[str, float]:
         name = f"{LOAD}_{load.name}_f_t"
         found |= {f"{name}_amplitude": most, f"{name}_frequency": frequency}
     return found
+
+
+def shown(columns: Iterable[str], whole: bool) -> tuple[str, dict[str, Quantity]]:
+    """Return a named state, and the columns of it that a table shows.
+
+    Args:
+        columns: of the sweep.
+        whole: whether it is over the force in newtons.
+
+    Returns:
+        Full slip. Without friction a whole finger has none, and it is the last state before.
+    """
+    if not whole:
+        return "full_slip", {f"{PREFIXES['full_slip']}_{key}": QUANTITIES[key] for key in SHOWN}
+    there = set(columns)
+    state = next((name for name in reversed(STATES) if _of_finger(name, "contact_area") in there), "full_slip")
+    keys = [key for key in _WHOLE if state == "full_slip" or key not in _FRICTION]
+    return state, {_of_finger(state, key): OF_FINGER[key] for key in keys}
+
+
+def _of_finger(state: str, key: str) -> str:
+    """Return the column of a quantity of the whole finger."""
+    return f"{PREFIXES[state]}_finger_{key}"
 
 
 def newtons_of(result: Result) -> str:
@@ -88,10 +123,18 @@ def in_time(name: str, columns: Iterable[str]) -> dict[str, str]:
     friction = "mu_app" if f"{LOAD}_{name}_mu_app_mean" in there else "f_t"
     for key in (friction, "contact_length"):
         quantity = QUANTITIES[key]
-        short, unit = quantity.words.split()[-1], f" ({quantity.unit})" if quantity.unit else ""
-        words |= {f"{key}_{end}": f"{said} {short}{unit}" for end, said in _ENDS.items()}
+        words |= {f"{key}_{end}": f"{said} {head(quantity)}" for end, said in _ENDS.items()}
     words |= {"f_t_amplitude": "amplitude of f_T (N/m)", "f_t_frequency": "at (Hz)"}
     return {column: said for key, said in words.items() if (column := f"{LOAD}_{name}_{key}") in there}
+
+
+def head(quantity: Quantity) -> str:
+    """Return the symbol of a quantity, or its words where it has none, with the unit."""
+    *_, last = quantity.words.split()
+    name = (
+        last if len(last) == 1 or "_" in last else "ridges" if quantity.words.startswith("ridges") else quantity.words
+    )
+    return f"{name} ({quantity.unit})" if quantity.unit else name
 
 
 def text(column: str, value: float | None) -> str:

@@ -11,7 +11,9 @@ from fingerpad.io import dataset
 from fingerpad.io.load_variables import loads
 from fingerpad.io.states import STATES
 from fingerpad.io.variables import Variables
+from fingerpad.runs.sweep_columns import FORCE
 from fingerpad.scene.keys import Key, every
+from fingerpad.slices.force import NEWTONS
 
 if TYPE_CHECKING:
     import xarray
@@ -31,7 +33,8 @@ def of_sweep(sweep: "Sweep") -> "xarray.Dataset":
     Returns:
         The named states of every point along the swept keys and ``state``, as in the dataset of a run; likewise its
         loads, its sums over the whole finger and its sites in the named states, where a point has them; its failure and
-        cost. The attributes are the parameters that all points share. SI units.
+        cost. The attributes are the parameters that all points share. SI units. A sweep over the force in newtons has
+        sums over the whole finger alone, since its points share cross-sections.
 
     Raises:
         ImportError: xarray is not installed.
@@ -43,10 +46,10 @@ def of_sweep(sweep: "Sweep") -> "xarray.Dataset":
     points = [dataset.states(result.named) for result in sweep.results]
     found: Variables = {"state": points[0].pop("state")}
     for name, (dims, _, about) in points[0].items():
-        if name != "state":
+        if name != "state" and not sweep.whole:
             values = np.stack([point[name][1] for point in points])
             found[name] = (*axes, *dims), values.reshape(*shape, *values.shape[1:]), about
-    found |= _more([_of_point(result) for result in sweep.results], axes, shape)
+    found |= _more([_of_point(result, sweep.whole) for result in sweep.results], axes, shape)
     failures = np.array([result.failure for result in sweep.results], object).reshape(shape)
     found["failure"] = axes, failures, {"units": "1", "long_name": "reason of a failure, empty without one"}
     for name, words in (("wall_seconds", "elapsed time"), ("processor_seconds", "processor time of all ranks")):
@@ -61,9 +64,11 @@ def of_sweep(sweep: "Sweep") -> "xarray.Dataset":
     return xarray.Dataset(data, coords, _shared(sweep))
 
 
-def _of_point(result: "Result") -> Variables:
-    """Return the loads, newtons and sites of a point."""
+def _of_point(result: "Result", whole: bool) -> Variables:
+    """Return the newtons of a point; its loads and sites too, where they are of it alone."""
     sums = {name: each for name, each in dataset.finger(result.finger).items() if "slice" not in each[0]}
+    if whole:
+        return sums
     return (loads(result) if result.loads else {}) | sums | dataset.sites(result)
 
 
@@ -101,7 +106,9 @@ def _places(mine: Any, labels: Sequence[Any]) -> list[int]:
 
 
 def described(key: str) -> Key | None:
-    """Return what is known of a dotted key of a scene, None of a table."""
+    """Return what is known of a dotted key of a scene, or of the force on the whole finger; None of a table."""
+    if key == FORCE:
+        return Key(FORCE, "N", None, f"{NEWTONS.low:g} to {NEWTONS.high:g} N", "external force on the whole finger")
     return next((each for each in every() if each.name == re.sub(r"\[\d+\]", "[]", key)), None)
 
 

@@ -2,6 +2,7 @@
 
 import csv
 import itertools
+import math
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -13,11 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.io.files import replace
-from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
+from fingerpad.io.quantities import PER_LENGTH, QUANTITIES
 from fingerpad.io.result import Result
-from fingerpad.io.states import STATES
+from fingerpad.io.states import STATES, WORDS
 from fingerpad.runs import sweep_dataset
-from fingerpad.runs.sweep_columns import SHOWN, newtons_of, printed, row, tables
+from fingerpad.runs.sweep_columns import FORCE, head, newtons_of, printed, row, shown, tables
+from fingerpad.slices.finger import MODEL_ERROR
+from fingerpad.slices.finger import QUANTITIES as OF_FINGER
 from variational.state import CONDITIONS, RESULTS
 
 if TYPE_CHECKING:
@@ -53,6 +56,11 @@ class Sweep:
         """Return a result by its place."""
         return self.results[k]
 
+    @property
+    def whole(self) -> bool:
+        """Whether the sweep is over the force on the whole finger; its results have their ``finger`` under it."""
+        return FORCE in self.axes
+
     def points(self) -> list[dict[str, Any]]:
         """Return the values of the axes at each point, in order."""
         return [dict(zip(self.axes, values, strict=True)) for values in itertools.product(*self.axes.values())]
@@ -61,7 +69,8 @@ class Sweep:
         """Return a quantity of a named state over the grid, NaN where it is not known.
 
         Args:
-            quantity: a name of :class:`variational.state.ContactState`, such as ``"mu_app"``.
+            quantity: a name of :class:`variational.state.ContactState`, such as ``"mu_app"``; of a sweep over the force
+                in newtons a name of :data:`fingerpad.slices.finger.QUANTITIES`, such as ``"f_t"`` in N.
             state: a name of :data:`fingerpad.io.states.STATES`.
 
         Returns:
@@ -72,15 +81,20 @@ class Sweep:
         """
         if state not in STATES:
             raise ValueError(f"state is {state!r}; it must be one of {', '.join(STATES)}")
-        if quantity not in (*CONDITIONS[2:], *RESULTS):
-            raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join((*CONDITIONS[2:], *RESULTS))}")
-        found = [result.named.get(state) for result in self.results]
-        values = [np.nan if each is None else float(getattr(each, quantity)) for each in found]
+        known = tuple(OF_FINGER) if self.whole else (*CONDITIONS[2:], *RESULTS)
+        if quantity not in known:
+            raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join(known)}")
+        if self.whole:
+            fingers = [result.finger for result in self.results]
+            values = [np.nan if f is None or state not in f.states else f.values(state)[quantity] for f in fingers]
+        else:
+            found = [result.named.get(state) for result in self.results]
+            values = [np.nan if each is None else float(getattr(each, quantity)) for each in found]
         return np.array(values).reshape([len(values) for values in self.axes.values()])
 
     def rows(self) -> list[dict[str, Any]]:
         """Return a flat row for each point in SI units: axes, :mod:`~fingerpad.runs.sweep_columns`, and failure."""
-        return [point | row(result) for point, result in zip(self.points(), self.results, strict=True)]
+        return [point | row(result, self.whole) for point, result in zip(self.points(), self.results, strict=True)]
 
     def cautions(self) -> list[str]:
         """Return why numbers may be further off than their errors say, each with how many points it is of.
@@ -119,22 +133,24 @@ class Sweep:
 
         The last column is friction of the whole finger, where it is known.
         """
-        axes = {key: _head(key) for key in self.axes}
-        newtons = any(result.finger is not None for result in self.results)
-        heads = [*axes.values(), *(_head(key) for key in SHOWN), *(["F_T (N)"] if newtons else [])]
-        table = [heads]
-        for values, result in zip(self.points(), self.results, strict=True):
-            first = [printed(value) for value in values.values()]
-            state = result.full_slip
-            if state is None:
-                table.append([*first, result.failure or "no full slip"])
+        rows, axes = self.rows(), {key: _head(key) for key in self.axes}
+        state, columns = shown((column for each in rows for column in each), self.whole)
+        newtons = not self.whole and any(result.finger is not None for result in self.results)
+        table = [[*axes.values(), *map(head, columns.values()), *(["F_T (N)"] if newtons else [])]]
+        for each, result in zip(rows, self.results, strict=True):
+            first = [printed(each[key]) for key in axes]
+            values = {column: each.get(column) for column in columns}
+            if not any(values.values()):
+                table.append([*first, result.failure or f"no {WORDS[state]}"])
                 continue
-            cells = [cell(key, getattr(state, key), getattr(state.error, key, np.nan)) for key in SHOWN]
+            errors = {column: each.get(f"{column}_error") for column in columns}
+            cells = [of.shown(_number(values[column]), _number(errors[column])) for column, of in columns.items()]
             table.append([*first, *cells, *([newtons_of(result)] if newtons else [])])
-        lines = ["At full slip", *_aligned(table)]
-        for name, over_time in tables(self.rows(), axes):
+        lines = [f"{'Whole finger, at' if self.whole else 'At'} {WORDS[state]}", *_aligned(table)]
+        for name, over_time in tables(rows, axes):
             lines += [f"Over time, in the load {name}", *_aligned(over_time)]
-        return "\n".join([*lines, PER_LENGTH, *(f"! {caution}" for caution in self.cautions()), *self.notes])
+        unit = MODEL_ERROR if self.whole else PER_LENGTH
+        return "\n".join([*lines, unit, *(f"! {caution}" for caution in self.cautions()), *self.notes])
 
     __repr__ = __str__
 
@@ -159,10 +175,12 @@ class _Lines(list[str]):
         self.append(line)
 
 
+def _number(value: float | None) -> float:
+    return math.nan if value is None else value
+
+
 def _head(key: str) -> str:
-    if key not in QUANTITIES:
-        meant = sweep_dataset.described(key)
-        return key if meant is None or not meant.unit else f"{key} ({meant.unit})"
-    quantity = QUANTITIES[key]
-    unit = f" ({quantity.unit})" if quantity.unit else ""
-    return f"{quantity.words.split()[-1] if key != 'ridges_in_contact' else 'ridges'}{unit}"
+    if key in QUANTITIES:
+        return head(QUANTITIES[key])
+    meant = sweep_dataset.described(key)
+    return key if meant is None or not meant.unit else f"{key} ({meant.unit})"

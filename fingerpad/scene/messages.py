@@ -155,7 +155,10 @@ def _instead(root: type[BaseModel], loc: tuple[int | str, ...]) -> str:
     """Return what may have been meant by an unknown key: the nearest key of all tables, or those of its own."""
     table, name = key_of(loc[:-1]), str(loc[-1])
     if (table, name.lower()) == ("", "force"):
-        return "a force on the whole finger in newtons is asked of a run: fingerpad run --force, or fp.run(force=…)"
+        return (
+            "a force on the whole finger in newtons is asked of a run (fingerpad run --force, or fp.run(force=…)), or "
+            "swept (fingerpad sweep --over force=…)"
+        )
     own = list(getattr(_model_at(root, loc[:-1]), "model_fields", ()))
     wanted = clip(name, _MOST_KEY).lower().replace("-", "_")
     keys = [(table, key, _NEAR) for key in own]

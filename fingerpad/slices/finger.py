@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from fingerpad.io.quantities import Quantity
 from fingerpad.io.states import STATES, WORDS, called
-from fingerpad.richardson import plus_minus
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.slices import Slices
 from fingerpad.slices import AREA_ERROR_AT_FORCE, FORCE_ERROR
@@ -18,16 +18,17 @@ from fingerpad.slices.total import Total, at_force
 from fingerpad.slices.trace import NAMES, Trace
 from variational.state import ContactState
 
-_SHOWN = {  # words, unit, factor from SI, digits without an error
-    "f_ext": ("external force F_ext", "N", 1.0, 4),
-    "mu_app": ("apparent friction µ_app", "", 1.0, 4),
-    "f_t": ("friction force F_T", "N", 1.0, 4),
-    "f_electrostatic": ("attraction F_el", "N", 1.0, 4),
-    "gross_area": ("gross area", "mm²", 1e6, 1),
-    "contact_area": ("ridge contact area", "mm²", 1e6, 2),
-    "indentation": ("indentation δ", "mm", 1e3, 3),
-    "effective_width": ("F_ext over f_ext of the centre", "mm", 1e3, 2),
+QUANTITIES = {
+    "f_ext": Quantity("external force F_ext", "N", 1.0, 4),
+    "mu_app": Quantity("apparent friction µ_app", "", 1.0, 4),
+    "f_t": Quantity("friction force F_T", "N", 1.0, 4),
+    "f_electrostatic": Quantity("attraction F_el", "N", 1.0, 4),
+    "gross_area": Quantity("gross area", "mm²", 1e6, 1),
+    "contact_area": Quantity("ridge contact area", "mm²", 1e6, 2),
+    "indentation": Quantity("indentation δ", "mm", 1e3, 3),
+    "effective_width": Quantity("F_ext over f_ext of the centre", "mm", 1e3, 2),
 }
+"""The quantities of a whole finger, as they are printed."""
 _ROUNDOFF = 1e-9
 _FRICTION = "mu_app", "f_t"  # shown at full slip alone
 _OF_SECTION = {  # whose relative error each has; the external force is prescribed
@@ -89,7 +90,8 @@ class WholeFinger:
             if total.centre < first * (1 - _ROUNDOFF):
                 raise SceneError(
                     f"the force is {value:.4g} N, under which the centre of the finger bears {total.centre:.3g} N/m, "
-                    f"and its trace in {WORDS[name]} begins at {first:.3g} N/m; give a larger force"
+                    f"and its trace in {WORDS[name]} begins at {first:.3g} N/m; "
+                    "give a larger force, or run this one by itself"
                 )
         found = replace(self, states=states)
         scaled = {
@@ -139,18 +141,15 @@ class WholeFinger:
 
     def rows(self) -> Iterator[list[str]]:
         """Yield the quantities with unit, and their values in each state with the discretisation error."""
-        for key, (words, unit, *_) in _SHOWN.items():
+        for key, quantity in QUANTITIES.items():
             known = [name for name in self.states if key not in _FRICTION or name == "full_slip"]
             cells = [self.shown(name, key) if name in known else "–" for name in self.states]
             if set(cells) - {"–"}:
-                yield [f"{words} ({unit})" if unit else words, *cells]
+                yield [quantity.title, *cells]
 
     def shown(self, name: str, key: str) -> str:
         """Return a quantity of a state in the unit of tables, with its error where the error reaches the digits."""
-        *_, scale, digits = _SHOWN[key]
-        value, error = self.values(name)[key] * scale, self.error.get(name, {}).get(key, math.nan) * scale
-        large = not math.isnan(error) and error >= 0.5 * 10.0**-digits
-        return plus_minus(value, error) if large else f"{value:z.{digits}f}"
+        return QUANTITIES[key].shown(self.values(name)[key], self.error.get(name, {}).get(key, math.nan))
 
     def heads(self) -> list[str]:
         """Return the words of the states."""

@@ -63,7 +63,7 @@ def whole(scene: Scene, force: float, model: str, solve: "Solve") -> Result:
 
     A trace that was interrupted is returned as the result, without the whole finger.
     """
-    _refuse(scene)
+    refuse(scene)
     finger = profile(scene.slices)
     finger.lowest()
     reach = _Reach(scene, finger, force, model, solve)
@@ -103,7 +103,12 @@ def scenes(scene: Scene) -> int:
     return FORCES * len(list(_wanted(scene))) + 1
 
 
-def _refuse(scene: Scene) -> None:
+def refuse(scene: Scene) -> None:
+    """Refuse a scene that has no traces.
+
+    Raises:
+        SceneError: a history, or a mesh of its own.
+    """
     if scene.history is not None:
         raise SceneError(
             "history is given; a force in N is that of press, charge and slide alone, so give voltage instead"
