@@ -214,6 +214,20 @@ def test_twice_the_samples():
     assert once.mean["f_t"] == pytest.approx(twice.mean["f_t"], abs=1e-2 * largest)
 
 
+@pytest.mark.mpi
+def test_square_of_a_file_is_the_square():
+    """Given by its corners alone: mean and amplitudes up to the time that its jumps take."""
+    jump = 1e-6 / 60
+    table = {"waveform": "file", "times": [0.0, 0.5 / 60, 0.5 / 60 + jump, 1 / 60], "voltages": [80.0, 80.0, 0.0, 0.0]}
+    square = {"waveform": "square", "amplitude": 40.0, "offset": 40.0, "frequency": 60.0}
+    given, same_one = (
+        result(PRESS, SLIDE, BY | {"voltage": voltage}).loads[2].over_time for voltage in (table, square)
+    )
+    assert given.mean["f_t"] == pytest.approx(same_one.mean["f_t"], rel=1e-4)
+    largest = max(same_one.f_t_amplitude)
+    assert given.f_t_amplitude[:6] == pytest.approx(same_one.f_t_amplitude[:6], abs=1e-3 * largest)
+
+
 # -- results -------------------------------------------------------------------------------------------
 def result(*loads: dict, out: Path | None = None, **more) -> Result:
     return full.run(scene(*loads, **more), out, MPI.COMM_WORLD, lines=False, bar=False)

@@ -7,8 +7,10 @@ Time starts with the load. The model is quasi-static: the frequency only sets ho
 Turning points, jumps and zeros are always among the samples. A period has 24 of them: friction has twice the frequency
 of the voltage, so that 12 are in each of its periods and 6 in each of its second harmonic's. The attraction goes with
 the square of the voltage; that of a sine is off straight lines between the samples by 1.7 % of the peak at most. A
-table's pieces are cut as short. States between two samples, where a step must be shorter, are at the waveform's own
-voltage. Fewer or more samples follow from ``numerics.step_scale``, as for all steps.
+table's pieces are cut where the voltage changes by as much as between two samples of a sine. A piece behind a sudden
+change of the voltage, and the first one, has the 12 samples of half a square's period: there friction goes on to
+change at a constant voltage, as the finger slides. States between two samples, where a step must be shorter, are at the
+waveform's own voltage. Fewer or more samples follow from ``numerics.step_scale``, as for all steps.
 """
 
 import csv
@@ -32,6 +34,10 @@ MOST = 10_000
 _POINTS = 2000  # most points of a file
 _HIGHEST = 5e3  # V
 _NEAR = 1e-9  # of a period: two times that are one
+_SUDDEN, _OWN = (
+    0.05,
+    0.5,
+)  # of the peak, and of a piece's own change: what one sample before it cuts the piece if larger
 _NOTHING = 1e-12  # of the peak: a voltage that is roundoff of zero
 _TIME, _VOLTAGE = "time (s)", "voltage (V)"
 Sample = tuple[float, float]
@@ -184,7 +190,7 @@ class Waveform(Part):
     def _points(self, n: int) -> Iterator[tuple[float, ...]]:
         """Yield a time and the voltage there, before and after a jump, without end but for a file."""
         if self.times is not None and self.voltages is not None:
-            yield from _refined(self.times, self.voltages, 2 * math.pi / n * self.peak)
+            yield from _refined(self.times, self.voltages, 2 * math.pi / n * self.peak, n // 2)
             return
         one = self._one_period(n)
         for period in count():
@@ -225,18 +231,40 @@ def _triangle(quarters: float) -> float:
     return quarters if quarters < 1 else 2 - quarters if quarters < 3 else quarters - 4
 
 
-def _refined(times: tuple[float, ...], voltages: tuple[float, ...], most: float) -> Iterator[Sample]:
-    """Yield the points of a table, the zeros between them, and more where the voltage changes by more than ``most``."""
+def _refined(times: tuple[float, ...], voltages: tuple[float, ...], most: float, behind: int) -> Iterator[Sample]:
+    """Yield the points of a table, the zeros between them, and more within its pieces.
+
+    Args:
+        times: of the table (s).
+        voltages: of the table (V).
+        most: change of the voltage between two samples (V).
+        behind: samples of a piece behind a sudden change, and of the first piece.
+    """
+    least = _SUDDEN * max(map(abs, voltages))
     yield times[0], voltages[0]
     for k in range(1, len(times)):
         (t0, t1), (u0, u1) = times[k - 1 : k + 1], voltages[k - 1 : k + 1]
+        before = _change_before(times, voltages, k - 1, (t1 - t0) / behind)
+        even = behind if k == 1 or before > max(least, _OWN * abs(u1 - u0)) else 1
         crosses = u0 * u1 < 0
         ends = [(t0, u0), *([(t0 + (t1 - t0) * u0 / (u0 - u1), 0.0)] if crosses else []), (t1, u1)]
         for (a, ua), (b, ub) in zip(ends, ends[1:], strict=False):
-            pieces = max(math.ceil(abs(ub - ua) / most - _NEAR), 1) if most > 0 else 1
+            by_time = math.ceil(even * (b - a) / (t1 - t0) - _NEAR)
+            by_voltage = math.ceil(abs(ub - ua) / most - _NEAR) if most > 0 else 1
+            pieces = max(by_time, by_voltage, 1)
             for j in range(1, pieces):
                 yield a + (b - a) * j / pieces, ua + (ub - ua) * j / pieces
             yield b, ub
+
+
+def _change_before(times: tuple[float, ...], voltages: tuple[float, ...], k: int, seconds: float) -> float:
+    """Return by how much the voltage of a table changes in some seconds before its point k."""
+    first, seen = times[k] - seconds, [voltages[k]]
+    while k > 0 and times[k] > first:
+        k -= 1
+        part = min((times[k + 1] - first) / (times[k + 1] - times[k]), 1.0)
+        seen.append(voltages[k + 1] + part * (voltages[k] - voltages[k + 1]))
+    return max(seen) - min(seen)
 
 
 # -- files ---------------------------------------------------------------------------------------------
