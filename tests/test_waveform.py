@@ -95,6 +95,16 @@ def test_flat_parts_of_a_file_have_samples_behind_a_jump():
     assert len(wave(**sine).samples(1.0, 1.0)) <= SAMPLES + 1 + SAMPLES // 2
 
 
+def test_roundoff_in_a_table_is_zero(tmp_path):
+    """A sine by NumPy is not 0 at its zeros; a microvolt is refused all the same."""
+    values = [0.0, 100.0, 100 * math.sin(math.pi), -100.0, -2.4e-14]
+    assert wave(waveform="file", times=[0, 1, 2, 3, 4], voltages=values).voltages == (0, 100, 0, -100, 0)
+    (tmp_path / "mine.csv").write_text(TABLE + "0,1.2e-14\n1,5\n", encoding="utf-8")
+    assert wave(waveform="file", file=str(tmp_path / "mine.csv")).voltages == (0, 5)
+    with pytest.raises(SceneError, match=r"voltages\[1\] is 1e-06 V"):
+        wave(waveform="file", times=[0, 1], voltages=[5.0, 1e-6])
+
+
 # -- keys ----------------------------------------------------------------------------------------------
 def test_units_and_changes(write):
     """Units work within a load and a waveform, and so do changes of the command line."""

@@ -43,6 +43,15 @@ _TIME, _VOLTAGE = "time (s)", "voltage (V)"
 Sample = tuple[float, float]
 """Time (s) since the start of the load, and voltage (V)."""
 Volts = Annotated[Finite, within(1e-3, _HIGHEST, "V", zero=True, sides=2)]
+_ROUNDOFF = 1e-9  # V, in a table: a computed sine is not 0 at its zeros
+
+
+def _without_roundoff(value: Any) -> Any:
+    """Return a voltage of a table, and 0 for one that is roundoff."""
+    return 0.0 if isinstance(value, float) and abs(value) < _ROUNDOFF else value
+
+
+_Tabled = Annotated[Volts, BeforeValidator(_without_roundoff)]
 Seconds = Annotated[Finite, within(1e-9, 1e5, "s", zero=True)]
 # Behind a validator that reads a file, strict rules no longer take a list for a tuple.
 _LISTED = BeforeValidator(lambda value: tuple(value) if isinstance(value, list) else value)
@@ -65,8 +74,8 @@ class Waveform(Part):
     scene file. The times start at 0 and increase. The file is read at once: a scene stores only its points."""
     times: Annotated[tuple[Seconds, ...], _LISTED] | None = None
     """Times (s) of a file's points, or in place of a file."""
-    voltages: Annotated[tuple[Volts, ...], _LISTED] | None = None
-    """Voltages (V) at these times."""
+    voltages: Annotated[tuple[_Tabled, ...], _LISTED] | None = None
+    """Voltages (V) at these times; below 1e-9 V they are 0."""
 
     @model_validator(mode="before")
     @classmethod
@@ -298,6 +307,7 @@ def _table(file: str) -> dict[str, Any]:
                 value = math.nan
             if not math.isfinite(value):
                 raise ValueError(f"{name}, whose line {line} has {show(text)}; it must be a finite number")
+            value = _without_roundoff(value) if found is voltages else value
             if value not in allowed:
                 raise ValueError(f"{name}, whose line {line} has a number that {allowed.words(value)}")
             found.append(value)
