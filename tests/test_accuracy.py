@@ -195,6 +195,8 @@ def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
     assert state.penalty.contact_length == pytest.approx(-1e-5, rel=1e-9)
     assert found.summary()["quantities"]["slip_contact_length"]["penalty"] == state.penalty.contact_length
     assert state.error.contact_length == 0
+    one = with_errors(found, {"uncharged": contact(), "full_slip": contact()})
+    assert one["uncharged"].contact_length == contact().contact_length  # of another step: it stays that of the path
     assert "penalty: a rigid screen would change" in lines[-1]
     assert all("estimated discretisation error" in line for line in lines if "±" in line)
 

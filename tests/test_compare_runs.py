@@ -71,7 +71,8 @@ def test_whole_finger_is_compared(table):
     ]
     area = read(table("force (mN), voltage (V), gross area (mm^2), spread (mm^2)\n500, 100, 45, 50\n"))
     assert area.whole and area.conditions["f_ext"] == pytest.approx((0.5,)) and area.values == pytest.approx((4.5e-5,))
-    assert _Compared(area, ours.ours(runs, area)).ratio == pytest.approx([2.0])
+    power = np.log(1e-4 / 8e-5) / np.log(0.6 / 0.4)
+    assert _Compared(area, ours.ours(runs, area)).ratio == pytest.approx([8e-5 * 1.25**power / 4.5e-5])
     friction = read(table("force (N), friction (1)\n0.4, 0.25\n"))
     assert _Compared(friction, ours.ours(runs[:1], friction)).ratio == pytest.approx([2.0])
     with pytest.raises(SceneError, match="the run has no newtons"):

@@ -10,6 +10,8 @@ import pytest
 import ufl
 from mpi4py import MPI
 
+import fingerpad as fp
+from fingerpad.io.result import Result
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.reduced import cylinders
@@ -61,6 +63,24 @@ class Mine(Material):
 
 
 OWN = {"closure": Held(), "materials": {"dermis": Mine(2.5e3, 6e4)}, "friction": Saturating(0.4, 2e4)}
+
+
+# -- read from files -------------------------------------------------------------------------------------------
+def test_laws_of_a_read_scene_are_given_again_before_it_is_run(tmp_path):
+    """It was run with the laws of its keys, without a word. What is given takes the place of a name; the rest stays."""
+    kept = Scene().with_laws(**OWN).parameters()
+    scene = Result.from_dict({"parameters": kept, "f_ext": 75.0, "voltage": 200.0}).scene
+    assert scene.parameters() == kept and scene.replace(f_ext=10.0).parameters()["laws"] == kept["laws"]
+    words = r"laws of its own \(closure, friction, materials.dermis\), which its files do not hold"
+    for run in (
+        lambda s: fp.run(s, model="cylinders"),
+        lambda s: fp.sweep(s, tmp_path, model="cylinders", voltage=[1]),
+    ):
+        with pytest.raises(SceneError, match=words):
+            run(scene)
+    part = scene.with_laws(friction=0.3, closure=OWN["closure"])
+    assert part.friction == 0.3 and set(part.laws.kept) == {"materials"}
+    assert scene.with_laws(**OWN).parameters() == kept and not scene.with_laws(**OWN).laws.kept
 
 
 # -- in the scene ----------------------------------------------------------------------------------------------

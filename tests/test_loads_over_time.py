@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad.io.over_time import NOTE
+from fingerpad.io.over_time import NOTE, without_parts_of_jumps
 from fingerpad.io.result import Result
+from fingerpad.io.states import load_result
 from fingerpad.model.course import Course
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
@@ -171,6 +172,26 @@ def test_square_jumps_at_one_place():
         # The slip that a jump takes is over within the first samples of a plateau.
         plateau = [state.f_t for state in wave if state.voltage == voltage][-3:]
         assert plateau == pytest.approx([plateau[-1]] * 3, rel=1e-5)
+
+
+@pytest.mark.mpi
+def test_parts_of_a_jump_are_no_extremes():
+    """A large jump is done in parts, at voltages that a square never has; at its begin, too."""
+    square = {"waveform": "square", "amplitude": 80.0, "offset": 20.0, "frequency": 60.0}
+    states = [state for state in follow(PRESS, SLIDE, BY | {"voltage": square}) if state.load == "wave"]
+    own = [state for state in states if min(abs(state.voltage - u) for u in (100.0, -60.0)) < 1e-6]
+    assert len(own) < len(states)
+    assert without_parts_of_jumps(states, states[0].time) == own
+    least = load_result("wave", states, None, (), scene(PRESS, BY | {"voltage": square}).history[1].wave).extremes
+    assert least["f_electrostatic"].min == min(state.f_electrostatic for state in own)
+
+
+def test_first_load_over_time_begins_unloaded():
+    """As its mean does; a later one begins with the state before."""
+    press = {"name": "press", "bone_height": -20e-6, "duration": 1.0}
+    first, second = result(press, {"name": "more", "bone_height": -30e-6, "duration": 1.0}).loads
+    assert first.extremes["contact_length"].min == 0.0
+    assert second.extremes["contact_length"].min == first.end.contact_length
 
 
 def test_course_of_a_square():

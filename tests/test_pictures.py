@@ -199,6 +199,25 @@ def test_history(tmp_path, f_ext):
     assert sum(line.get_linestyle() == ":" for line in figure.axes[0].lines) == 2
 
 
+@pytest.mark.parametrize(("signs", "lines"), [([1], [0.25]), ([-1], [-0.25]), ([1, -1], [-0.25, 0.25])])
+def test_limit_without_attraction_has_the_sign_of_friction(signs, lines):
+    """A finger that slides to the left has a negative friction force."""
+    rows = steps(12 * [75.0])
+    turned = [row | {key: sign * row[key] for key in ("bone_x", "f_t", "mu_app")} for sign in signs for row in rows]
+    force = history(None, turned, TITLE, mu_0=0.25).axes[0]
+    dashed = {
+        line.get_ydata()[0] / 75.0 for line in force.lines if line.get_linestyle() == "--" and len(line.get_ydata())
+    }
+    assert sorted(dashed) == pytest.approx(lines)
+
+
+def test_mean_pressure_of_no_force_is_not_shown():
+    """A force that is roundoff of what the skin bears, as after unloading to no force."""
+    states = [replace(profile("full slip", 0.0, 1.0), f_ext=f_ext, contact_length=1e-3) for f_ext in (75.0, 1e-12)]
+    pressed, none = (surface(None, [state], TITLE).axes[0].get_title(loc="left") for state in states)
+    assert "f_{ext}/L_R" in pressed.replace("$", "") and "f_{ext}/L_R" not in none.replace("$", "")
+
+
 def test_history_shows_estimated_errors(tmp_path):
     """Full slip has an error bar in both panels, normal contact in that of the contact length; none without errors."""
     rows, error = steps(12 * [75.0]), Errors(f_t=1.0, contact_length=2e-5)

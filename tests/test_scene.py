@@ -132,6 +132,28 @@ def test_formulation(given, law):
     assert scenes.from_data(json.loads(json.dumps(scene.parameters()))).contact.law() == law
 
 
+def test_scene_of_a_run_s_folder_is_a_scene(tmp_path):
+    """With changes on top, as a scene in TOML; a run that was given more is refused, and so is other JSON."""
+    given = Scene(f_ext=20.0, accuracy={"mu_app": 0.02})
+    file = tmp_path / "scene.json"
+    file.write_text(json.dumps(given.parameters() | {"model": "smooth"}), encoding="utf-8")
+    assert Scene.load(file) == given and scenes.load(file, {"f_ext": "30 N/m"}) == given.replace(f_ext=30.0)
+    for data, words in (
+        (given.parameters() | {"laws": {"friction": {}}}, "is of a run with laws or a mesh of its own"),
+        (given.parameters() | {"trace": {"force": 0.5}}, "is of a run with a force on the whole finger"),
+        ({"f_ext": 5.0}, "is not the scene.json of a run; other scenes are in TOML"),
+        ([], "is not the scene.json of a run"),
+    ):
+        file.write_text(json.dumps(data), encoding="utf-8")
+        with pytest.raises(SceneError, match=words):
+            Scene.load(file)
+    file.write_text("{", encoding="utf-8")
+    with pytest.raises(SceneError, match="is not JSON"):
+        Scene.load(file)
+    with pytest.raises(SceneError, match="cannot be read: No such file"):
+        Scene.load(tmp_path / "other.json")
+
+
 def test_package_imports_nothing():
     code = "import sys; import fingerpad; sys.exit(any(m in sys.modules for m in ('numpy', 'pydantic', 'gmsh')))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -158,6 +158,12 @@ def test_run_has_newtons_for_nothing():
     assert again.states["full_slip"].totals == slip.totals, "sideways roundoff leaves no state of the press out"
 
 
+def test_estimate_by_another_law_has_the_friction_of_the_run():
+    """Its limit is per reference area, and the slices' forces are spread over current lengths."""
+    run = fp.run(small(f_ext=600.0, **SMALL), friction=fp.Derjaguin(0.1, 1e4))
+    assert run.finger.traces["full_slip"].columns["f_t"][-1] == pytest.approx(run.full_slip.f_t, rel=1e-12)
+
+
 def test_run_that_was_never_charged_has_one_normal_contact():
     """A run that ended before its voltage, and one at 0 V: one state, with one area, and no word of a charge."""
     whole = fp.run(small(**SMALL))

@@ -266,6 +266,8 @@ def with_errors(refinement: Refinement, path: Mapping[str, ContactState]) -> dic
             final = {key: getattr(kept.state, key) for key in (*RESULTS, "f_ext", "ridges", "mesh_contact")}
             parts = (errors_of(name, estimates), errors_of(name, refinement.penalty))
             found[name] = replace(found[name], **final, error=parts[0], penalty=parts[1])
+    if {"uncharged", "charged"} <= set(found) and path["uncharged"].step == path["charged"].step:  # at 0 V one state
+        found["uncharged"] = found["charged"]
     return found
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from fingerpad.io.result import Result
-from fingerpad.scene import SceneError, from_data
+from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.messages import clip, show
 
 _FREE = re.compile(
@@ -52,7 +52,7 @@ def folder(run: Result) -> str:
 def _conditions(run: Result) -> dict[str, Any]:
     """Return the model of a run and every key of its scene, and its laws."""
     kept = run.record.get("asked", run.record).get("parameters") or run.scene.parameters()
-    scene = from_data({key: value for key, value in kept.items() if key not in ("laws", "model")})
+    scene = as_kept(kept)
     return {"model": run.model} | scene.model_dump(mode="json") | {"laws": kept.get("laws", {})}
 
 

@@ -37,11 +37,16 @@ STEPS = {
     "slip_began": Column("1", "first step of the full slip that the state belongs to; 0 without full slip"),
     "slip_held": Column("1", "whether this full slip was held over a further 0.2 mm"),
     "penetration": Column("m", "largest depth of the skin in the screen"),
-    "imbalance": Column("1", "largest nodal force left, relative to f_ext"),
-    "floor": Column("1", "residual at which the last solve ended at roundoff, relative to f_ext; 0 if converged"),
+    "imbalance": Column(
+        "1", "largest nodal force left, relative to the largest f_ext of all loads, or to 1 N/m without one"
+    ),
+    "floor": Column("1", "residual at which the last solve ended at roundoff, on the same scale; 0 if converged"),
     "stored": Column("J/m", "stored energy per metre of finger"),
     "dissipation": Column("J/m", "energy dissipated by friction in the step per metre of finger"),
-    "energy_released": Column("J/m", "energy released by a jump per metre of finger"),
+    "energy_released": Column(
+        "J/m",
+        "energy released by a jump per metre of finger; in a step without a jump the error of the work's quadrature",
+    ),
     "released_error": Column("J/m", "error of the energy released by a jump"),
     "newton_iterations": Column("1", "Newton iterations of the step"),
     "factorisations": Column("1", "factorisations of the step"),
@@ -88,7 +93,9 @@ FINGER = {
     "gross_area": Column("m^2", "area between the outermost touching ridges of the slices"),
     "contact_area": Column("m^2", "area in contact, of the ridges"),
     "indentation": Column("m", "lowering of the bone at z = 0"),
-    "effective_width": Column("m", "external force of the finger over that of the slice that bears most"),
+    "effective_width": Column(
+        "m", "external force of the finger over that of its centre, the slice that touches first"
+    ),
 }
 SLICES = {
     "z": Column("m", "place of the slice along the finger"),

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from fingerpad.io import finger_picture, history_picture, skin_picture, time_picture, titles
+from fingerpad.io.over_time import without_parts_of_jumps
 from fingerpad.io.skin_picture import SurfaceProfile
 from fingerpad.io.states import PREFIXES, WORDS, before_sliding, called, named, partial_slip
 from fingerpad.io.views import Profile, View
@@ -128,7 +129,9 @@ class Drawing:
     def _timed(self) -> list[ContactState]:
         """Return the states from the last one at time 0 on; none where no load takes time."""
         first = sum(state.time == 0 for state in self.states)
-        return list(self.states[max(first - 1, 0) :]) if self.states and self.states[-1].time > 0 else []
+        if not (self.states and self.states[-1].time > 0):
+            return []
+        return without_parts_of_jumps(self.states[max(first - 1, 0) :])
 
     def _over_time(self, path: Path | None) -> Figure:
         states = self._timed()

@@ -15,6 +15,7 @@ from variational.state import ContactState
 
 Array = NDArray[np.float64]
 _MM = 1e3
+_RUBS = 1e-6  # of mu_0: a coefficient below is roundoff
 
 
 def history(
@@ -100,4 +101,5 @@ def _draw_apparent(ax: Axes, x: Array, f_ext: Array, mu_app: Array, mu_0: float 
     if mu_0 is not None:
         words = f"$\\mu_{{app}} = \\mu_0$ = {mu_0:.3g}: without attraction"
         ax.plot([], [], color="0.4", lw=1, ls="--", label=words)
-        other.axhline(mu_0 * load, color="0.4", lw=1, ls="--")
+        for sign in np.unique(np.sign(mu_app[np.abs(mu_app) > _RUBS * mu_0])) if mu_0 else ():
+            other.axhline(sign * mu_0 * load, color="0.4", lw=1, ls="--")

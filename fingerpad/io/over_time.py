@@ -106,6 +106,25 @@ def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime
     return OverTime(start, seconds, mean, periods, frequency, tuple(map(float, found)))
 
 
+def without_parts_of_jumps(states: Sequence[ContactState], start: float = -math.inf) -> list[ContactState]:
+    """Return states over time without those in which a jump of the voltage is done in part.
+
+    A jump takes no time. Where a solve reaches it in parts, these have voltages that the waveform never has.
+
+    Args:
+        states: in order, with their times.
+        start: time at which a load begins (s), of which they are; of a jump there only the state behind it counts.
+    """
+    near = _NEAR * (states[-1].time - states[0].time)
+    kept = list[ContactState]()
+    for k, state in enumerate(states):
+        begins = state.time <= start + near or k == 0 or state.time - states[k - 1].time > near
+        ends = k == len(states) - 1 or states[k + 1].time - state.time > near
+        if ends or (begins and state.time > start + near):
+            kept.append(state)
+    return kept
+
+
 def _change(time: Array, value: Array, mean: float) -> float:
     """Return what every second sample alone would change a mean by; of a single step half of its change."""
     few = sorted({*range(0, len(time), 2), len(time) - 1})

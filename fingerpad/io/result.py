@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from fingerpad.io import terminal
 from fingerpad.io.states import PREFIXES, STATES, LoadResult, load_results
-from fingerpad.scene import Scene, SceneError, from_data
+from fingerpad.scene import Scene, SceneError, as_kept
 from fingerpad.scene.laws import coefficient
 from fingerpad.scene.messages import clip
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
@@ -183,7 +183,7 @@ class Result:
             SceneError: its parameters are no valid scene.
         """
         parameters = summary["parameters"]
-        scene = from_data({key: value for key, value in parameters.items() if key not in ("laws", "model")})
+        scene = as_kept(parameters)
         cost = Cost(**{f.name: summary.get(f.name, f.default) for f in fields(Cost)})
         used = {f.name for f in fields(Cost)} | {"parameters", "states", "loads", "failure", "interrupted", "notes"}
         used |= {"cautions", "model", "f_ext", "voltage", "full_slip", "finger"}

@@ -56,6 +56,10 @@ def _remarks(result: Result) -> list[str]:
         found.append(f"Full slip was {'not held over a further 0.2 mm' if reached else 'not reached'}.")
     if any(state.error.known() for state in result.named.values()):
         found.append("±: estimated discretisation error, of the mesh alone.")
+    sizes = {name: state.mesh_contact for name, state in result.named.items() if not math.isnan(state.mesh_contact)}
+    if len(set(sizes.values())) > 1:  # with an accuracy
+        each = (f"{1e6 * size:.3g} µm ({called(name, result.named[name].voltage)})" for name, size in sizes.items())
+        found.append(f"Facets of {', '.join(each)}: differences between these states have the errors of both meshes.")
     share = math.nan if result.full_slip is None else result.full_slip.penalty.contact_length
     if not math.isnan(share):
         found.append(f"Penalty: a rigid screen would change the contact length at full slip by {1e3 * share:+.2g} mm.")

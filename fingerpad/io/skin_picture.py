@@ -19,6 +19,7 @@ from fingerpad.io import style, titles
 Array = NDArray[np.float64]
 _MM, _UM, _KPA = 1e3, 1e6, 1e-3
 _NEAR = 4  # points: the span of a saw tooth to either side
+_NOTHING = 1e-9  # of the contact force: an external force below is roundoff
 _COARSE = 0.1  # of the peak: deeper saw teeth are noted; 7 % at the default contact size
 
 
@@ -107,7 +108,7 @@ def saw_teeth(p: Array) -> float:
 def _surface_title(letter: str, state: SurfaceProfile) -> str:
     words = f"{letter}  {titles.plain(state.title)}: {titles.loads([(state.f_ext, state.voltage, state.bone_x)])}"
     words += f", $L_R$ = {_MM * state.contact_length:.3g} mm"
-    if state.contact_length > 0:
+    if _pressed(state):
         words += f", $f_{{ext}}/L_R$ = {_KPA * state.f_ext / state.contact_length:.3g} kPa"
     teeth = saw_teeth(state.p)
     coarse = (
@@ -115,6 +116,11 @@ def _surface_title(letter: str, state: SurfaceProfile) -> str:
     )
     notes = "; ".join(filter(None, (state.note, coarse)))
     return f"{words}\n     {notes}" if notes else words
+
+
+def _pressed(s: SurfaceProfile) -> bool:
+    """Return whether an external force presses the skin, beyond roundoff of what the skin bears."""
+    return s.contact_length > 0 and s.f_ext > _NOTHING * float(np.nanmax(s.p)) * s.contact_length
 
 
 def _common_range(states: Sequence[SurfaceProfile]) -> tuple[float, float]:
@@ -134,7 +140,7 @@ def _draw_stresses(ax: Axes, s: SurfaceProfile) -> None:
     for number in np.unique(s.ridge[s.p > 0]):
         where = x[(s.ridge == number) & (s.p > 0)].mean()
         ax.text(where, 0.97, f"{number:.0f}", transform=ax.get_xaxis_transform(), ha="center", va="top", fontsize=8)
-    if s.contact_length > 0 and s.f_ext > 0:
+    if _pressed(s):
         mean = _KPA * s.f_ext / s.contact_length
         there_and_back: Any = (lambda stress: stress / mean, lambda ratio: ratio * mean)
         ax.secondary_yaxis("right", functions=there_and_back).set_ylabel("stress / $(f_{ext}/L_R)$ (–)")

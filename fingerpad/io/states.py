@@ -16,7 +16,7 @@ from itertools import groupby
 from operator import attrgetter
 from typing import Any
 
-from fingerpad.io.over_time import QUANTITIES, OverTime, over_time
+from fingerpad.io.over_time import QUANTITIES, OverTime, over_time, without_parts_of_jumps
 from fingerpad.scene import Load
 from fingerpad.scene.waveform import Waveform
 from variational.state import CONDITIONS, RESULTS, ContactState
@@ -220,11 +220,12 @@ def load_result(
     begin = [] if wave is not None else before or ([_UNLOADED] if mine[0].time > 0 else [])
     passed = over_time([*begin, *mine], wave)
     own = [state for state in mine if _counts(state, name)] or mine
-    counted = own if passed is None or wave is not None else [*before, *own]
+    if passed is not None:
+        own = without_parts_of_jumps(own, passed.start) if wave is not None else [*begin, *own]
     extremes = {}
     for quantity in QUANTITIES:
         of = attrgetter(quantity)
-        known = [state for state in counted if not math.isnan(of(state))]
+        known = [state for state in own if not math.isnan(of(state))]
         if not known:
             continue
         least, most = min(known, key=of), max(known, key=of)

@@ -9,7 +9,7 @@ from typing import Any
 from fingerpad.io.place import TRACE
 from fingerpad.io.result import Result
 from fingerpad.io.states import load_results, named
-from fingerpad.scene import SceneError, from_data
+from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.messages import clip
 from variational.state import ContactState
 
@@ -61,7 +61,7 @@ def _unfinished(folder: Path) -> Result:
     """Return the steps that a run has written so far."""
     try:
         parameters = json.loads((folder / "scene.json").read_text(encoding="utf-8"))
-        scene = from_data({key: value for key, value in parameters.items() if key not in ("laws", "model", TRACE)})
+        scene = as_kept({key: value for key, value in parameters.items() if key != TRACE})
         with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
             rows = [row for row in csv.DictReader(file) if None not in row.values()]  # the last may be cut short
         steps = tuple(ContactState.from_row(row) for row in rows)

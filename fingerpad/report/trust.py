@@ -160,7 +160,7 @@ def _jumps(result: Result) -> Iterator[Finding]:
     energy, error = (
         sum(getattr(state.record, key) for state in steps) for key in ("energy_released", "released_error")
     )
-    sure = f"They released {energy:.2g} J/m." if energy > error else f"They released less than {error:.1g} J/m."
+    sure = f"They released {energy:.2g} J/m." if energy > error else f"They released {energy + error:.2g} J/m at most."
     words = f"Skin jumped without the loads in {len(steps)} of {len(result.steps)} steps: {places}. {sure} "
     yield Finding(
         "jumps", GOOD, f"{words}A jump is part of the model, as in stick-slip; states between steps are not known."

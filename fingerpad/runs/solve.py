@@ -137,6 +137,7 @@ def solved(
     """
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
+    scene.laws.refuse_kept()
     if force is None:
         result = _solved(scene, model, out, comm, lines, bar, resume, tables=tables)
     else:

@@ -137,6 +137,7 @@ def _refuse_axes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> None:
             raise SceneError(
                 f"{key} of the sweep is {show(values)}; it must be a list of at least one value, none a list"
             )
+    scene.laws.refuse_kept()
     if scene.parameters().get("laws", {}).keys() - {"mesh"}:
         raise SceneError(
             "the scene has laws of its own, which the processes of a sweep cannot be given; call run for each point"

@@ -4,7 +4,7 @@ from fingerpad.scene.changes import start
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import Accuracy, Contact, Load, Numerics, Output
 from fingerpad.scene.reading import override
-from fingerpad.scene.scene import Scene, from_data, from_kept, load
+from fingerpad.scene.scene import Scene, as_kept, from_data, from_kept, load
 
 __all__ = [
     "Accuracy",
@@ -15,6 +15,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "from_data",
+    "as_kept",
     "from_kept",
     "load",
     "override",

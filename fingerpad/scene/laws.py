@@ -52,6 +52,9 @@ class Laws:
     """File of a mesh, in the place of that of ``geometry`` and ``mesh``; kept as an absolute path."""
     mesh_sha256: str = field(default="", init=False, repr=False)
     """Hash of that file, as it was when it was given."""
+    kept: Mapping[str, Any] = field(default_factory=dict)
+    """Laws of a scene that was read from a run's files, as :meth:`parameters` has them: names and numbers, but no code.
+    A scene with any of them is not run; a law that is given takes the place of its name."""
 
     def __post_init__(self) -> None:
         """Check every law; a mesh becomes an absolute path."""
@@ -74,6 +77,7 @@ class Laws:
             _check_solid(layer, solid)
             solids[layer] = solid
         object.__setattr__(self, "materials", solids)
+        object.__setattr__(self, "kept", self._not_given())
         if self.mesh is not None:
             if not isinstance(self.mesh, str | Path):
                 raise SceneError(f"mesh is {show(self.mesh)}; it must be the path of a file")
@@ -86,6 +90,28 @@ class Laws:
             object.__setattr__(self, "mesh", Path(self.mesh).absolute())
             object.__setattr__(self, "mesh_sha256", hashlib.sha256(content).hexdigest())
         self.parameters()  # reads the sources of the user's code, which may be edited while a run is on
+
+    def _not_given(self) -> dict[str, Any]:
+        """Return the kept laws in whose place none is given."""
+        solids = {layer: law for layer, law in self.kept.get("materials", {}).items() if layer not in self.materials}
+        given = {name for name in ("closure", "friction", "mesh") if getattr(self, name) is not None}
+        kept = {name: law for name, law in self.kept.items() if name != "materials" and name not in given}
+        return kept | ({"materials": solids} if solids else {})
+
+    def refuse_kept(self) -> None:
+        """Refuse laws that are known by name alone.
+
+        Raises:
+            SceneError: which they are.
+        """
+        if not self.kept:
+            return
+        names = [name for name in self.kept if name != "materials"]
+        names += [f"materials.{layer}" for layer in self.kept.get("materials", {})]
+        raise SceneError(
+            f"the scene was read from a run with laws of its own ({', '.join(names)}), which its files do not hold; "
+            "give them again, as arguments of run or by with_laws"
+        )
 
     def with_file(self, file: str | None) -> "Laws":
         """Return the laws with the mesh that the key ``geometry.file`` names, or without one.
@@ -106,15 +132,17 @@ class Laws:
 
     def __bool__(self) -> bool:
         """Return whether there is a law."""
-        return bool(self.materials) or any(law is not None for law in (self.closure, self.friction, self.mesh))
+        given = (self.closure, self.friction, self.mesh)
+        return bool(self.materials or self.kept) or any(law is not None for law in given)
 
     def parameters(self) -> dict[str, Any]:
         """Return the laws that are given, ready for JSON; equal laws give equal text."""
-        found: dict[str, Any] = {}
+        found = dict(self.kept)
         if self.closure is not None:
             found["closure"] = _described(self.closure)
         if self.materials:
-            found["materials"] = {layer: _described(self.materials[layer]) for layer in sorted(self.materials)}
+            solids = found.get("materials", {}) | {layer: _described(law) for layer, law in self.materials.items()}
+            found["materials"] = {layer: solids[layer] for layer in sorted(solids)}
         if self.friction is not None:
             found["friction"] = _described(self.friction)
         if self.mesh is not None:

@@ -1,5 +1,6 @@
 """From a scene file, or from changes of one, to plain data: read within bounds, whatever is in it."""
 
+import json
 import os
 import re
 import stat
@@ -21,6 +22,7 @@ _PATH = 80  # characters of a path in a message
 _AFTER_VALUE = "Expected newline or end of document after a statement"  # tomllib, of 50,0 and of 50 N/m
 _NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
 _FILES = r"geometry\.file|roughness\.topography\.file|history\[\d+\]\.voltage\.file"
+_MORE = {"laws": "laws or a mesh of its own", "trace": "a force on the whole finger"}
 _KEY = re.compile(rf"{_NAME}(\.{_NAME})*")
 
 
@@ -61,17 +63,38 @@ def read_scene(path: Path) -> dict[str, Any]:
 
 
 def read_study(path: Path) -> dict[str, Any]:
-    """Return the data of a scene file that may have a table ``[sweep]``.
+    """Return the data of a scene file that may have a table ``[sweep]``, or of ``scene.json`` of a run's folder.
 
     Files of a mesh, of a height map and of voltages are looked for beside it.
 
     Raises:
-        SceneError: the file cannot be read.
+        SceneError: the file cannot be read, or is of a run that was given more than a scene.
     """
+    if path.suffix.lower() == ".json":
+        return _of_run(path)
     data: dict[str, Any] = plain(read(path))
     _beside(data, path.parent)
     _beside(data.get("sweep"), path.parent)
     return data
+
+
+def _of_run(path: Path) -> dict[str, Any]:
+    """Return the data of the scene of a run's folder."""
+    name = f"scene file {clip(str(path), _PATH)}"
+    try:
+        data = json.loads(read_bytes(path))
+    except OSError as error:
+        raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
+    except (ValueError, RecursionError) as error:
+        raise SceneError(f"{name} is not JSON: {clip(str(error), 150)}") from None
+    if not isinstance(data, dict) or "geometry" not in data:
+        raise SceneError(f"{name} is not the scene.json of a run; other scenes are in TOML")
+    more = [f"{words} ({key})" for key, words in _MORE.items() if data.get(key)]
+    if more:
+        raise SceneError(
+            f"{name} is of a run with {more[0]}, which is no part of a scene; report.html says how to repeat it"
+        )
+    return {key: value for key, value in data.items() if key != "model"}
 
 
 def _beside(value: Any, folder: Path, where: str = "") -> Any:

@@ -113,7 +113,8 @@ class Scene(Part):
         for name, value in (self.__pydantic_private__ or {}).items():
             setattr(found, name, value)
         if "friction" in changes:
-            found._laws = replace(found._laws, friction=None)
+            kept = {name: law for name, law in found._laws.kept.items() if name != "friction"}
+            found._laws = replace(found._laws, friction=None, kept=kept)
         if found.geometry.file != self.geometry.file:
             found._laws = found._laws.with_file(found.geometry.file)
         refuse_unread(self, found)
@@ -250,6 +251,27 @@ def from_data(data: Mapping[str, Any]) -> Scene:
     if not isinstance(data, dict):
         raise SceneError(f"a scene is {show(data)}; it must be a table of keys")
     return Scene(**data)
+
+
+def as_kept(parameters: Mapping[str, Any]) -> Scene:
+    """Return the scene of a run's files, for reading: laws that these do not hold are in it by name alone.
+
+    Args:
+        parameters: what :meth:`Scene.parameters` gave, and the model.
+
+    Raises:
+        SceneError: the first key at fault.
+    """
+    scene = from_data({key: value for key, value in parameters.items() if key not in ("laws", "model")})
+    laws = parameters.get("laws")
+    if not isinstance(laws, Mapping) or not laws:
+        return scene
+    scene._laws = replace(scene.laws, kept=laws)
+    try:
+        mesh = from_kept({"laws": {"mesh": laws["mesh"]}}).laws.mesh
+    except (SceneError, KeyError, TypeError):  # it is gone, was changed, or there is none
+        return scene
+    return scene.with_laws(mesh=mesh)
 
 
 def from_kept(parameters: Mapping[str, Any]) -> Scene:

@@ -82,12 +82,11 @@ def _scaled(scene: Scene, press: Sequence[ContactState], name: str, end: Contact
     law, now = scene.friction_law(), states[-1]
     shape = {key: _ratio(getattr(end, key), getattr(now, key)) for key in ("f_electrostatic", "contact_length")}
     shape["bone_height"] = _ratio(end.bone_height, now.bone_height)
-    found = []
-    for state in states:
-        scaled = replace(state, **{key: factor * getattr(state, key) for key, factor in shape.items()})
-        borne = scaled.f_ext + scaled.f_electrostatic
-        slips = name == "full_slip" and law is not None
-        found.append(replace(scaled, f_t=law.resultant(borne, scaled.contact_length) if slips and law else 0.0))
+    found = [replace(state, **{key: factor * getattr(state, key) for key, factor in shape.items()}) for state in states]
+    if name == "full_slip" and law is not None:
+        found = [replace(s, f_t=law.resultant(s.f_ext + s.f_electrostatic, s.contact_length)) for s in found]
+        factor = _ratio(abs(end.f_t), found[-1].f_t)  # 1 by Coulomb's law, which does not ask how the force is spread
+        found = [replace(state, f_t=factor * state.f_t) for state in found]
     made = trace(found, wavelength)
     width = _ratio(columns([end], wavelength)["gross_width"][0], made.columns["gross_width"][-1])
     return Trace(made.depth, made.columns | {"gross_width": width * made.columns["gross_width"]})
