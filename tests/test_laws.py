@@ -19,6 +19,7 @@ from fingerpad.scene import Scene, SceneError, from_data, laws
 from fingerpad.scene.law_source import digest
 from fingerpad.scene.laws import Laws, used
 from geometry import tags
+from tests.small_finger import small
 from variational.contact.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction
 from variational.materials.material import Material
 from variational.materials.neo_hooke import NeoHooke
@@ -81,6 +82,35 @@ def test_laws_of_a_read_scene_are_given_again_before_it_is_run(tmp_path):
     part = scene.with_laws(friction=0.3, closure=OWN["closure"])
     assert part.friction == 0.3 and set(part.laws.kept) == {"materials"}
     assert scene.with_laws(**OWN).parameters() == kept and not scene.with_laws(**OWN).laws.kept
+
+
+@dataclass(frozen=True)
+class Cap(Friction):
+    """A sharp limit, by the type of p as docs/laws.md has it."""
+
+    mu_f: float = 0.5
+    tau: float = 20e3
+
+    def limit(self, p):
+        least = ufl.min_value if isinstance(p, ufl.core.expr.Expr) else np.minimum
+        return least(self.mu_f * p, self.tau)
+
+
+@dataclass(frozen=True)
+class Tanh(Friction):
+    """Of NumPy alone."""
+
+    def limit(self, p):
+        return 1e3 * np.tanh(p / 1e3)
+
+
+def test_limit_with_other_functions_than_arithmetic():
+    """A cap that bears all along the contact: its strength per reference area, within 10 % of that per current area."""
+    scene = small(f_ext=750.0, voltage=0.0, output={"receptors": False, "errors": False})
+    slip = fp.run(scene, friction=Cap(10.0, 1e3)).full_slip
+    assert slip.f_t / (1e3 * slip.contact_length) == pytest.approx(1.0, abs=0.1)
+    with pytest.raises(SceneError, match="the limit of the law Tanh cannot be put into the weak form"):
+        fp.run(scene, friction=Tanh())
 
 
 # -- in the scene ----------------------------------------------------------------------------------------------

@@ -12,6 +12,10 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 
+class LawError(ValueError):
+    """A law of one's own that the weak form cannot take; one sentence."""
+
+
 def said(error: Exception) -> str:
     """Return the message of an error in a user's law, in one line."""
     return " ".join(str(error).split()) or type(error).__name__

@@ -202,7 +202,8 @@ def _factor(where: str, name: str, unit: str, wanted: str) -> float:
         return to_si(f"1 {unit}", wanted)
     except ValueError as error:
         why = str(error).partition(";")[0]
-        allowed = "N/m, or in N for a whole finger" if wanted == "N/m" else wanted
+        of_whole = {"N/m": "N/m, or in N for a whole finger", "N": "N, as another column is of a whole finger"}
+        allowed = of_whole.get(wanted, wanted)
         raise SceneError(f"{where}: the unit of {name} is {clip(repr(unit))}; {why}; it must be in {allowed}") from None
 
 

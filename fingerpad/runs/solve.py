@@ -19,6 +19,7 @@ from fingerpad.io.states import WORDS
 from fingerpad.model.check import check
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import show
+from variational.coefficients import LawError
 
 if TYPE_CHECKING:
     from fingerpad.startup import MPI
@@ -138,10 +139,13 @@ def solved(
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     scene.laws.refuse_kept()
-    if force is None:
-        result = _solved(scene, model, out, comm, lines, bar, resume, tables=tables)
-    else:
-        result = _whole(scene, force, model, out, comm, lines, bar, tables)
+    try:
+        if force is None:
+            result = _solved(scene, model, out, comm, lines, bar, resume, tables=tables)
+        else:
+            result = _whole(scene, force, model, out, comm, lines, bar, tables)
+    except LawError as error:
+        raise SceneError(str(error)) from error
     whole = not (result.interrupted and force is not None)  # a force without all of its traces is no result
     if report and whole and out is not None and _ranks(comm).rank == 0:
         from fingerpad.report.write import attempt, draw_footprint

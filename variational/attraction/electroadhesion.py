@@ -9,10 +9,12 @@ At frozen d_eq it derives from a potential :math:`\phi(y)` with :math:`\phi' = p
 .. math:: \delta \int \phi \,dx = \int \phi' \delta y \,dx + \phi \,d\delta x
           = \int p_{el} (\delta y \,dx - \delta x \,dy) = -\int p_{el}\, n \cdot \delta u \,da
 
-up to the ends of the skin, where the potential vanishes with the height. The weak form takes the left side:
-its tangent is symmetric, and its horizontal resultant is zero to roundoff on any mesh, as it must be over a
-screen that looks the same everywhere. With d_eq(p_c) there is no potential; the coupling of the scales keeps d_eq
-frozen in each solve.
+up to :math:`[\phi \,\delta x]` at the ends of the skin. The weak form takes the left side: its tangent is symmetric,
+and its horizontal resultant is zero to roundoff on any mesh, as it must be over a screen that looks the same
+everywhere. So each end of the skin bears the force :math:`\phi` (N/m) outward, that of the field on what follows: over
+a vertical side from there up, :math:`\int p_{el} \,dy = \phi`. The skin of a finger ends where the potential has all
+but vanished with the height. A block's foot ends on the screen, with some 0.1 N/m at 200 V. With d_eq(p_c) there is no
+potential; the coupling of the scales keeps d_eq frozen in each solve.
 """
 
 from collections.abc import Callable

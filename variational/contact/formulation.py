@@ -24,7 +24,7 @@ import numpy as np
 import ufl
 from numpy.typing import NDArray
 
-from variational.coefficients import said
+from variational.coefficients import LawError, said
 from variational.contact import return_mapping
 from variational.contact.friction import Friction
 
@@ -108,14 +108,14 @@ def _limit(friction: Friction, p_n):
     """Return the limit of friction (Pa) as the weak form has it.
 
     Raises:
-        ValueError: the law cannot be written in UFL; in one sentence.
+        LawError: the law cannot be written in UFL.
     """
     try:
         return ufl.as_ufl(friction.limit(p_n))
     except Exception as error:  # whatever the user's limit raises
-        raise ValueError(
-            f"the limit of the law {type(friction).__name__}, to be written with arithmetic, or with ufl's functions "
-            f"where p is a UFL expression, cannot be put into the weak form: {said(error)}"
+        raise LawError(
+            f"the limit of the law {type(friction).__name__} cannot be put into the weak form: {said(error)}; write it "
+            "with arithmetic, or with ufl's functions where p is a UFL expression (docs/laws.md)"
         ) from error
 
 

@@ -92,7 +92,10 @@ class Friction(Law, ABC):
                 one = float(self.limit(_JUMP))
                 slopes = [float(self.limit(p)) / p for p in _SMALL]
         except Exception as error:  # whatever the user's limit raises
-            raise ValueError(f"the limit of {self} cannot be evaluated: {said(error)}") from error
+            raise ValueError(
+                f"the limit of {self} cannot be evaluated for NumPy's numbers: {said(error)}; write it with "
+                "arithmetic, or with NumPy's functions where p is no UFL expression (docs/laws.md)"
+            ) from error
         if found.shape != _PRESSURES.shape:
             raise ValueError(
                 f"the limit of {self} has the shape {found.shape} for {len(_PRESSURES)} pressures; it must have one "
