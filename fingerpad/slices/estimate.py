@@ -15,6 +15,7 @@ import numpy as np
 from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene, SceneError
+from fingerpad.scene.laws import coefficient
 from fingerpad.slices.finger import WholeFinger, errors, in_order
 from fingerpad.slices.profile import profile
 from fingerpad.slices.total import at_force, at_indentation, deepest
@@ -83,10 +84,12 @@ def _scaled(scene: Scene, press: Sequence[ContactState], name: str, end: Contact
     shape = {key: _ratio(getattr(end, key), getattr(now, key)) for key in ("f_electrostatic", "contact_length")}
     shape["bone_height"] = _ratio(end.bone_height, now.bone_height)
     found = [replace(state, **{key: factor * getattr(state, key) for key, factor in shape.items()}) for state in states]
-    if name == "full_slip" and law is not None:
-        found = [replace(s, f_t=law.resultant(s.f_ext + s.f_electrostatic, s.contact_length)) for s in found]
-        factor = _ratio(abs(end.f_t), found[-1].f_t)  # 1 by Coulomb's law, which does not ask how the force is spread
-        found = [replace(state, f_t=factor * state.f_t) for state in found]
+    slips = name == "full_slip" and law is not None
+    borne = [(state.f_ext + state.f_electrostatic, state.contact_length) for state in found]
+    friction = [law.resultant(*each) if slips and law else 0.0 for each in borne]
+    # Coulomb's law does not ask how a force is spread; any other one is scaled to the run's own state.
+    factor = 1.0 if coefficient(scene) is not None else _ratio(abs(end.f_t), friction[-1])
+    found = [replace(state, f_t=factor * f_t) for state, f_t in zip(found, friction, strict=True)]
     made = trace(found, wavelength)
     width = _ratio(columns([end], wavelength)["gross_width"][0], made.columns["gross_width"][-1])
     return Trace(made.depth, made.columns | {"gross_width": width * made.columns["gross_width"]})
