@@ -84,4 +84,27 @@ def load(comm: MPI.Comm, build: Callable[[], float], needed: Iterable[int] = ())
         count = comm.allreduce(int(np.sum(cell_tags.values == tag)) + int(np.sum(facet_tags.values == tag)))
         if count == 0:
             raise GeometryError(f"the mesh has no cell or facet with tag {tag}")
-    return TaggedMesh(mesh, cell_tags, facet_tags)
+    found = TaggedMesh(mesh, cell_tags, facet_tags)
+    _refuse_corner_cells(found)
+    return found
+
+
+def _refuse_corner_cells(body: TaggedMesh) -> None:
+    """Refuse a triangle with two sides on the skin that can touch; collective.
+
+    Raises:
+        GeometryError: where the first of them is, on every rank.
+    """
+    mesh, (facets, values) = body.mesh, (body.facet_tags.indices, body.facet_tags.values)
+    mesh.topology.create_connectivity(1, 2)
+    to_cells = mesh.topology.connectivity(1, 2)
+    of = [to_cells.links(f)[0] for f, tag in zip(facets, values, strict=True) if tags.is_ridge(int(tag))]
+    cells, count = np.unique(np.array(of, dtype=np.int32), return_counts=True)
+    middles = dolfinx.mesh.compute_midpoints(mesh, 2, cells[count > 1])[:, :2].tolist()
+    everywhere = [place for there in mesh.comm.allgather(middles) for place in there]
+    if everywhere:
+        x, y = (1e3 * each for each in everywhere[0])
+        raise GeometryError(
+            f"the triangle at x = {x:.4g} mm, y = {y:.4g} mm has two sides on the skin that can touch, and one is "
+            "allowed; give a smaller mesh.contact, or a skin without a corner there"
+        )

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry import tags
+from geometry.corner_cells import swapped
 
 _ON_LINE = 1e-9  # gmsh's unit from x = 0, within which a node is its own image
 _NODES = {1: 2, 2: 3}  # of a straight facet and of a triangle, by dimension
@@ -23,7 +24,10 @@ class HalfMesh:
 
     @classmethod
     def read(cls) -> "HalfMesh":
-        """Return the mesh of the current gmsh model, without nodes that belong to no element of a group."""
+        """Return the mesh of the current gmsh model, without nodes that belong to no element of a group.
+
+        No triangle has two sides on the skin that can touch, where that can be (:mod:`geometry.corner_cells`).
+        """
         groups = {
             (dimension, tag): (_elements(dimension, tag), gmsh.model.getPhysicalName(dimension, tag))
             for dimension, tag in gmsh.model.getPhysicalGroups()
@@ -33,7 +37,13 @@ class HalfMesh:
         used = np.unique(np.concatenate([elements.ravel() for elements, _ in groups.values()]))
         points = coordinates.reshape(-1, 3)[order[np.searchsorted(numbers[order], used)]]
         found = {key: (1 + np.searchsorted(used, elements), name) for key, (elements, name) in groups.items()}
-        return cls(points, found)
+        skin = [elements for (dimension, tag), (elements, _) in found.items() if dimension == 1 and tags.is_ridge(tag)]
+        layers = {tag: elements for (dimension, tag), (elements, _) in found.items() if dimension == 2}
+        if skin:
+            layers = swapped(points, np.concatenate(skin), layers)
+        return cls(
+            points, {key: (layers[key[1]] if key[0] == 2 else here, name) for key, (here, name) in found.items()}
+        )
 
     def put(self, name: str, whole: bool) -> None:
         """Make a gmsh model of the mesh, the current one.
