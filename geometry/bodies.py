@@ -31,12 +31,14 @@ def block(width: float, height: float, size: float, gap: float = 0.0) -> float:
         width: (m).
         height: (m).
         size: largest edge of a grid cell (m).
-        gap: height of the bottom above the screen (m).
+        gap: height of the bottom above the screen (m), 0 or more.
 
     Raises:
-        GeometryError: a length is not positive.
+        GeometryError: a length is not positive, or the gap is below 0.
     """
     _refuse_non_positive(width=width, height=height, size=size)
+    if not 0 <= gap < np.inf:
+        raise GeometryError(f"gap is {gap:g} m; it must be 0 or more, since the body begins outside of the screen")
     geo = gmsh.model.geo
     x, low, high = width / 2 * _MM, gap * _MM, (gap + height) * _MM
     corners = [geo.addPoint(*xy, 0.0) for xy in ((-x, low), (x, low), (x, high), (-x, high))]

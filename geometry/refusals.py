@@ -1,5 +1,7 @@
 """Refuses sets of parameters that describe no fingertip, with the parameters and their bounds."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,7 +24,9 @@ def check(profiles: Profiles) -> None:
     if profiles.ridged_arc + f.ridge_wavelength > profiles.nail_arc:
         most = int(2 * profiles.nail_arc / f.ridge_wavelength - 2)
         most -= 1 - most % 2
-        few = f"{_FEWEST} do where ridge_wavelength is {2 * profiles.nail_arc / (_FEWEST + 2):.3g} m or less"
+        few = (
+            f"{_FEWEST} do where ridge_wavelength is {_rounded_down(2 * profiles.nail_arc / (_FEWEST + 2)):g} m or less"
+        )
         raise GeometryError(
             f"ridge_count {f.ridge_count} of ridge_wavelength {f.ridge_wavelength:g} m do not fit between "
             f"the nail's edges; {f'at most {most} do' if most >= _FEWEST else few}"
@@ -120,7 +124,7 @@ def _check_edge(profiles: Profiles) -> None:
     if f.nail_thickness < skin + _APART:
         raise GeometryError(
             f"nail_thickness is {f.nail_thickness:g} m, and the skin's mean line at the nail's edge is {skin:.4g} m "
-            f"deep, by ridge_amplitude; the nail must be thicker by {_APART:g} m or more"
+            f"deep, by ridge_amplitude; the nail must be {-_rounded_down(-skin - _APART):g} m thick or more"
         )
     for name, depth in (("SC-VE", profiles.sc_ve(end)), ("VE-D", profiles.ve_d(end))):
         if abs(float(depth) - f.nail_thickness) < _APART:
@@ -128,6 +132,12 @@ def _check_edge(profiles: Profiles) -> None:
                 f"nail_thickness is {f.nail_thickness:g} m, the depth of the {name} junction at the nail's edge; "
                 f"it must differ by {_APART:g} m or more"
             )
+
+
+def _rounded_down(value: float) -> float:
+    """Return the largest number of three digits that is no larger, so that a limit in a message can be followed."""
+    unit = 10.0 ** (math.floor(math.log10(abs(value))) - 2)
+    return math.floor(value / unit + 1e-9) * unit
 
 
 def _signed_distance(points: Array, curve: Array, inward: Array) -> tuple[NDArray[np.intp], Array]:

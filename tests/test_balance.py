@@ -28,6 +28,15 @@ def test_balance_and_cone(change, words):
     assert balance.broken(None, 1e-4, 0.25) == ""
 
 
+@pytest.mark.parametrize(
+    ("floor", "words"), [(0.0, "try a numerics.tolerance below 1e-09"), (1e-7, "leaves 7.5e-06 N/m")]
+)
+def test_forces_left_at_a_node(floor, words):
+    """Where the solve ended at its roundoff no tolerance helps, and none is named."""
+    with pytest.raises(StepFailed, match=f"^here: a force of 0.00075 N/m is left at a node; .*{words}"):
+        balance.refuse_unbalanced("here", 1e-5, None, None, 75.0, 1e-9, floor)
+
+
 def test_friction_of_another_law_is_not_compared_with_coulomb_s():
     slip = ContactState(**(SLIP | {"ridges_in_contact": 3, "contact_length": 1e-3, "f_t": 30.0}))
     assert balance.broken(slip, 1e-4, None) == ""

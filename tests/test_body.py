@@ -12,6 +12,7 @@ from fingerpad.model.body import Body
 from geometry import tags
 from geometry.mesh import load
 from variational import body as parts
+from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 from variational.materials.saint_venant import SaintVenant
@@ -32,6 +33,36 @@ def ridge(comm=MPI.COMM_WORLD, friction=MU_F, roughness=BearingArea(H_0)) -> Bod
 def slid(alone=False) -> Body:
     """Return a ridge pressed, charged and slid to full slip, not to be loaded further; ``alone`` on each rank."""
     return ridge(MPI.COMM_SELF if alone else MPI.COMM_WORLD).press(FORCE).charge(VOLTAGE).slide(until_full_slip=True)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"shape": 3}, "shape is 3; it must be a shape of fingerpad.geometry, a mesh, or a file of one"),
+        ({"element": "P7"}, "element is 'P7'; it must be one of P1, P2"),
+        ({"force_scale": -1.0}, "force_scale is -1.0; it must be a finite number greater than 0"),
+        ({"touch_depth": 0.0}, "touch_depth is 0.0; it must be"),
+        ({"step_scale": float("nan")}, "step_scale is nan; it must be"),
+    ],
+)
+def test_arguments_are_refused(given, words):
+    with pytest.raises(ValueError, match=words):
+        Body(**{"shape": RIDGE, "material": SKIN} | given)
+
+
+@pytest.mark.parametrize(
+    ("kind", "numbers", "name"),
+    [(Penalty, (1e12, -5e10), "eps_t"), (Penalty, (float("inf"), 1.0), "eps_n"), (Nitsche, (0.0,), "gamma_0")],
+)
+def test_stiffnesses_are_positive(kind, numbers, name):
+    """A negative one drags the skin along: µ_app of -0.36 under a coefficient of 0.25."""
+    with pytest.raises(ValueError, match=f"{name} of {kind.__name__} is .*; it must be a finite number greater than 0"):
+        kind(*numbers)
+
+
+def test_slide_in_another_unit_is_refused():
+    with pytest.raises(ValueError, match=r"distance is 10 m; the body of 0.0006 m slides by 0.6 m at most"):
+        slid(alone=True).slide(10.0)
 
 
 @pytest.mark.mpi

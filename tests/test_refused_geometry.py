@@ -1,5 +1,7 @@
 """Shapes, sizes and meshes that are refused, in one sentence."""
 
+import re
+
 import gmsh
 import pytest
 from mpi4py import MPI
@@ -104,6 +106,23 @@ def test_least_thickness_that_is_named_is_the_least():
     refusals.check(Profiles(Fingertip(ve_thickness=least + UM)))
     with pytest.raises(GeometryError):
         refusals.check(Profiles(Fingertip(ve_thickness=least - UM)))
+
+
+def test_limits_that_are_named_can_be_followed():
+    """They are rounded to the side that is accepted."""
+    small = {
+        **{"width": 4e-3, "height": 3e-3, "bone_width": 1.6e-3, "bone_height": 0.8e-3, "bone_centre": 1.7e-3},
+        **{"nail_half_width": 1e-3, "nail_bed_half_width": 0.4e-3, "ridge_count": 3},
+    }
+    with pytest.raises(GeometryError) as refusal:
+        refusals.check(Profiles(Fingertip(**small, ridge_wavelength=5e-3)))
+    most = float(re.search(r"ridge_wavelength is ([0-9.e-]+) m or less", str(refusal.value))[1])
+    profiles = Profiles(Fingertip(**small, ridge_wavelength=most))
+    assert profiles.ridged_arc + most <= profiles.nail_arc < 1.01 * (profiles.ridged_arc + most)
+    with pytest.raises(GeometryError) as refusal:
+        refusals.check(Profiles(Fingertip(nail_thickness=10e-6)))
+    least = float(re.search(r"the nail must be ([0-9.e-]+) m thick or more", str(refusal.value))[1])
+    refusals.check(Profiles(Fingertip(nail_thickness=least)))
 
 
 @pytest.mark.parametrize("wavelength", [460e-6, 483e-6, 500e-6])

@@ -21,6 +21,19 @@ def said(error: Exception) -> str:
     return " ".join(str(error).split()) or type(error).__name__
 
 
+def refuse_not_positive(law: Any) -> None:
+    """Refuse a dataclass with a ``float`` that is not greater than 0 and finite.
+
+    Raises:
+        ValueError: in one sentence.
+    """
+    for each in fields(law):
+        value = getattr(law, each.name)
+        if each.type in (float, "float") and not (isinstance(value, int | float | np.number) and 0 < value < np.inf):
+            name = type(law).__name__
+            raise ValueError(f"{each.name} of {name} is {value!r}; it must be a finite number greater than 0")
+
+
 class Law:
     """A law with numbers; derive a frozen dataclass from one of the laws' bases."""
 

@@ -48,7 +48,13 @@ def steady(tolerance: float, gap: float) -> float:
 
 
 def refuse_unbalanced(
-    where: str, left: float, loads: RidgeLoads, bone: NDArray[np.float64], scale: float, tolerance: float
+    where: str,
+    left: float,
+    loads: RidgeLoads,
+    bone: NDArray[np.float64],
+    scale: float,
+    tolerance: float,
+    floor: float = 0.0,
 ) -> None:
     """Refuse a state in which forces are left at a node, or the bone does not bear what the screen does.
 
@@ -59,14 +65,19 @@ def refuse_unbalanced(
         bone: reaction of the bone (N/m), shape (2,).
         scale: force (N/m) in which residuals are measured.
         tolerance: of the solver, in that scale.
+        floor: roundoff at which the solve ended, in that scale; 0 where it met its tolerance.
 
     Raises:
         StepFailed: the state is no equilibrium.
     """
-    remedy = (
-        f"forces are not balanced to {BALANCED:g} of {scale:g} N/m; try a numerics.tolerance below "
-        f"{tolerance:g}, and no PETSc option that ends a solve before it has converged"
-    )
+    remedy = f"forces are not balanced to {BALANCED:g} of {scale:g} N/m; "
+    if floor > tolerance:
+        remedy += (
+            f"roundoff of the stiffest layer leaves {floor * scale:.2g} N/m, whatever the numerics.tolerance; try a "
+            "smaller stiffness, or poisson, of the nail, its bed or the stiffest layer"
+        )
+    else:
+        remedy += f"try a numerics.tolerance below {tolerance:g}, and no PETSc option that ends a solve earlier"
     if not left <= BALANCED:
         raise StepFailed(f"{where}: a force of {left * scale:.4g} N/m is left at a node; {remedy}")
     screen = np.array([float(loads.f_friction.sum()), float((loads.f_contact - loads.f_attraction).sum())])

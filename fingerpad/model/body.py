@@ -16,6 +16,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from numbers import Real
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +37,7 @@ from variational.attraction.electroadhesion import ELECTROSTATIC
 from variational.contact.formulation import Formulation
 from variational.contact.friction import Friction
 from variational.contact.penalty import Penalty
+from variational.element import ELEMENTS
 from variational.energy import EnergyBook
 from variational.materials.material import Material
 from variational.problem import Interface
@@ -47,6 +49,7 @@ Array = NDArray[np.float64]
 Quantity = float | str
 """A number in SI, or a text with a unit: ``"0.0044 N/mm"``."""
 _TOLERANCE = 1e-9  # of the solves, over the force scale
+_FARTHEST = 1000.0  # of the size of the body: a slide in millimetres, given as metres
 
 
 @dataclass(frozen=True)
@@ -107,11 +110,18 @@ class Body:
 
         Raises:
             geometry.profiles.GeometryError: the shape or the file cannot be meshed.
-            ValueError: layers and materials do not agree, a law is none, or ``roughness`` has no ``h_0`` and none is
-                given, or another one.
+            ValueError: layers and materials do not agree, a law is none, a number is out of range, or ``roughness`` has
+                no ``h_0`` and none is given, or another one.
         """
         if roughness is not None:
             check(roughness)
+        if element not in ELEMENTS:
+            raise ValueError(f"element is {element!r}; it must be one of {', '.join(ELEMENTS)}")
+        for name, value in (("force_scale", force_scale), ("touch_depth", touch_depth), ("step_scale", step_scale)):
+            if not (isinstance(value, Real) and 0 < value < math.inf):
+                raise ValueError(f"{name} is {value!r}; it must be a finite number greater than 0")
+        if not (callable(shape) or isinstance(shape, TaggedMesh | str | Path)):
+            raise ValueError(f"shape is {shape!r}; it must be a shape of fingerpad.geometry, a mesh, or a file of one")
         build = file(shape) if isinstance(shape, str | Path) else shape
         self.mesh = build if isinstance(build, TaggedMesh) else load(comm, build)
         if h_0 is None:
@@ -200,7 +210,12 @@ class Body:
             raise ValueError("slide takes a distance, in m, or until_full_slip=True")
         if until_full_slip and self.problem.anchor is None:
             raise ValueError("the body has no friction, so that it has no full slip; give Body a friction")
-        far = float(np.ptp(self.coordinates, axis=0).max()) if distance is None else _finite("distance", distance, "m")
+        size = float(np.ptp(self.coordinates, axis=0).max())
+        far = size if distance is None else _finite("distance", distance, "m")
+        if abs(far) > _FARTHEST * size:
+            raise ValueError(
+                f"distance is {far:g} m; the body of {size:.3g} m slides by {_FARTHEST * size:.3g} m at most"
+            )
         x = float(self._made.solver.control.x) + far
         self._reach(Target("slide", bone_x=x, until_full_slip=until_full_slip))
         if until_full_slip and not self.state.all_slip:

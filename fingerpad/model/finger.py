@@ -108,7 +108,7 @@ class Finger:
         """
         left, scale = self.solver.imbalance(), self.solver.force_scale
         where = f"step {self.continuation.steps} ({load})"
-        balance.refuse_unbalanced(where, left, loads, self.solver.reaction, scale, self._tolerance)
+        balance.refuse_unbalanced(where, left, loads, self.solver.reaction, scale, self._tolerance, self.solver.floor)
         return left
 
     def present(self, loads: RidgeLoads, load: str, number: int, attempt: Attempt | None = None) -> Step:

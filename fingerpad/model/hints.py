@@ -13,7 +13,9 @@ _HINTS = {
     "COUPLING_CAP": "try a larger numerics.coupling_cap, or another voltage: the ridge may be at its fold",
     "DIVERGED_MAX_IT": "try a larger -fingerpad_snes_max_it, or a smaller mesh.contact",
 }
-_INVERTED = "try a smaller f_ext, or a smaller mesh.contact and mesh.interface, where elements are turned inside out"
+_INVERTED = (
+    "try a smaller f_ext or voltage, or a smaller mesh.contact and mesh.interface, where elements turn inside out"
+)
 _OTHERWISE = "try a smaller mesh.contact, which lets the edge of the contact move, or another voltage or f_ext"
 
 

@@ -75,7 +75,7 @@ def sweep(
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     _refuse_axes(scene, axes)
     of_scene = {key: values for key, values in axes.items() if key != FORCE}
-    scenes = [_with(scene, point) for point in _points(of_scene)]
+    scenes = _scenes(scene, of_scene)
     values = _values(scenes, of_scene)
     forces = over_force.forces(axes, scenes)
     folder = Path(out)
@@ -121,6 +121,11 @@ def _claim(folder: Path) -> None:
 def _points(axes: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
     """Return the values of each point by key, the last axis fastest."""
     return [dict(zip(axes, point, strict=True)) for point in itertools.product(*axes.values())]
+
+
+def _scenes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> list[Scene]:
+    """Return the scenes of all points, checked."""
+    return [_with(scene, point) for point in _points(axes)]
 
 
 def _refuse_axes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> None:

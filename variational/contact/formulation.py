@@ -24,7 +24,7 @@ import numpy as np
 import ufl
 from numpy.typing import NDArray
 
-from variational.coefficients import LawError, said
+from variational.coefficients import LawError, refuse_not_positive, said
 from variational.contact import return_mapping
 from variational.contact.friction import Friction
 
@@ -152,6 +152,14 @@ class Formulation(ABC):
 
     tolerance: float = 0.0
     """Error of the contact's conditions (m) that is left."""
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that are no stiffness.
+
+        Raises:
+            ValueError: one that is not greater than 0 and finite.
+        """
+        refuse_not_positive(self)
 
     @abstractmethod
     def springs(self, skin: Skin) -> Springs:
