@@ -123,6 +123,11 @@ def test_command_and_measurements(tmp_path, capsys):
     assert ours == pytest.approx([low, np.sqrt(low * high)], rel=1e-9)
 
 
+def test_option_of_a_run_is_told(capsys):
+    assert main(["sweep", "--force", "0.5 N", "--over", "voltage=0"]) == 2
+    assert "a sweep has it as values: --over force=" in capsys.readouterr().err
+
+
 def test_key_is_of_force_and_scene_without_its_own():
     assert batch.key(fp.Scene(f_ext=20.0), 0.5) == batch.key(fp.Scene(), 0.5) != batch.key(fp.Scene(), 0.4)
     assert batch.key(fp.Scene(), 0.5) != batch.key(fp.Scene())

@@ -19,6 +19,7 @@ from fingerpad.scene.reading import flat, put, read_study
 
 _EXAMPLES = """
     fingerpad sweep --over voltage=0:200:5 --over f_ext=25,75 --jobs 2 --out results/sweep
+    fingerpad sweep --over force="0.1, 0.3, 0.5 N" --model cylinders
     fingerpad sweep study.toml --set friction=0.3
 """
 
@@ -37,6 +38,8 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--jobs", type=positive(int), default=2, metavar="N", help="runs at a time (default: 2)")
     parser.add_argument("--model", choices=MODELS, default="full", help="model to run (default: full)")
     parser.add_argument("--quiet", action="store_true", help="print the table alone: no line a run, no progress bar")
+    if any(word.partition("=")[0] == "--force" for word in argv):
+        raise SceneError("--force is an option of fingerpad run; a sweep has it as values: --over force='0.1, 0.5 N'")
     args = parser.read(argv)
     check_folder(args.out)
     base, axes = study(args.scene, args.set, args.over)
