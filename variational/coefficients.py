@@ -21,17 +21,22 @@ def said(error: Exception) -> str:
     return " ".join(str(error).split()) or type(error).__name__
 
 
-def refuse_not_positive(law: Any) -> None:
+def refuse_not_positive(law: Any, zero: bool = False) -> None:
     """Refuse a dataclass with a ``float`` that is not greater than 0 and finite.
+
+    Args:
+        law: the dataclass.
+        zero: whether 0 is allowed.
 
     Raises:
         ValueError: in one sentence.
     """
     for each in fields(law):
         value = getattr(law, each.name)
-        if each.type in (float, "float") and not (isinstance(value, int | float | np.number) and 0 < value < np.inf):
-            name = type(law).__name__
-            raise ValueError(f"{each.name} of {name} is {value!r}; it must be a finite number greater than 0")
+        number = isinstance(value, int | float | np.number) and (0 < value < np.inf or (zero and value == 0))
+        if each.type in (float, "float") and not number:
+            allowed = "0 or more" if zero else "greater than 0"
+            raise ValueError(f"{each.name} of {type(law).__name__} is {value!r}; it must be finite and {allowed}")
 
 
 class Law:

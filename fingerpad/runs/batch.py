@@ -163,7 +163,7 @@ def sweep(
     return {name: result(scene, folder, force) or broken[name] for name, scene in scenes.items()}
 
 
-def _one(scene: Path, folder: Path, model: str, force: float | None) -> None:
+def _one(scene: Path, folder: Path, model: str, force: float | None = None) -> None:
     from fingerpad.startup import start
 
     start()

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from variational.coefficients import refuse_not_positive
 from variational.contact.formulation import Formulation, Skin, Springs, SurfaceState
 
 Array = NDArray[np.float64]
@@ -23,6 +24,14 @@ class Penalty(Formulation):
 
     eps_n: float
     eps_t: float
+
+    def __post_init__(self) -> None:
+        """Refuse negative stiffnesses; without any there is no screen.
+
+        Raises:
+            ValueError: one that is below 0 or not finite.
+        """
+        refuse_not_positive(self, zero=True)
 
     def springs(self, skin: Skin) -> Springs:
         """Return springs without preload."""
