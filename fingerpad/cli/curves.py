@@ -96,7 +96,7 @@ class Ours:
 
 def _over_force(x: float, known: Array, values: Array) -> float:
     """Return a value at one of the known forces up to roundoff, or between two of them; NaN beyond."""
-    if not (known[0] < x < known[-1]):
+    if not (known[0] < x < known[-1]) or np.isclose(known, x, rtol=NEAR, atol=0.0).any():
         return _between(x, known, values)
     k = int(np.searchsorted(known, x))
     ends, at = values[k - 1 : k + 1], known[k - 1 : k + 1]
