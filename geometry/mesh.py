@@ -103,8 +103,8 @@ def _refuse_corner_cells(body: TaggedMesh) -> None:
     middles = dolfinx.mesh.compute_midpoints(mesh, 2, cells[count > 1])[:, :2].tolist()
     everywhere = [place for there in mesh.comm.allgather(middles) for place in there]
     if everywhere:
-        x, y = (1e3 * each for each in everywhere[0])
+        x, y = (round(1e3 * each, 6) + 0.0 for each in everywhere[0])  # no minus before a zero
         raise GeometryError(
-            f"the triangle at x = {x:.4g} mm, y = {y:.4g} mm has two sides on the skin that can touch, and one is "
-            "allowed; give a smaller mesh.contact, or a skin without a corner there"
+            f"the triangle at x = {x:g} mm, y = {y:g} mm has two sides on the skin that can touch, and one is allowed; "
+            "give smaller elements there, or a skin without a corner"
         )

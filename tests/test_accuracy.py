@@ -195,10 +195,26 @@ def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
     assert state.penalty.contact_length == pytest.approx(-1e-5, rel=1e-9)
     assert found.summary()["quantities"]["slip_contact_length"]["penalty"] == state.penalty.contact_length
     assert state.error.contact_length == 0
-    one = with_errors(found, {"uncharged": contact(), "full_slip": contact()})
-    assert one["uncharged"].contact_length == contact().contact_length  # of another step: it stays that of the path
     assert "penalty: a rigid screen would change" in lines[-1]
     assert all("estimated discretisation error" in line for line in lines if "±" in line)
+
+
+@pytest.mark.parametrize(("step", "final"), [(7, True), (3, False)])
+def test_uncharged_state_that_is_the_charged_one_is_of_the_final_mesh(monkeypatch, step, final):
+    """At 0 V they are one step of the path. Another step is solved on no other mesh, and stays."""
+
+    def solve(model, states, comm, views=()):
+        row = contact(contact_length=1e-3)
+        return Solve({"charged": State(NOTHING, 0, row, np.array([1e-3]), {})}, model.mesh, 1000, 10, 1.0)
+
+    monkeypatch.setattr(solves, "solve_again", solve)
+    model = model_of({"contact": {"formulation": "nitsche"}})
+    found = Refinement(model, solve(model, {}, None), MPI.COMM_SELF, lambda text: None, lambda: None)
+    found.run()
+    path = {name: contact(contact_length=2e-3, step=at) for name, at in (("uncharged", step), ("charged", 7))}
+    states = with_errors(found, path)
+    assert states["charged"].contact_length == 1e-3
+    assert states["uncharged"].contact_length == (1e-3 if final else 2e-3)
 
 
 @pytest.mark.parametrize("formulation", ["nitsche", "augmented"])

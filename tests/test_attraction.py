@@ -5,6 +5,7 @@ import pytest
 import ufl
 from dolfinx import fem
 from mpi4py import MPI
+from scipy.integrate import trapezoid
 
 from geometry.bodies import block, ridge
 from geometry.mesh import load
@@ -171,3 +172,12 @@ def test_law_of_the_attraction():
     np.testing.assert_allclose(slope, pressure, rtol=1e-8)
     closed = EPS_0 * VOLTAGE**2 / 2 / (H_0 + np.maximum(y, D_EQ)) ** 2
     np.testing.assert_allclose(pressure, closed, rtol=1e-14)
+
+
+def test_force_at_the_end_of_a_skin_on_the_screen():
+    """That of docs/laws.md: the end of a charged foot bears the potential, as does a vertical side above it."""
+    at_the_corner = float(electroadhesion.potential(ufl.as_ufl(0.0), 2e-6, 200.0, 0.5e-6))
+    assert at_the_corner == pytest.approx(-0.13, abs=0.005)
+    y = np.concatenate([[0.0], np.geomspace(1e-9, 1e3, 20001)])
+    pull = EPS_0 * 200.0**2 / 2 / (0.5e-6 + np.maximum(y, 2e-6)) ** 2
+    assert trapezoid(pull, y) == pytest.approx(-at_the_corner, rel=1e-5)

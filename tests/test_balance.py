@@ -1,8 +1,11 @@
 """What every run is checked for: balance of forces, and the cone of friction at full slip."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from fingerpad.model import balance
+from fingerpad.model.finger import Finger
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.solvers.continuation import StepFailed
@@ -35,6 +38,13 @@ def test_forces_left_at_a_node(floor, words):
     """Where the solve ended at its roundoff no tolerance helps, and none is named."""
     with pytest.raises(StepFailed, match=f"^here: a force of 0.00075 N/m is left at a node; .*{words}"):
         balance.refuse_unbalanced("here", 1e-5, None, None, 75.0, 1e-9, floor)
+
+
+def test_finger_tells_the_roundoff_of_its_solver():
+    solver = SimpleNamespace(imbalance=lambda: 1e-5, force_scale=75.0, floor=1e-7, reaction=None)
+    finger = SimpleNamespace(solver=solver, continuation=SimpleNamespace(steps=3), _tolerance=1e-9)
+    with pytest.raises(StepFailed, match=r"^step 3 \(press\): .* leaves 7.5e-06 N/m"):
+        Finger.check_balance(finger, None, "press")
 
 
 def test_friction_of_another_law_is_not_compared_with_coulomb_s():

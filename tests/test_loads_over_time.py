@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from fingerpad.io.drawing import Drawing
 from fingerpad.io.over_time import NOTE, without_parts_of_jumps
 from fingerpad.io.result import Result
 from fingerpad.io.states import load_result
@@ -182,6 +183,9 @@ def test_parts_of_a_jump_are_no_extremes():
     own = [state for state in states if min(abs(state.voltage - u) for u in (100.0, -60.0)) < 1e-6]
     assert len(own) < len(states)
     assert without_parts_of_jumps(states, states[0].time) == own
+    picture = Drawing(MU_0, follow(PRESS, SLIDE, BY | {"voltage": square}), {}, {}, {}, None, {}).figure("time")
+    drawn = picture.axes[0].lines[0].get_ydata()
+    assert set(np.round(drawn, 6)) <= {0.0, 100.0, -60.0}
     least = load_result("wave", states, None, (), scene(PRESS, BY | {"voltage": square}).history[1].wave).extremes
     assert least["f_electrostatic"].min == min(state.f_electrostatic for state in own)
 

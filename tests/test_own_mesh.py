@@ -86,6 +86,8 @@ def test_key_of_a_file_is_the_argument(place, tmp_path):
     command = html.unescape(again(summary["parameters"], "full"))
     assert from_kept(summary["parameters"]).parameters() == fp.Scene.load(file).parameters()
     assert 'from_kept(json.load(open("scene.json")))' in command
+    for door in ("key", "argument"):  # and its folder gives it again
+        assert fp.Scene.load(tmp_path / door / "scene.json").parameters() == fp.Scene.load(file).parameters()
 
 
 @pytest.mark.parametrize(

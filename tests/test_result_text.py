@@ -22,6 +22,14 @@ def test_cautions_follow_the_notes_with_a_mark():
     assert ["friction", "force", "f_T", "(N/m)", "4.000"] in [line.split() for line in lines.splitlines()]
 
 
+def test_states_of_two_meshes_name_them():
+    """As with an accuracy, whose uncharged state is of the path's mesh."""
+    coarse, fine = slip(mesh_contact=20e-6, voltage=0.0), slip(mesh_contact=5e-6)
+    told = text(fp.Result(fp.Scene(), "full", coarse, fine, fine))
+    assert "Facets of 20 µm (uncharged normal contact), 5 µm (charged normal contact), 5 µm (full slip): " in told
+    assert "Facets of" not in text(fp.Result(fp.Scene(), "full", fine, fine, fine))
+
+
 def test_whole_finger_comes_first_where_newtons_were_asked_for():
     run = fp.Result(fp.Scene(), "full", None, None, slip(), finger=whole())
     assert text(run).startswith("Result\n") and text(run).endswith(str(run.finger))

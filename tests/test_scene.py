@@ -10,6 +10,7 @@ import pytest
 from fingerpad.model.check import check
 from fingerpad.scene import Load, Scene, SceneError
 from fingerpad.scene import scene as scenes
+from fingerpad.scene.reading import model_of
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
@@ -137,10 +138,18 @@ def test_scene_of_a_run_s_folder_is_a_scene(tmp_path):
     given = Scene(f_ext=20.0, accuracy={"mu_app": 0.02})
     file = tmp_path / "scene.json"
     file.write_text(json.dumps(given.parameters() | {"model": "smooth"}), encoding="utf-8")
+    assert model_of(file) == "smooth" and model_of(tmp_path / "scene.toml") == model_of(None) == "full"
     assert Scene.load(file) == given and scenes.load(file, {"f_ext": "30 N/m"}) == given.replace(f_ext=30.0)
     for data, words in (
-        (given.parameters() | {"laws": {"friction": {}}}, "is of a run with laws or a mesh of its own"),
+        (
+            given.parameters() | {"laws": {"friction": {}}},
+            "is of a run with laws of its own, which is no part of a scene",
+        ),
         (given.parameters() | {"trace": {"force": 0.5}}, "is of a run with a force on the whole finger"),
+        (
+            given.parameters() | {"laws": {"mesh": {"path": "gone.msh", "sha256": ""}}},
+            "'gone.msh', which is gone or was",
+        ),
         ({"f_ext": 5.0}, "is not the scene.json of a run; other scenes are in TOML"),
         ([], "is not the scene.json of a run"),
     ):

@@ -33,7 +33,8 @@ def refuse_not_positive(law: Any, zero: bool = False) -> None:
     """
     for each in fields(law):
         value = getattr(law, each.name)
-        number = isinstance(value, int | float | np.number) and (0 < value < np.inf or (zero and value == 0))
+        number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+        number = number and (0 < value < np.inf or (zero and value == 0))
         if each.type in (float, "float") and not number:
             allowed = "0 or more" if zero else "greater than 0"
             raise ValueError(f"{each.name} of {type(law).__name__} is {value!r}; it must be finite and {allowed}")

@@ -13,6 +13,7 @@ from fingerpad.report.write import NAME
 from fingerpad.runs.solve import MODELS, solved
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene.reading import model_of
 
 _OUT = Path("results")
 
@@ -36,8 +37,8 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument(
         "--model",
         choices=MODELS,
-        default="full",
-        help="every ridge (full), a smooth finger with the law of one ridge, or a closed form (default: full)",
+        help="every ridge (full), a smooth finger with the law of one ridge, or a closed form (default: full, or that "
+        "of the run whose scene.json is given)",
     )
     parser.add_argument("--resume", type=path, metavar="DIR", help="go on with a run that was cut short in this folder")
     parser.add_argument(
@@ -48,6 +49,7 @@ def main(argv: Sequence[str]) -> int:
     )
     parser.add_argument("--quiet", action="store_true", help="print the result alone: no steps, no progress bar")
     args, petsc = parser.read_with_petsc(argv)
+    args.model = args.model or model_of(args.scene)
     if args.resume is not None:
         scene, args.out = _cut_short(args), args.resume
     else:

@@ -20,6 +20,12 @@ class Quantity(NamedTuple):
     """Digits after the point, where no error is estimated."""
 
     @property
+    def symbol(self) -> str:
+        """The last of the words where it is a symbol, such as µ_app, else all words."""
+        last = self.words.split()[-1]
+        return last if len(last) == 1 or "_" in last else self.words
+
+    @property
     def title(self) -> str:
         """Words and unit."""
         return f"{self.words} ({self.unit})" if self.unit else self.words

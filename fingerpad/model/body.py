@@ -115,10 +115,13 @@ class Body:
         """
         if roughness is not None:
             check(roughness)
-        if element not in ELEMENTS:
+        if not (isinstance(element, str) and element in ELEMENTS):
             raise ValueError(f"element is {element!r}; it must be one of {', '.join(ELEMENTS)}")
-        for name, value in (("force_scale", force_scale), ("touch_depth", touch_depth), ("step_scale", step_scale)):
-            if not (isinstance(value, Real) and 0 < value < math.inf):
+        if not isinstance(contact, Formulation):
+            raise ValueError(f"contact is {contact!r}; it must be a Penalty, a Nitsche or an AugmentedLagrangian")
+        numbers = {"force_scale": force_scale, "touch_depth": touch_depth, "step_scale": step_scale}
+        for name, value in (numbers | ({} if h_0 is None else {"h_0": h_0})).items():
+            if isinstance(value, bool) or not (isinstance(value, Real) and 0 < value < math.inf):
                 raise ValueError(f"{name} is {value!r}; it must be a finite number greater than 0")
         if not (callable(shape) or isinstance(shape, TaggedMesh | str | Path)):
             raise ValueError(f"shape is {shape!r}; it must be a shape of fingerpad.geometry, a mesh, or a file of one")

@@ -92,8 +92,8 @@ def _drawn(columns: Mapping[str, Quantity]) -> dict[str, tuple[str, Quantity]]:
 
 def _symbol(quantity: Quantity) -> str:
     """Return the symbol of a quantity for the headline, its index below the line; its words where it has none."""
-    name, _, index = quantity.words.split()[-1].partition("_")
-    return f"{html.text(name)}<sub>{html.text(index)}</sub>" if index else html.text(quantity.words)
+    name, _, index = quantity.symbol.partition("_")
+    return html.text(name) + (f"<sub>{html.text(index)}</sub>" if index else "")
 
 
 def _reached(row: Mapping[str, Any], columns: Iterable[str]) -> bool:
@@ -190,7 +190,8 @@ def _parameters(table: Table) -> str:
     if table.parameters is None:
         words = "The folder has no sweep.json, and so no scene: an earlier version of fingerpad wrote it."
         return html.section("parameters", "Parameters", html.paragraph(words))
-    return html.section("parameters", "Parameters", parameters.all_of(table.parameters, table.axes))
+    varied = (*table.axes, "f_ext") if FORCE in table.axes else table.axes  # in whose place the force is
+    return html.section("parameters", "Parameters", parameters.all_of(table.parameters, varied))
 
 
 def _cite(table: Table) -> str:

@@ -15,6 +15,7 @@ import sys
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
@@ -40,7 +41,7 @@ def key(scene: Scene, force: float | None = None) -> str:
     """
     kept = identity(scene.parameters())
     if force is not None:
-        kept = {"force": force, "scene": {name: value for name, value in kept.items() if name != "f_ext"}}
+        kept = {"force": force, "scene": kept}
     return hashlib.sha256(json.dumps(kept, sort_keys=True).encode()).hexdigest()[:16]
 
 
@@ -51,7 +52,7 @@ def result(scene: Scene, folder: Path, force: float | None = None) -> Summary | 
     """
     summary = _summary(folder / key(scene, force))
     again = summary is None or summary.get("interrupted") or _OF_THE_MACHINE in summary.get("failure", "")
-    trace = force is not None and summary is not None and not {"asked", "failure"} & set(summary)
+    trace = force is not None and summary is not None and "asked" not in summary and set(summary) != {"failure"}
     return None if again or trace else summary
 
 
@@ -99,7 +100,7 @@ def sweep(
     limit: float = _LIMIT,
     model: str = "full",
     quiet: bool = False,
-    force: float | None = None,
+    forces: Mapping[str, float] = MappingProxyType({}),
 ) -> dict[str, Summary]:
     """Run what has not been run yet, with a progress bar.
 
@@ -110,17 +111,18 @@ def sweep(
         limit: seconds of processor time for one scene.
         model: ``"full"`` or ``"smooth"``.
         quiet: whether to print nothing, and show no bar.
-        force: on the whole finger (N), as of :func:`fingerpad.runs.solve.run`.
+        forces: on the whole finger (N) by name, as of :func:`fingerpad.runs.solve.run`; of scenes that have one.
 
     Returns:
         The summaries by name. That of a run that crashed, took too long, had too little memory or was asked to stop
         holds ``failure`` alone, and it goes on the next time; what it left is in its folder.
     """
-    found = {name: result(scene, folder, force) for name, scene in scenes.items()}
+    found = {name: result(scene, folder, forces.get(name)) for name, scene in scenes.items()}
     broken: dict[str, Summary] = {}
     took: list[float] = []  # s, of each run
 
     def job(name: str) -> End:
+        force = forces.get(name)
         place = folder / key(scenes[name], force)
         place.mkdir(parents=True, exist_ok=True)
         with (place / "lock").open("w") as lock:
@@ -130,18 +132,14 @@ def sweep(
             (place / "summary.json").unlink(missing_ok=True)  # of a run that says nothing of this one
             (place / "asked.json").write_text(json.dumps(scenes[name].parameters(), indent=1), encoding="utf-8")
             start = time.monotonic()
-            given = [
-                str(place / "asked.json"),
-                str(place),
-                str(limit),
-                model,
-                *([] if force is None else [repr(force)]),
-            ]
+            given = [str(place / "asked.json"), str(place), str(limit), model]
+            given += [] if force is None else [repr(force)]
             end = run("fingerpad.runs.batch", given, limit)
             took.append(time.monotonic() - start)
             return end
 
     def done(name: str, end: End, left: int) -> None:
+        force = forces.get(name)
         summary = result(scenes[name], folder, force)
         if summary is None:
             crashed = f"{end.reason}: {end.message}" if end.reason else "INTERRUPTED"
@@ -160,7 +158,7 @@ def sweep(
     with progress(quiet) as bar:
         task = bar.add_task("scenes", total=len(missing))
         Pool[str, End](job, jobs).run(missing, done)
-    return {name: result(scene, folder, force) or broken[name] for name, scene in scenes.items()}
+    return {name: result(scene, folder, forces.get(name)) or broken[name] for name, scene in scenes.items()}
 
 
 def _one(scene: Path, folder: Path, model: str, force: float | None = None) -> None:

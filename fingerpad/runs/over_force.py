@@ -1,12 +1,8 @@
-"""A sweep over the force in newtons: each scene is traced once, to the largest force, and read at the others."""
+"""The axis ``force`` of a sweep: forces on the whole finger, which are no key of a scene."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
-from fingerpad.io.result import Result
 from fingerpad.runs.sweep_columns import FORCE
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import show
@@ -34,28 +30,3 @@ def forces(axes: Mapping[str, Sequence[Any]], scenes: Sequence[Scene]) -> tuple[
     for scene in scenes:
         traces.refuse(scene)
     return found
-
-
-def at_each(found: Sequence[Result], values: Mapping[str, Sequence[Any]]) -> list[Result]:
-    """Return the results of all points.
-
-    Args:
-        found: of the scenes under the largest force, the last axis fastest; see :func:`fingerpad.runs.solve.run`.
-        values: of all axes, the force among them.
-    """
-    keys = list(values)
-    shape = [len(values[key]) for key in keys]
-    others = np.arange(len(found)).reshape([1 if key == FORCE else n for key, n in zip(keys, shape, strict=True)])
-    forces_at = np.reshape(values[FORCE], [n if key == FORCE else 1 for key, n in zip(keys, shape, strict=True)])
-    pairs = zip(np.broadcast_to(others, shape).ravel(), np.broadcast_to(forces_at, shape).ravel(), strict=True)
-    return [_under(found[k], float(force)) for k, force in pairs]
-
-
-def _under(result: Result, force: float) -> Result:
-    """Return a result with its finger under another force, or with the reason why not."""
-    if result.finger is None or force == result.finger.f_ext:
-        return result
-    try:
-        return replace(result, finger=result.finger.under(force))
-    except SceneError as error:
-        return replace(result, finger=None, failure=str(error))

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from numbers import Integral
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -55,8 +55,7 @@ def sweep(
         quiet: whether to print no line for each point, and show no progress bar.
         **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``. An axis ``force``
             is of external forces on the whole finger, in N or as texts with units, in place of ``f_ext``: see
-            ``force`` of :func:`fingerpad.runs.solve.run`. The other axes' scenes are run once, to the largest force,
-            and each result's ``finger`` is under its own force; tables and arrays are then of the whole finger.
+            ``force`` of :func:`fingerpad.runs.solve.run`. Tables and arrays are then of the whole finger.
 
     Raises:
         SceneError: a key or a value that a scene cannot have, no values, a scene with laws of its own, which other
@@ -74,20 +73,15 @@ def sweep(
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     _refuse_axes(scene, axes)
-    of_scene = {key: values for key, values in axes.items() if key != FORCE}
-    scenes = _scenes(scene, of_scene)
-    values = _values(scenes, of_scene)
-    forces = over_force.forces(axes, scenes)
+    scenes = _scenes(scene, axes)
+    values = _values(scenes, axes)
     folder = Path(out)
     _claim(folder)
-    largest = max(forces, default=None)
+    points = [_Point(*each) for each in zip(scenes, _points(values), strict=True)]
     if model == "cylinders":
-        found = [_closed(each, largest) for each in scenes]
+        found = [_closed(point) for point in points]
     else:
-        found = _in_processes(scenes, _points(values), folder, jobs, model, quiet, largest)
-    if forces:
-        values = {key: values.get(key, forces) for key in axes}
-        found = over_force.at_each(found, values)
+        found = _in_processes(points, folder, jobs, model, quiet)
     done = Sweep(values, tuple(found), folder)
     for name in FILES[1:]:  # else that of an earlier sweep may stay beside this one's table
         (folder / name).unlink(missing_ok=True)
@@ -124,8 +118,8 @@ def _points(axes: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
 
 
 def _scenes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> list[Scene]:
-    """Return the scenes of all points, checked."""
-    return [_with(scene, point) for point in _points(axes)]
+    """Return the scenes of all points, checked; a force in newtons is in none of them."""
+    return [_with(scene, {key: v for key, v in point.items() if key != FORCE}) for point in _points(axes)]
 
 
 def _refuse_axes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> None:
@@ -157,6 +151,9 @@ def _values(scenes: Sequence[Scene], axes: Mapping[str, Sequence[Any]]) -> dict[
     found, apart = {}, len(scenes)  # points from one value of an axis to the next
     for key, values in axes.items():
         apart //= len(values)
+        if key == FORCE:
+            found[key] = over_force.forces(axes, scenes)
+            continue
         found[key] = tuple(_at(scenes[k * apart], key) for k in range(len(values)))
         if len(set(map(repr, found[key]))) < len(values):
             raise SceneError(f"{key} of the sweep is {show(values)}; each value must be there once")
@@ -182,42 +179,49 @@ def _at(scene: Scene, key: str) -> Any:
     return value
 
 
-def _closed(scene: Scene, force: float | None) -> Result:
+class _Point(NamedTuple):
+    """A point of a sweep."""
+
+    scene: Scene
+    values: Mapping[str, Any]
+    """Of the axes by key."""
+
+    @property
+    def force(self) -> float | None:
+        """On the whole finger (N), if the sweep is over it."""
+        return self.values.get(FORCE)
+
+    def failed(self, model: str, why: str) -> Result:
+        """Return a result without any number."""
+        return Result(self.scene, model, None, None, None, failure=why)
+
+
+def _closed(point: _Point) -> Result:
     try:
-        return solved(scene, "cylinders", force=force)
+        return solved(point.scene, "cylinders", force=point.force)
     except SceneError as error:
-        return Result(scene, "cylinders", None, None, None, failure=str(error))
+        return point.failed("cylinders", str(error))
 
 
-def _in_processes(
-    scenes: Sequence[Scene],
-    points: Sequence[Mapping[str, Any]],
-    folder: Path,
-    jobs: int,
-    model: str,
-    quiet: bool,
-    force: float | None,
-) -> list[Result]:
-    """Return the results of scenes, those that can be run in processes of their own, kept by their parameters."""
+def _in_processes(points: Sequence[_Point], folder: Path, jobs: int, model: str, quiet: bool) -> list[Result]:
+    """Return the results of points, those that can be run in processes of their own, kept by their parameters."""
     from fingerpad.runs import batch
 
     place = folder / model
-    refused, named = {}, {}
-    for scene, point in zip(scenes, points, strict=True):
-        words = ", ".join(f"{key} {show(value)}" for key, value in point.items())
-        words += "" if force is None else f"{', ' if words else ''}to {force:g} N"
-        key = batch.key(scene, force)
+    results, keys, named = dict[str, Result](), list[str](), dict[str, _Point]()
+    for point in points:
+        keys.append(batch.key(point.scene, point.force))
+        words = ", ".join(f"{key} {show(value)}" for key, value in point.values.items())
         try:
-            check(scene)
-            named[f"{words} ({key})"] = scene
+            check(point.scene)
+            named[f"{words} ({keys[-1]})"] = point
         except SceneError as error:
-            refused[key] = Result(scene, model, None, None, None, failure=str(error))
-    found = batch.sweep(named, place, jobs, _LIMIT, model, quiet, force)
-    results = dict(refused)
-    for name, scene in named.items():
-        summary, key = found[name], batch.key(scene, force)
-        if set(summary) == {"failure"}:
-            results[key] = Result(scene, model, None, None, None, failure=summary["failure"])
-        else:
-            results[key] = Result.load(place / key)
-    return [results[batch.key(scene, force)] for scene in scenes]
+            results[keys[-1]] = point.failed(model, str(error))
+    scenes = {name: point.scene for name, point in named.items()}
+    forces = {name: point.force for name, point in named.items() if point.force is not None}
+    found = batch.sweep(scenes, place, jobs, _LIMIT, model, quiet, forces)
+    for name, point in named.items():
+        summary, key = found[name], batch.key(point.scene, point.force)
+        lost = set(summary) == {"failure"}
+        results[key] = point.failed(model, summary["failure"]) if lost else Result.load(place / key)
+    return [results[key] for key in keys]

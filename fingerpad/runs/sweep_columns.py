@@ -130,10 +130,7 @@ def in_time(name: str, columns: Iterable[str]) -> dict[str, str]:
 
 def head(quantity: Quantity) -> str:
     """Return the symbol of a quantity, or its words where it has none, with the unit."""
-    *_, last = quantity.words.split()
-    name = (
-        last if len(last) == 1 or "_" in last else "ridges" if quantity.words.startswith("ridges") else quantity.words
-    )
+    name = quantity.symbol.removesuffix(" in contact")
     return f"{name} ({quantity.unit})" if quantity.unit else name
 
 

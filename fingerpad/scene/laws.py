@@ -109,8 +109,8 @@ class Laws:
         names = [name for name in self.kept if name != "materials"]
         names += [f"materials.{layer}" for layer in self.kept.get("materials", {})]
         raise SceneError(
-            f"the scene was read from a run with laws of its own ({', '.join(names)}), which its files do not hold; "
-            "give them again, as arguments of run or by with_laws"
+            f"the scene was read from a run with laws of its own ({', '.join(names)}), of which its files have "
+            "the names and numbers alone; give them again, as arguments of run or by with_laws"
         )
 
     def with_file(self, file: str | None) -> "Laws":

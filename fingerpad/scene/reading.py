@@ -1,5 +1,6 @@
 """From a scene file, or from changes of one, to plain data: read within bounds, whatever is in it."""
 
+import hashlib
 import json
 import os
 import re
@@ -22,7 +23,7 @@ _PATH = 80  # characters of a path in a message
 _AFTER_VALUE = "Expected newline or end of document after a statement"  # tomllib, of 50,0 and of 50 N/m
 _NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
 _FILES = r"geometry\.file|roughness\.topography\.file|history\[\d+\]\.voltage\.file"
-_MORE = {"laws": "laws or a mesh of its own", "trace": "a force on the whole finger"}
+_LAWS, _FORCE = "laws of its own", "a force on the whole finger"
 _KEY = re.compile(rf"{_NAME}(\.{_NAME})*")
 
 
@@ -78,8 +79,33 @@ def read_study(path: Path) -> dict[str, Any]:
     return data
 
 
+def model_of(path: Path | None) -> str:
+    """Return the model of the run whose ``scene.json`` is given, ``"full"`` of any other scene.
+
+    Raises:
+        SceneError: the file cannot be read.
+    """
+    return "full" if path is None or path.suffix.lower() != ".json" else str(_kept(path).get("model", "full"))
+
+
 def _of_run(path: Path) -> dict[str, Any]:
-    """Return the data of the scene of a run's folder."""
+    """Return the data of the scene of a run's folder; a mesh of its own is the key ``geometry.file``."""
+    name, data = f"scene file {clip(str(path), _PATH)}", _kept(path)
+    laws = data.pop("laws", {})
+    more = [words for words, there in ((_LAWS, set(laws) - {"mesh"}), (_FORCE, "trace" in data)) if there]
+    if more:
+        raise SceneError(f"{name} is of a run with {more[0]}, which is no part of a scene; give it from Python")
+    if laws:
+        file, shape = laws["mesh"]["path"], data.pop("geometry")
+        if not Path(file).is_file() or hashlib.sha256(Path(file).read_bytes()).hexdigest() != laws["mesh"]["sha256"]:
+            raise SceneError(f"{name} has the mesh {show(file)}, which is gone or was changed; put that one back")
+        data["geometry"] = {"file": file} | {key: shape[key] for key in ("sc_thickness",) if key in shape}
+        data.pop("mesh", None)
+    return {key: value for key, value in data.items() if key != "model"}
+
+
+def _kept(path: Path) -> dict[str, Any]:
+    """Return what a ``scene.json`` holds."""
     name = f"scene file {clip(str(path), _PATH)}"
     try:
         data = json.loads(read_bytes(path))
@@ -89,12 +115,7 @@ def _of_run(path: Path) -> dict[str, Any]:
         raise SceneError(f"{name} is not JSON: {clip(str(error), 150)}") from None
     if not isinstance(data, dict) or "geometry" not in data:
         raise SceneError(f"{name} is not the scene.json of a run; other scenes are in TOML")
-    more = [f"{words} ({key})" for key, words in _MORE.items() if data.get(key)]
-    if more:
-        raise SceneError(
-            f"{name} is of a run with {more[0]}, which is no part of a scene; report.html says how to repeat it"
-        )
-    return {key: value for key, value in data.items() if key != "model"}
+    return data
 
 
 def _beside(value: Any, folder: Path, where: str = "") -> Any:

@@ -41,8 +41,7 @@ class Slices(Part):
     on this scale. *Assumption*: 1 everywhere. Range: a tenth to ten times."""
     count: Annotated[int, Field(strict=True, ge=4, le=MOST)] = 48
     """Number of slices in each stretch of contact, the points of a Gauss rule. Half the default changes forces by less
-    than 0.01 % and areas by less than 0.3 % on a smooth trace (``docs/newtons.md``). Where ridges jump, the default
-    itself can be off by 0.2 % in forces and 0.4 % in areas; 400 cost nothing."""
+    than 0.01 % and areas by less than 0.3 % on a smooth trace (``docs/newtons.md``), and by more where ridges jump."""
 
     @model_validator(mode="after")
     def _consistent(self) -> "Slices":

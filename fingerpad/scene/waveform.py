@@ -32,26 +32,24 @@ SAMPLES = 24
 MOST = 10_000
 """Most samples of a load."""
 _POINTS = 2000  # most points of a file
+_LEAST = 1e-3  # V; what is less in a table is 0: noise, or roundoff of a computed sine
 _HIGHEST = 5e3  # V
 _NEAR = 1e-9  # of a period: two times that are one
-_SUDDEN, _OWN = (
-    0.05,
-    0.5,
-)  # of the peak, and of a piece's own change: what one sample before it cuts the piece if larger
+_SUDDEN = 0.01  # of the peak: a change of the voltage, within one sample before a piece of a table, that cuts the piece
+_OWN = 0.5  # of the piece's own change: a smaller change before it cuts no piece
 _NOTHING = 1e-12  # of the peak: a voltage that is roundoff of zero
 _TIME, _VOLTAGE = "time (s)", "voltage (V)"
 Sample = tuple[float, float]
 """Time (s) since the start of the load, and voltage (V)."""
-Volts = Annotated[Finite, within(1e-3, _HIGHEST, "V", zero=True, sides=2)]
-_ROUNDOFF = 1e-9  # V, in a table: a computed sine is not 0 at its zeros
+Volts = Annotated[Finite, within(_LEAST, _HIGHEST, "V", zero=True, sides=2)]
 
 
-def _without_roundoff(value: Any) -> Any:
-    """Return a voltage of a table, and 0 for one that is roundoff."""
-    return 0.0 if isinstance(value, float) and abs(value) < _ROUNDOFF else value
+def _or_zero(value: Any) -> Any:
+    """Return a voltage of a table, and 0 for one that is less than a scene can have."""
+    return 0.0 if isinstance(value, float) and abs(value) < _LEAST else value
 
 
-_Tabled = Annotated[Volts, BeforeValidator(_without_roundoff)]
+_Tabled = Annotated[Volts, BeforeValidator(_or_zero)]
 Seconds = Annotated[Finite, within(1e-9, 1e5, "s", zero=True)]
 # Behind a validator that reads a file, strict rules no longer take a list for a tuple.
 _LISTED = BeforeValidator(lambda value: tuple(value) if isinstance(value, list) else value)
@@ -75,7 +73,7 @@ class Waveform(Part):
     times: Annotated[tuple[Seconds, ...], _LISTED] | None = None
     """Times (s) of a file's points, or in place of a file."""
     voltages: Annotated[tuple[_Tabled, ...], _LISTED] | None = None
-    """Voltages (V) at these times; below 1e-9 V they are 0."""
+    """Voltages (V) at these times; below 1 mV they are 0."""
 
     @model_validator(mode="before")
     @classmethod
@@ -307,7 +305,7 @@ def _table(file: str) -> dict[str, Any]:
                 value = math.nan
             if not math.isfinite(value):
                 raise ValueError(f"{name}, whose line {line} has {show(text)}; it must be a finite number")
-            value = _without_roundoff(value) if found is voltages else value
+            value = _or_zero(value) if found is voltages else value
             if value not in allowed:
                 raise ValueError(f"{name}, whose line {line} has a number that {allowed.words(value)}")
             found.append(value)

@@ -91,7 +91,7 @@ class WholeFinger:
                 raise SceneError(
                     f"the force is {value:.4g} N, under which the centre of the finger bears {total.centre:.3g} N/m, "
                     f"and its trace in {WORDS[name]} begins at {first:.3g} N/m; "
-                    "give a larger force, or run this one by itself"
+                    "give a larger force, or run this one"
                 )
         found = replace(self, states=states)
         scaled = {

@@ -86,6 +86,9 @@ def whole(scene: Scene, force: float, model: str, solve: "Solve") -> Result:
             )
         last = solve(scene.model_copy(update={"f_ext": f_ext}), "")
     states = {name: each.trace for name, each in found.items()}
+    if not scene.voltage:  # normal contact is one state then, with two names
+        totals["charged"], known["charged"] = totals["uncharged"], known["uncharged"]
+        states["charged"] = states["uncharged"]
     return replace(last, finger=WholeFinger(in_order(totals), source, known, states, scene.slices))
 
 

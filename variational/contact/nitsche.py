@@ -36,6 +36,16 @@ class Nitsche(Formulation):
     gamma_0: float
     theta: int = 0
 
+    def __post_init__(self) -> None:
+        """Refuse other variants.
+
+        Raises:
+            ValueError: ``theta`` is none of the three, or ``gamma_0`` is not positive.
+        """
+        super().__post_init__()
+        if self.theta not in (1, 0, -1):
+            raise ValueError(f"theta of Nitsche is {self.theta!r}; it must be 1, 0 or -1")
+
     def springs(self, skin: Skin) -> Springs:
         """Return springs preloaded by the skin's traction."""
         traction = skin.elastic() - skin.attraction
