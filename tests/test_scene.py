@@ -143,7 +143,7 @@ def test_scene_of_a_run_s_folder_is_a_scene(tmp_path):
     for data, words in (
         (
             given.parameters() | {"laws": {"friction": {}}},
-            "is of a run with laws of its own, which is no part of a scene",
+            "is of a run with laws of its own, which are no part of a scene",
         ),
         (given.parameters() | {"trace": {"force": 0.5}}, "is of a run with a force on the whole finger"),
         (

@@ -23,7 +23,8 @@ _PATH = 80  # characters of a path in a message
 _AFTER_VALUE = "Expected newline or end of document after a statement"  # tomllib, of 50,0 and of 50 N/m
 _NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
 _FILES = r"geometry\.file|roughness\.topography\.file|history\[\d+\]\.voltage\.file"
-_LAWS, _FORCE = "laws of its own", "a force on the whole finger"
+_LAWS = "laws of its own, which are no part of a scene; run it from Python"
+_FORCE = "a force on the whole finger, which is no part of a scene; its report.html has the command"
 _KEY = re.compile(rf"{_NAME}(\.{_NAME})*")
 
 
@@ -94,7 +95,7 @@ def _of_run(path: Path) -> dict[str, Any]:
     laws = data.pop("laws", {})
     more = [words for words, there in ((_LAWS, set(laws) - {"mesh"}), (_FORCE, "trace" in data)) if there]
     if more:
-        raise SceneError(f"{name} is of a run with {more[0]}, which is no part of a scene; give it from Python")
+        raise SceneError(f"{name} is of a run with {more[0]}")
     if laws:
         file, shape = laws["mesh"]["path"], data.pop("geometry")
         if not Path(file).is_file() or hashlib.sha256(Path(file).read_bytes()).hexdigest() != laws["mesh"]["sha256"]:
