@@ -228,6 +228,8 @@ def test_closed_form_as_a_run(tmp_path):
     done = plainly("run", "--model", "cylinders", "--set", 'f_ext="50 N/m"', "--out", "out", folder=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("Result (model 'cylinders')")
+    again = plainly("run", "out/scene.json", "--out", "again", folder=tmp_path)
+    assert again.stdout.replace("again", "out") == done.stdout, "the scene of a folder, by its model"
     assert json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))["f_ext"] == 50.0
 
 

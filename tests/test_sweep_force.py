@@ -71,6 +71,7 @@ def test_report_has_newtons_and_says_how_to_repeat_it(found, tmp_path):
     assert f"µ<sub>app</sub> from {mu.min():.3f} to {mu.max():.3f}</h1>" in page
     assert "whole finger at full slip, over" in page and "friction force F_T (N)" in page
     assert "f_T (N/m)" not in page and "at full slip over the sweep" in page
+    assert re.search(r"f_ext</th><td>varied", page), "the force is in its place"
     code = html.unescape(re.search(r"<pre><code>(.*?)</code>", page, re.DOTALL)[1])
     words = shlex.split(code)
     over = [words[k + 1] for k, word in enumerate(words) if word == "--over"]
