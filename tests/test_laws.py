@@ -79,6 +79,10 @@ def test_laws_of_a_read_scene_are_given_again_before_it_is_run(tmp_path):
     ):
         with pytest.raises(SceneError, match=words):
             run(scene)
+    for law in (scene.closure, scene.friction_law, scene.solids):  # they answered by the keys
+        with pytest.raises(SceneError, match=words):
+            law()
+    assert scene.with_laws(friction=0.3).friction_law() == Coulomb(0.3)
     two = OWN | {"materials": {"dermis": Mine(2.5e3, 6e4), "nail": NeoHooke(1e7)}}
     both = Result.from_dict({"parameters": Scene().with_laws(**two).parameters(), "f_ext": 75.0, "voltage": 0.0}).scene
     one = both.with_laws(materials={"dermis": Mine(2.5e3, 6e4)})

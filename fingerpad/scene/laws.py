@@ -98,13 +98,16 @@ class Laws:
         kept = {name: law for name, law in self.kept.items() if name != "materials" and name not in given}
         return kept | ({"materials": solids} if solids else {})
 
-    def refuse_kept(self) -> None:
+    def refuse_kept(self, name: str | None = None) -> None:
         """Refuse laws that are known by name alone.
+
+        Args:
+            name: of the one law that is asked for; None for any.
 
         Raises:
             SceneError: which they are.
         """
-        if not self.kept:
+        if not self.kept or (name is not None and name not in self.kept):
             return
         names = [name for name in self.kept if name != "materials"]
         names += [f"materials.{layer}" for layer in self.kept.get("materials", {})]

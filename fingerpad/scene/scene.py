@@ -176,15 +176,22 @@ class Scene(Part):
         return self
 
     def closure(self) -> Closure:
-        """Return the microscale."""
+        """Return the microscale.
+
+        Raises:
+            SceneError: it is known by name alone, in a scene that was read from a run's files.
+        """
+        self._laws.refuse_kept("closure")
         return self.roughness.bearing_area(self.h_0) if self.laws.closure is None else self.laws.closure
 
     def friction_law(self) -> Friction | None:
-        """Return the law of friction, None without friction."""
+        """Return the law of friction, None without friction; raises as :meth:`closure` does."""
+        self._laws.refuse_kept("friction")
         return law_of(self.friction if self.laws.friction is None else self.laws.friction)
 
     def solids(self) -> "dict[int, Material]":
-        """Return the material of each layer's tag."""
+        """Return the material of each layer's tag; raises as :meth:`closure` does."""
+        self._laws.refuse_kept("materials")
         own = self.laws.materials
         return {LAYERS[layer]: own.get(layer, solid) for layer, solid in self.materials.solids().items()}
 
