@@ -40,6 +40,7 @@ def test_units_are_converted(table):
         ("force, friction (1)\n1, 2\n", "line 2, column 1: 'force' has no unit; write 'name (unit)', and (1) for"),
         ("force (furlong), friction (1)\n1, 2\n", "line 2, column 1: the unit of force is 'furlong'; its unit is not"),
         ("force (g), friction (1)\n1, 2\n", "force per length; it must be in N/m, or in N for a whole finger"),
+        ("force (N/m), friction force (N)\n1, 2\n", "it must be in N, as another column is of a whole finger"),
         ("voltage (g), friction (1)\n1, 2\n", "its unit is not a unit of voltage; it must be in V"),
         ("force (wibble), friction (1)\n1, 2\n", "the unit of force is 'wibble'; its unit is not known"),
         ("voltage (V), friction (N)\n1, 2\n", "line 2, column 2: the unit of friction is 'N'; it must be 1"),

@@ -54,7 +54,7 @@ def refuse_unbalanced(
     bone: NDArray[np.float64],
     scale: float,
     tolerance: float,
-    floor: float = 0.0,
+    floor: float,
 ) -> None:
     """Refuse a state in which forces are left at a node, or the bone does not bear what the screen does.
 

@@ -86,10 +86,8 @@ def times_left(took: Sequence[float], left: int, jobs: int) -> tuple[float, floa
 
 def _said(summary: Summary, force: float | None) -> str:
     """Return what became of a run that did not fail, in words."""
-    slip: Mapping[str, Any] = summary
-    if force is not None:
-        slip = {f"slip_{name}": value for name, value in summary["finger"]["states"].get("full_slip", {}).items()}
-    mu_app = slip.get("slip_mu_app")
+    of_finger = force is not None  # whose cross-section is at another force
+    mu_app = summary["finger"]["states"].get("full_slip", {}).get("mu_app") if of_finger else summary.get("slip_mu_app")
     return "done" if mu_app is None else f"done, µ_app {mu_app:.4f}"
 
 
@@ -117,7 +115,11 @@ def sweep(
         The summaries by name. That of a run that crashed, took too long, had too little memory or was asked to stop
         holds ``failure`` alone, and it goes on the next time; what it left is in its folder.
     """
-    found = {name: result(scene, folder, forces.get(name)) for name, scene in scenes.items()}
+
+    def kept(name: str) -> Summary | None:
+        return result(scenes[name], folder, forces.get(name))
+
+    found = {name: kept(name) for name in scenes}
     broken: dict[str, Summary] = {}
     took: list[float] = []  # s, of each run
 
@@ -127,7 +129,7 @@ def sweep(
         place.mkdir(parents=True, exist_ok=True)
         with (place / "lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)  # another sweep may be at it
-            if result(scenes[name], folder, force) is not None:
+            if kept(name) is not None:
                 return End(0, "", "", "")
             (place / "summary.json").unlink(missing_ok=True)  # of a run that says nothing of this one
             (place / "asked.json").write_text(json.dumps(scenes[name].parameters(), indent=1), encoding="utf-8")
@@ -139,8 +141,7 @@ def sweep(
             return end
 
     def done(name: str, end: End, left: int) -> None:
-        force = forces.get(name)
-        summary = result(scenes[name], folder, force)
+        force, summary = forces.get(name), kept(name)
         if summary is None:
             crashed = f"{end.reason}: {end.message}" if end.reason else "INTERRUPTED"
             said = (_summary(folder / key(scenes[name], force)) or {}).get("failure", "")
@@ -158,7 +159,7 @@ def sweep(
     with progress(quiet) as bar:
         task = bar.add_task("scenes", total=len(missing))
         Pool[str, End](job, jobs).run(missing, done)
-    return {name: result(scene, folder, forces.get(name)) or broken[name] for name, scene in scenes.items()}
+    return {name: kept(name) or broken[name] for name in scenes}
 
 
 def _one(scene: Path, folder: Path, model: str, force: float | None = None) -> None:
