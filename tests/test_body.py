@@ -40,6 +40,10 @@ def slid(alone=False) -> Body:
     [
         ({"shape": 3}, "shape is 3; it must be a shape of fingerpad.geometry, a mesh, or a file of one"),
         ({"element": "P7"}, "element is 'P7'; it must be one of P1, P2"),
+        ({"element": ["P1"]}, "element is .*; it must be one of P1, P2"),
+        ({"contact": 3}, "contact is 3; it must be a Penalty, a Nitsche or an AugmentedLagrangian"),
+        ({"h_0": -1.0}, "h_0 is -1.0; it must be a finite number greater than 0"),
+        ({"force_scale": True}, "force_scale is True; it must be"),
         ({"force_scale": -1.0}, "force_scale is -1.0; it must be a finite number greater than 0"),
         ({"touch_depth": 0.0}, "touch_depth is 0.0; it must be"),
         ({"step_scale": float("nan")}, "step_scale is nan; it must be"),
@@ -58,6 +62,11 @@ def test_stiffnesses_are_positive(kind, numbers, name):
     """A negative one drags the skin along: µ_app of -0.36 under a coefficient of 0.25."""
     with pytest.raises(ValueError, match=f"{name} of {kind.__name__} is .*; it must be finite and"):
         kind(*numbers)
+
+
+def test_variants_of_nitsche_are_three():
+    with pytest.raises(ValueError, match="theta of Nitsche is 5; it must be 1, 0 or -1"):
+        Nitsche(10.0, 5)
 
 
 def test_slide_in_another_unit_is_refused():
