@@ -22,6 +22,7 @@ from variational.solvers.coupling import Coupling
 from variational.solvers.equations import Control
 from variational.solvers.failure import NotConverged
 from variational.solvers.homotopy import relax
+from variational.solvers.onset import return_to_onset
 
 Array = NDArray[np.float64]
 
@@ -55,12 +56,8 @@ _FORCE, _VOLTAGE, _SINK, _SLIDE = 0.134, 0.5, 40e-6, 120e-6
 _SMALLEST = 1e-3  # step below which a load is given up, over the largest
 _MANY = 0.5  # part of the contact points that slip, above which they are expected to slip on when the bone moves
 _STEP_OVER = 1.5  # step tried where the loop over the scales cycles, over the one that led there
-_WAYS = (
-    "at once",
-    "under held skin",
-    "part by part",
-    "pseudo-transient",
-)  # to an equilibrium from a state from elsewhere
+# To an equilibrium from a state from elsewhere.
+_WAYS = ("at once", "under held skin", "part by part", "pseudo-transient")
 _FEW = 6  # factorisations; a step that took no more lets the next one grow
 _MANY_STEPS, _FEW_STEPS = 20, 100  # most steps of a load: so many for each of its largest steps, and so many more
 _UNCUT = 3  # steps in a row that were not cut, after which the next one grows however hard they were
@@ -98,13 +95,13 @@ class _Way:
 
     def __init__(self, start: AcceptedState, target: Target) -> None:
         self.start, self.target = start, target
+        self.length = 0.0 if target.bone_x is None else target.bone_x - start.control.x
 
     def at(self, part: float) -> tuple[Control, float]:
         """Return control and voltage where a part of the target is reached."""
         a, target = self.start, self.target
-        x1 = a.control.x if target.bone_x is None else target.bone_x
         u1 = a.voltage if target.voltage is None else target.voltage
-        c = Control(a.control.x + part * (x1 - a.control.x), a.control.y, a.control.force)
+        c = Control(a.control.x + part * self.length, a.control.y, a.control.force)
         if target.bone_height is not None:
             c.y = a.height + part * (target.bone_height - a.height)
         elif target.f_ext is not None:
@@ -129,8 +126,7 @@ class _Way:
             steps.append((_VOLTAGE * max(squares), abs(squares[0] - squares[1])))
         if target.bone_height is not None:
             steps.append((_SINK, abs(target.bone_height - a.height)))
-        if target.bone_x is not None:
-            steps.append((_SLIDE, abs(target.bone_x - a.control.x)))
+        steps.append((_SLIDE, abs(self.length)))
         return float(min([1.0, *(scale * most / whole for most, whole in steps if whole > 0)]))
 
 
@@ -227,7 +223,7 @@ class Continuation:
         way = _Way(self._now, target)
         largest = way.largest_step(self.step_scale)
         # A slide begins with a shorter step: under a light load it may be over within one.
-        slides = target.bone_x not in (None, self._now.control.x) and not target.continues
+        slides = way.length != 0 and not target.continues
         part, step, uncut, cut, jumps = 0.0, largest / 2 if slides else largest, 0, 0, False
         first, most = self.steps, _FEW_STEPS + int(np.ceil(_MANY_STEPS / largest))
         while part < 1:
@@ -254,6 +250,8 @@ class Continuation:
                     step = over if attempt.stepped_over_fold else within
                     if failure.irrecoverable or pseudo_transient and within < _SMALLEST * largest:
                         raise StepFailed(self._describe(target, part, failure)) from failure
+            if target.until_full_slip and slides:
+                step -= return_to_onset(self.solver, self.observer, way.length) / abs(way.length)
             self.accept()
             part += step
             if self.on_accept(target, part, attempt) is True:

@@ -76,6 +76,7 @@ class Iteration:
     Attributes:
         tangent: with its factorisation.
         force_scale: force per length (N/m) in which residuals are measured.
+        tolerance: norm of the nodal forces' imbalance (N/m) at convergence.
         f: the residual (N/m) where the last run ended.
         floor: norm of the nodal forces' imbalance over ``force_scale`` with which the last run ended at the floor of
             roundoff, above its tolerance; zero if it met that.
@@ -101,6 +102,7 @@ class Iteration:
         self._skin_height = equations.problem.V.tabulate_dof_coordinates()[self._skin // 2, 1]
         self._nodal = np.zeros_like(equations.problem.w.x.array)
         self.snes = self._create_snes(force_scale * tolerance)
+        self.tolerance = float(self.snes.getTolerances()[1])
         self._most = int(self.snes.getTolerances()[3])  # iterations of a run that is not shifted
 
     def _create_snes(self, imbalance: float) -> PETSc.SNES:
@@ -162,6 +164,12 @@ class Iteration:
         if reason <= 0 or self.snes.getType() != PETSc.SNES.Type.NEWTONLS:
             self.equations.residual(x, self.f)
         return reason
+
+    def take(self, x: PETSc.Vec) -> None:
+        """Take a state that was found elsewhere as that in which the last run ended; collective."""
+        self.equations.residual(x, self.f)
+        norm = float(self.f.norm())
+        self.floor = norm / self.force_scale if norm > self.tolerance else 0.0
 
     def forget(self) -> None:
         """Leave nothing of earlier solves to the next one: neither a factorisation nor a layer; collective."""

@@ -13,6 +13,8 @@ has a negative direction, and the solve is repeated as pseudo-transient continua
 equilibrium that is lost and ends in one of the unchanged equations.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
@@ -89,6 +91,11 @@ class Solver:
         """See :attr:`variational.solvers.iteration.Iteration.floor`."""
         return self.iteration.floor
 
+    @property
+    def pressure(self) -> Array:
+        """This rank's unknowns of a mixed element's pressure (m), see :mod:`variational.pressure`."""
+        return self.x.array_r[: self.layout.local_size - len(self.layout.displacement_rows)].copy()
+
     def set_displacement(self, u: Array, bone: Array) -> None:
         """Start from a displacement (m) of all nodes, shape (nodes, 2), and the bone's translation (m), (2,).
 
@@ -98,6 +105,24 @@ class Solver:
         if self.problem.pressure:
             self._set_pressure()
         self.equations.to_fields(self.x)
+
+    def take(self, w: Array, bone: Array, pressure: Array) -> None:
+        """Take an equilibrium that was found elsewhere as that of the last solve; collective.
+
+        Args:
+            w: displacement of all nodes relative to the bone (m), shape (nodes, 2).
+            bone: its translation (m), shape (2,).
+            pressure: this rank's unknowns of a mixed element's pressure (m), of shape (0,) without one.
+        """
+        self.layout.from_nodes(w.ravel(), bone, self.x)
+        self.x.array_w[: len(pressure)] = pressure
+        self.iteration.take(self.x)
+
+    def slide(self, distance: float) -> None:
+        """Translate the body with its bone sideways by a distance (m)."""
+        if self.layout.owns_rigid:
+            self.x.array_w[-2] += distance
+        self.control = replace(self.control, x=self.control.x + distance)
 
     def _set_pressure(self) -> None:
         """Solve the second equation, which is linear in the pressure, at the present displacement.
