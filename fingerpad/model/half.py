@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 from fingerpad.model import symmetry
 from fingerpad.model.finger import Finger, assembled
 from fingerpad.model.options import FingerModel
+from variational.problem import Problem
 from variational.solvers.continuation import Attempt, Continuation, Target
 
 Array = NDArray[np.float64]
@@ -45,9 +46,8 @@ class HalfFinger:
         here = self._body.problem.V.tabulate_dof_coordinates()[self._own, :2]
         there = finger.problem.V.tabulate_dof_coordinates()[:, :2]
         self._flip = np.where(there[:, :1] < 0, [-1.0, 1.0], [1.0, 1.0])
-        far, self._nodes = cKDTree(self._together(here)).query(self._flip * there)
-        if not comm.allreduce(float(np.max(far, initial=0.0)), op=MPI.MAX) < _SAME:
-            raise RuntimeError("the finger's mesh is not its own mirror image")
+        self._nodes = self._images(here, there)
+        self._pressures = self._images(_pressure_places(self._body.problem), _pressure_places(finger.problem))
 
     @property
     def path(self) -> Continuation:
@@ -68,6 +68,18 @@ class HalfFinger:
         whole.counts.add(half.counts)
         whole.timings.add(half.timings)
 
+    def _images(self, here: Array, there: Array) -> NDArray[np.int64]:
+        """Return which place of the half, of those of all ranks, each place of the finger is the image of; collective.
+
+        Args:
+            here: places of this rank's unknowns of the half (m), x first, with further numbers that tell them apart.
+            there: the same of the finger.
+        """
+        far, found = cKDTree(self._together(here)).query(np.column_stack([np.abs(there[:, 0]), there[:, 1:]]))
+        if not self._comm.allreduce(float(np.max(far, initial=0.0)), op=MPI.MAX) < _SAME:
+            raise RuntimeError("the finger's mesh is not its own mirror image")
+        return np.asarray(found)
+
     def _together(self, mine: Array) -> Array:
         return np.concatenate(self._comm.allgather(mine))
 
@@ -78,9 +90,12 @@ class HalfFinger:
         solver.new_load(replace(half.solver.control), float(half.solver.problem.voltage.value))
         d_eq, whole.gain = (np.array(symmetry.values(list(values))) for values in (half.d_eq, half.gain))
         whole.set_air_gaps(d_eq)
-        u = self._flip * self._together(self._body.problem.displacement()[self._own])[self._nodes]
-        solver.set_displacement(u, half.solver.bone)
-        solver.equations.residual(solver.x, solver.iteration.f)
-        solver.iteration.floor = 2 * half.solver.floor
+        w = self._flip * self._together(half.solver.problem.w.x.array.reshape(-1, 2)[self._own])[self._nodes]
+        solver.take(w, half.solver.bone, self._together(half.solver.pressure)[self._pressures])
         self._finger.continuation.accept()
         return self._on_accept(target, part, attempt)
+
+
+def _pressure_places(problem: Problem) -> Array:
+    """Return where a mixed element's unknowns of the pressure are (m), and in which layer, shape (owned, 3)."""
+    return problem.pressure.places() if problem.pressure else np.empty((0, 3))
