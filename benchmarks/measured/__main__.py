@@ -3,7 +3,7 @@
 environment/run python3 -m benchmarks.measured [--jobs 2] [--draw]
 
 Most numbers are those of docs/paper.json and docs/models.json (make paper, benchmarks.models), to be made again after
-them. Six runs of an uncharged press are made here, some ten seconds each. Writes docs/measured.json, and from it
+them. Eight runs of an uncharged press are made here, some ten seconds each. Writes docs/measured.json, and from it
 docs/measured.md and its picture.
 """
 

@@ -11,13 +11,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from benchmarks.harness import kept, page, picture, prose, table
-from benchmarks.measured import rows, scenes
+from benchmarks.measured import forms, rows, scenes
 from benchmarks.measured.verdict import BUILT, HIT, MISS, PART
 from benchmarks.runs import VOLTAGES
 from fingerpad.io import style
 
 _HERE = Path(__file__).parent
 _KINDS = {"shape": "Shapes, exponents and trends", "ratio": "Ratios", "value": "Absolute values"}
+_SIMULATED = "simulated"
+"""Kind of a finding that the source computed: it is no measurement, and does not count."""
 _HEAD = ("measured", "by whom, on how many people, read in", "this model", "fitted parameters", "verdict")
 
 
@@ -72,15 +74,18 @@ def _table(judged: list[Row]) -> str:
 
 def draw(docs: Path) -> Path:
     """Write docs/measured.md and its picture from docs/measured.json."""
-    text, found = prose("measured"), judged(docs)
+    text, every = prose("measured"), judged(docs)
+    found = [row for row in every if row.kind != _SIMULATED]
     count = Counter(row.verdict for row in found)
     words = {"n": len(found), "hit": count[HIT], "part": count[PART], "miss": count[MISS], "built": count[BUILT]}
     own = kept("measured", docs)
     path, caption = docs / "measured.png", " ".join(text["caption"].split())
     body = [picture(path, (10, 3.6), lambda figure: _paint(figure, own.numbers), caption)]
     body += [f"## {head}\n\n{_table([row for row in found if row.kind == kind])}" for kind, head in _KINDS.items()]
-    body += [text["meaning"], text["missing"], text["tables"]]
-    how = text["how"].format(softer=scenes.SOFTER)
+    simulated = _table([row for row in every if row.kind == _SIMULATED])
+    body += [f"{text['simulated']}\n\n{simulated}", text["meaning"], text["missing"], text["tables"]]
+    least, most = scenes.SOFTER
+    how = text["how"].format(least=least, most=most)
     title, finding = "Beside measured fingers", text["finding"].format(**words)
     return page(docs / "measured.md", title, finding, how, body, "make measured", own.made, ["measured"])
 
@@ -108,25 +113,29 @@ def _over_voltage(ax: Axes, curves: Mapping[str, list[float]]) -> None:
 
 
 def _over_depth(ax: Axes, depth: rows.Array, force: rows.Array) -> None:
-    b, _ = rows.exponential(depth, force)
-    power, factor = np.polyfit(np.log(depth), np.log(force), 1)
-    fine = np.linspace(depth.min(), depth.max(), 200)
-    a = np.exp(np.mean(np.log(force) - np.log(np.expm1(b * depth))))
     ax.plot(1e3 * depth, force, "o", color=style.BLUE, label="this model, 0 V")
-    ax.plot(1e3 * fine, a * np.expm1(b * fine), "--", color="black", label="exponential, measured")
-    curve = np.exp(factor) * fine**power
-    ax.plot(1e3 * fine, curve, ":", color=style.VERMILION, label=f"power law, {power:.2f}")
+    exponent = forms.of_largest(forms.power, depth, force).parameter
+    _fitted(ax, forms.exponential, (depth, force), 1.0, ("--", "black", "exponential, measured"))
+    _fitted(ax, forms.power, (depth, force), 1.0, (":", style.VERMILION, f"power law, {exponent:.2f}"))
     ax.set(xlabel="depth (mm)", ylabel="force of the whole finger (N)", title="B  pressed")
     ax.legend(fontsize=8)
 
 
 def _over_width(ax: Axes, run: Mapping[str, Any]) -> None:
-    place, pressure = np.array(run["place"]), np.array(run["pressure"])
-    top, a, r2 = rows.paraboloid(place, pressure)
-    fine = np.linspace(-a, a, 200)
-    ax.plot(1e3 * place, pressure / 1e3, "o", color=style.BLUE, label="ridges of this model")
-    curve = top * (1 - (fine / a) ** 2) / 1e3
-    ax.plot(1e3 * fine, curve, "--", color="black", label=f"paraboloid, measured; R² {r2:.2f}")
+    points = np.array(run["place"]), np.array(run["pressure"])
+    ax.plot(1e3 * points[0], points[1] / 1e3, "o", color=style.BLUE, label="ridges of this model")
+    _fitted(ax, forms.paraboloid, points, 1e-3, ("--", "black", "paraboloid, measured"))
+    _fitted(ax, forms.ellipse, points, 1e-3, (":", style.VERMILION, "half an ellipse"))
     ax.set(xlabel="x (mm)", ylabel="force over area of a ridge (kPa)", title="C  75 N/m, 0 V")
-    ax.set_ylim(0, 1.45 * pressure.max() / 1e3)
+    ax.set_ylim(0, 1.55e-3 * points[1].max())
     ax.legend(fontsize=8, loc="upper center")
+
+
+def _fitted(
+    ax: Axes, form: forms.Form, points: tuple[rows.Array, rows.Array], unit: float, look: tuple[str, str, str]
+) -> None:
+    """Draw a form that is fitted by the largest value; ``look`` is line, colour and label."""
+    x, y = points
+    parameter = forms.of_largest(form, x, y).parameter
+    fine, factor = np.linspace(x.min(), x.max(), 201), forms.scale(form(x, parameter), y)
+    ax.plot(1e3 * fine, unit * factor * form(fine, parameter), look[0], color=look[1], label=look[2])

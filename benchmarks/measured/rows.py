@@ -1,8 +1,10 @@
 """Our numbers beside measured ones, and a verdict each; all words are in ``rows.csv`` and ``sources.csv``.
 
-The friction, contact lengths and ridges are those of the paper's page (docs/paper.json: default mesh). Depths and
-attraction are of docs/models.json, at a contact size of 10 µm. The stated error is the difference of the two meshes, or
-of the full model and the smooth finger where one mesh alone has a number. Of trends the other mesh has a count.
+What is compared is the quantity that was measured. The apparent area is the gross area of the whole finger, a sum of
+slices (:mod:`benchmarks.measured.finger`). The real area is the contact length of the ridges, of the paper's page
+(docs/paper.json: default mesh). Attraction is of docs/models.json, at a contact size of 10 µm. The stated error is the
+difference of the two meshes, or of the full model and the smooth finger where one mesh alone has a number. Of trends
+the other mesh, or the smooth finger, has a count.
 """
 
 from collections.abc import Callable, Mapping
@@ -10,22 +12,30 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from benchmarks import models
-from benchmarks.measured import scenes
-from benchmarks.measured.verdict import EXPONENT, MISS, RATIO, by_factor, by_fit, by_share
+from benchmarks.measured import finger, forms, scenes
+from benchmarks.measured.verdict import (
+    CHANGED,
+    EXPONENT,
+    HIT,
+    MISS,
+    RATIO,
+    SIMILAR,
+    STRIKING,
+    by_factor,
+    by_form,
+    by_share,
+)
 from benchmarks.runs import FORCES, VOLTAGES
 from fingerpad.scene import Scene
-from fingerpad.slices.profile import profile
-from fingerpad.slices.total import at_indentation
-from fingerpad.slices.trace import NAMES, Trace
 
 Array = NDArray[np.float64]
 Numbers = dict[str, float]
-_FITS = (0.95, 0.8)  # R² that is a hit, and one that is met partly
-_MISFIT = 0.1  # rms of a fitted curve: of its logarithm, and of the largest value
-_MORE, _SAME = 0.25, 0.1  # relative changes that count as strikingly higher, and as similar
+Row = tuple[Numbers, str]
+"""Numbers of a row by name, and its verdict."""
+AMPLITUDES = ((100.0, 150.0), (50.0, 100.0))
+"""Voltages (V) within an amplitude of 75 to 150 V: as a constant voltage, and as that of a sine's mean square."""
 
 
 class Grid(NamedTuple):
@@ -34,22 +44,28 @@ class Grid(NamedTuple):
     fine: Mapping[str, Array]
     """Default mesh: ``normal_…`` and ``slip_…`` of ``f_t``, ``contact_length`` and ``ridges_in_contact``."""
     coarse: Mapping[str, Array]
-    """Contact size of 10 µm: the same, and ``f_electrostatic`` and ``bone_height``."""
+    """Contact size of 10 µm: the same, and ``f_electrostatic``."""
     smooth: Mapping[str, Array]
     """The smooth finger: likewise."""
     gaps: tuple[float, float]
     """Least and largest air gap (m) of all runs with a voltage."""
+    full_finger: finger.Sums
+    """The whole finger in newtons, from the full model at a contact size of 10 µm."""
+    smooth_finger: finger.Sums
+    """The same from the smooth finger."""
 
 
 DRAWN, DRAWN_FORCES = ("f_t", "contact_length"), (10.0, 75.0)  # N/m, of the curves over the voltage
-_KEPT = ("f_t", "contact_length", "ridges_in_contact", "f_electrostatic", "bone_height")  # of docs/models.json
+_KEPT = ("f_t", "contact_length", "ridges_in_contact", "f_electrostatic")  # of docs/models.json
 
 
 def grid(paper: Mapping[str, Any], known: Mapping[str, Any]) -> Grid:
     """Return the grid from the numbers of docs/paper.json and docs/models.json."""
     fine = {name: np.array(values) for name, values in paper["grid"].items()}
     low, high = fine["gaps_range"]
-    return Grid(fine, _of(known, "full"), _of(known, "smooth"), (float(low), float(high)))
+    full, smooth = (_of(known, model) for model in ("full", "smooth"))
+    fingers = (finger.sums(known, model) for model in ("full", "smooth"))
+    return Grid(fine, full, smooth, (float(low), float(high)), *fingers)
 
 
 def _of(known: Mapping[str, Any], model: str) -> dict[str, Array]:
@@ -61,11 +77,6 @@ def _of(known: Mapping[str, Any], model: str) -> dict[str, Array]:
     return found
 
 
-def _width(ridges: Any) -> Any:
-    """Return the width (m) over a number of touching ridges."""
-    return ridges * Scene().geometry.ridge_wavelength
-
-
 # -- over the voltage ----------------------------------------------------------------------------------------
 def exponents(values: Array, voltages: tuple[float, ...]) -> Array:
     """Return the exponent of the rise over the value at 0 V, fitted to logarithms, at each force; shape (forces,)."""
@@ -74,34 +85,82 @@ def exponents(values: Array, voltages: tuple[float, ...]) -> Array:
     return np.polyfit(np.log(voltages), np.log(np.maximum(rise, 1e-15)).T, 1)[0]
 
 
-def _power(g: Grid, name: str, voltages: tuple[float, ...]) -> tuple[Numbers, str]:
-    found, other = exponents(g.fine[name], voltages), exponents(g.coarse[name], voltages)
-    near = np.abs(found - 2) <= EXPONENT
-    numbers = {"low": found.min(), "high": found.max(), "error": np.abs(found - other).max()}
-    return numbers | {"holds": near.sum(), "loads": near.size}, by_share(near.mean())
+def _power(g: Grid, name: str, *ranges: tuple[float, ...]) -> Row:
+    """Judge whether a rise is as the square of the voltage, at each force and in each of the ranges (V)."""
+    found, other = (np.array([exponents(a[name], voltages) for voltages in ranges]) for a in (g.fine, g.coarse))
+    near = (np.abs(found - 2) <= EXPONENT).all(axis=0)
+    numbers = {"holds": near.sum(), "loads": near.size, "error": np.abs(found - other).max()}
+    numbers |= {"low": found[0].min(), "high": found[0].max(), "other_low": found[-1].min()}
+    return numbers | {"other_high": found[-1].max()}, by_share(float(near.mean()))
 
 
-def _trend(g: Grid, holds: Callable[[Mapping[str, Array]], NDArray[np.bool_]], **more: float) -> tuple[Numbers, str]:
+def _trend(g: Grid, holds: Callable[[Mapping[str, Array]], NDArray[np.bool_]], **more: float) -> Row:
     """Return at how many loads a statement holds, on either mesh, and the verdict by the finer one."""
     fine, coarse = holds(g.fine), holds(g.coarse)
     return {"holds": fine.sum(), "other": coarse.sum(), "loads": fine.size} | more, by_share(float(fine.mean()))
 
 
-def _friction_slip(g: Grid) -> tuple[Numbers, str]:
+def _friction_slip(g: Grid) -> Row:
     f_t = g.fine["slip_f_t"]
     return _trend(g, lambda a: a["slip_f_t"][:, -1] > a["slip_f_t"][:, 0], least=(f_t[:, -1] / f_t[:, 0]).min() - 1)
 
 
-def _area_before(g: Grid) -> tuple[Numbers, str]:
-    def change(a: Mapping[str, Array]) -> Array:
-        ridges = a["normal_ridges_in_contact"]
-        return np.asarray(ridges[:, -1] / ridges[:, 0] - 1)
+# -- of the whole finger -------------------------------------------------------------------------------------
+def _apparent(g: Grid, state: str, before: str, holds: Callable[[Array], NDArray[np.bool_]]) -> Row:
+    """Judge the change of the gross area from a state to another, as ``full_slip_0``, at each force (N)."""
+    change, other = (f[f"{state}_gross_area"] / f[f"{before}_gross_area"] - 1 for f in (g.full_finger, g.smooth_finger))
+    numbers = {"low": change.min(), "high": change.max(), "error": np.abs(change - other).max()}
+    counts = {"holds": holds(change).sum(), "other": holds(other).sum(), "loads": change.size}
+    return numbers | counts, by_share(float(holds(change).mean()))
 
-    return _trend(g, lambda a: change(a) == 0, most=np.abs(change(g.fine)).max())
+
+def _same(change: Array) -> NDArray[np.bool_]:
+    return np.abs(change) < CHANGED
 
 
-def _area_after(g: Grid) -> tuple[Numbers, str]:
-    return _trend(g, lambda a: a["slip_ridges_in_contact"][:, -1] < a["slip_ridges_in_contact"][:, 0])
+def _falls(change: Array) -> NDArray[np.bool_]:
+    return change <= -CHANGED
+
+
+def _area_load(g: Grid) -> Row:
+    def grow(sums: finger.Sums) -> NDArray[np.bool_]:
+        areas = [np.diff(np.log(sums[f"charged_0_{name}"])) for name in ("gross_area", "contact_area")]
+        return np.asarray((areas[0] >= np.log1p(CHANGED)) & (areas[1] > 0))
+
+    full, smooth = grow(g.full_finger), grow(g.smooth_finger)
+    return {"holds": full.sum(), "other": smooth.sum(), "loads": full.size}, by_share(float(full.mean()))
+
+
+def _force_depth(g: Grid) -> Row:
+    """Judge an exponential beside a power law, by the misfit of each force and by that of the largest."""
+    depth, force = g.full_finger["charged_0_depth"], np.array(finger.NEWTONS)
+    fits = {
+        form: [fit(form, depth, force) for fit in (forms.of_each, forms.of_largest)]
+        for form in (forms.exponential, forms.power)
+    }
+    (each, largest), (other_each, other_largest) = ([fit.misfit for fit in fits[form]] for form in fits)
+    again = forms.of_each(forms.exponential, g.smooth_finger["charged_0_depth"], force).misfit
+    numbers = {"each": each, "largest": largest, "other_each": other_each, "other_largest": other_largest}
+    return numbers | {"error": abs(each - again)}, by_form((each, largest), (other_each, other_largest))
+
+
+def _area_power(g: Grid) -> Row:
+    """Judge a power law beside a straight line, at the forces of the source; the exponent is that of all forces."""
+    force, area = np.array(finger.NEWTONS), g.full_finger["charged_0_gross_area"]
+    theirs = force >= 0.5
+    misfit, other = (forms.of_each(form, force[theirs], area[theirs]).misfit for form in (forms.power, forms.line))
+    whole = [forms.of_each(forms.power, force, f["charged_0_gross_area"]) for f in (g.full_finger, g.smooth_finger)]
+    exponent = whole[0].parameter
+    numbers = {"misfit": misfit, "line": other, "exponent": exponent, "all": whole[0].misfit}
+    numbers |= {"all_line": forms.of_each(forms.line, force, area).misfit}
+    return numbers | {"error": abs(whole[1].parameter - exponent)}, by_form((misfit,), (other,))
+
+
+def _ridges(g: Grid) -> Row:
+    found, other = (f["charged_0_contact_area"] / f["charged_0_gross_area"] for f in (g.full_finger, g.smooth_finger))
+    low, high = float(found.min()), float(found.max())
+    numbers = {"low": low, "high": high, "error": float(np.abs(found - other).max())}
+    return numbers, by_factor(low, high, 0.67, 0.67, RATIO)
 
 
 # -- over the load -------------------------------------------------------------------------------------------
@@ -110,91 +169,21 @@ def _shear(a: Mapping[str, Array]) -> Array:
     return np.asarray(a["slip_contact_length"][:, 0] / a["normal_contact_length"][:, 0] - 1)
 
 
-def _area_shear(g: Grid) -> tuple[Numbers, str]:
-    return _trend(g, lambda a: _shear(a) < 0, most=-_shear(g.fine).min())
+def _friction_load(g: Grid) -> dict[str, Row]:
+    """Judge by µ without voltage over the load whether it depends on the load, falls, and by how much."""
+    mu = g.fine["slip_f_t"][:, 0] / np.array(FORCES)
+    factor, fall = float(mu.max() / mu.min()), float(1 - mu[-1] / mu[0])
+    depends = factor - 1 > SIMILAR
+    verdicts = {
+        "friction_load": by_share(float(not depends)),
+        "friction_acrylic": by_share(float(fall > SIMILAR)),
+        "friction_power": by_share(float(depends)),
+        "friction_occluded": by_factor(factor, factor, 5.0, 5.0, RATIO),
+    }
+    return {key: ({"factor": factor}, verdict) for key, verdict in verdicts.items()}
 
 
-def _area_load(g: Grid) -> tuple[Numbers, str]:
-    def grow(a: Mapping[str, Array]) -> NDArray[np.bool_]:
-        steps = [np.diff(a[f"normal_{name}"][:, 0]) for name in ("contact_length", "ridges_in_contact")]
-        return np.asarray((steps[0] > 0) & (steps[1] > 0))
-
-    return _trend(g, grow)
-
-
-def exponential(depth: Array, force: Array) -> tuple[float, float]:
-    """Fit a (exp(b depth) - 1) to forces by logarithms; return b (1/m) and the rms of the logarithm's misfit."""
-
-    def misfit(b: float) -> float:
-        return float(np.std(np.log(force) - np.log(np.expm1(b * depth))))
-
-    return _least(misfit, depth)
-
-
-def absolute(depth: Array, force: Array) -> tuple[float, float]:
-    """Fit the same to the forces themselves; return b (1/m) and the rms misfit over the largest force."""
-
-    def misfit(b: float) -> float:
-        curve = np.expm1(b * depth)
-        rest = force - curve * (curve @ force) / (curve @ curve)
-        return float(np.sqrt(np.mean(rest**2)) / force.max())
-
-    return _least(misfit, depth)
-
-
-def _least(misfit: Callable[[float], float], depth: Array) -> tuple[float, float]:
-    found = minimize_scalar(misfit, bounds=(1e-3 / depth.max(), 50 / depth.max()), method="bounded")
-    return float(found.x), float(found.fun)
-
-
-def whole(a: Mapping[str, Array]) -> tuple[Array, Array, Array]:
-    """Return depth (m), force (N) and gross area (m²) of the uncharged finger, as a sum of slices; (forces,) each.
-
-    The finger has the default profile along its axis. Its radius scales force and area alike and leaves their shapes.
-    """
-    length, ridges = a["normal_contact_length"][:, 0], a["normal_ridges_in_contact"][:, 0]
-    width = (ridges - 1) * Scene().geometry.ridge_wavelength + length / ridges
-    columns: dict[str, Array] = {name: np.zeros(len(FORCES)) for name in NAMES}
-    columns |= {"f_ext": np.array(FORCES), "contact_length": length, "gross_width": width}
-    section = Trace(-a["normal_bone_height"][:, 0], columns)
-    along, count = profile(Scene().slices), Scene().slices.count
-    depth = section.depth * (1 - 1e-9)  # the last one is the end of the trace
-    totals = [at_indentation(along, section, float(each), count).totals for each in depth]
-    return depth, np.array([t["f_ext"] for t in totals]), np.array([t["gross_area"] for t in totals])
-
-
-def power(x: Array, y: Array) -> tuple[float, float]:
-    """Return the exponent of a power law fitted by logarithms, and the rms of the logarithm's misfit."""
-    line = np.polyfit(np.log(x), np.log(y), 1)
-    return float(line[0]), float(np.std(np.log(y) - np.polyval(line, np.log(x))))
-
-
-def _force_depth(g: Grid) -> tuple[Numbers, str]:
-    (depth, force, _), (other_depth, other, _) = whole(g.coarse), whole(g.smooth)
-    misfit, error = exponential(depth, force)[1], absolute(depth, force)[1]
-    numbers = {"exponential": misfit, "error": abs(exponential(other_depth, other)[1] - misfit), "absolute": error}
-    numbers |= {"power": power(depth, force)[1], "least": force[0], "most": force[-1]}
-    return numbers, by_share(((misfit <= _MISFIT) + (error <= _MISFIT)) / 2)
-
-
-def _area_power(g: Grid) -> tuple[Numbers, str]:
-    (_, force, area), (_, other, other_area) = whole(g.coarse), whole(g.smooth)
-    exponent, misfit = power(force, area)
-    numbers = {"exponent": exponent, "error": abs(power(other, other_area)[0] - exponent), "misfit": misfit}
-    return numbers | {"least": force[0], "most": force[-1]}, by_share(float(misfit <= _MISFIT))
-
-
-def _ridges(g: Grid) -> tuple[Numbers, str]:
-    found, other = (
-        each["normal_contact_length"][:, 0] / _width(each["normal_ridges_in_contact"][:, 0])
-        for each in (g.fine, g.coarse)
-    )
-    low, high = float(found.min()), float(found.max())
-    numbers = {"low": low, "high": high, "error": float(np.abs(found - other).max())}
-    return numbers, by_factor(low, high, 0.67, 0.67, RATIO)
-
-
-def _gap_sliding(g: Grid) -> tuple[Numbers, str]:
+def _gap_sliding(g: Grid) -> Row:
     """Impedance of equal plates: attraction F over length L gives the capacitance, in proportion to (F L)^(1/2)."""
 
     def rise(a: Mapping[str, Array]) -> Array:
@@ -208,82 +197,97 @@ def _gap_sliding(g: Grid) -> tuple[Numbers, str]:
 
 
 # -- runs of this page ---------------------------------------------------------------------------------------
-def paraboloid(place: Array, pressure: Array) -> tuple[float, float, float]:
-    """Fit p_0 (1 - (x/a)²) to pressures; return p_0, a and the coefficient of determination."""
-    slope, top = np.polyfit(place**2, pressure, 1)
-    rest = pressure - np.polyval((slope, top), place**2)
-    r2 = 1 - (rest**2).sum() / ((pressure - pressure.mean()) ** 2).sum()
-    return float(top), float(np.sqrt(-top / slope)), float(r2)
+def _pressure(runs: Mapping[str, Any]) -> Row:
+    """Judge a paraboloid beside half an ellipse, over the largest pressure."""
+    fits = {}
+    for size in scenes.SIZES:
+        place, pressure = (np.array(runs[scenes.name("dry", size)][key]) for key in ("place", "pressure"))
+        fits[size] = [forms.of_largest(form, place, pressure).misfit for form in (forms.paraboloid, forms.ellipse)]
+    (coarse, _), (fine, other) = fits.values()
+    numbers = {"misfit": fine, "error": abs(fine - coarse), "other": other}
+    return numbers | {"ridges": runs[scenes.name("dry", scenes.SIZES[-1])]["ridges"]}, by_form((fine,), (other,))
 
 
-def _pressure(runs: Mapping[str, Any]) -> tuple[Numbers, str]:
-    pressed = (runs[f"dry {size * 1e6:.0f}"] for size in scenes.SIZES)
-    coarse, fine = (paraboloid(np.array(run["place"]), np.array(run["pressure"]))[2] for run in pressed)
-    numbers = {"r2": fine, "error": abs(fine - coarse), "ridges": runs["dry 20"]["ridges"]}
-    return numbers, by_fit(fine, *_FITS)
-
-
-def _change(runs: Mapping[str, Any], kind: str, name: str = "length") -> tuple[float, float]:
+def _change(runs: Mapping[str, Any], kind: str, value: Callable[[Mapping[str, Any]], float]) -> tuple[float, float]:
     """Return a kind's relative change from the dry finger on the finer mesh, and its error."""
-    coarse, fine = (runs[f"{kind} {s * 1e6:.0f}"][name] / runs[f"dry {s * 1e6:.0f}"][name] - 1 for s in scenes.SIZES)
+    pairs = ([value(runs[scenes.name(each, size)]) for each in (kind, "dry")] for size in scenes.SIZES)
+    coarse, fine = (mine / dry - 1 for mine, dry in pairs)
     return fine, abs(fine - coarse)
 
 
-def _softer(runs: Mapping[str, Any]) -> tuple[Numbers, str]:
-    (real, error), (gross, _) = _change(runs, "soft"), _change(runs, "soft", "ridges")
-    numbers = {"real": real, "gross": gross, "error": error, "softer": scenes.SOFTER}
-    return numbers, by_share(((real >= _MORE) + (abs(gross) <= _SAME)) / 2)
+def _length(run: Mapping[str, Any]) -> float:
+    return float(run["length"])
 
 
-def _modulus(runs: Mapping[str, Any]) -> tuple[Numbers, str]:
-    (soft, error), (rough, _) = _change(runs, "soft"), _change(runs, "rough")
-    numbers = {"soft": soft, "rough": rough, "error": error, "softer": scenes.SOFTER}
+def _gross(run: Mapping[str, Any]) -> float:
+    """Return the width (m) between the outer edges of the outermost touching ridges."""
+    return float((run["ridges"] - 1) * Scene().geometry.ridge_wavelength + run["length"] / run["ridges"])
+
+
+def _softer(runs: Mapping[str, Any]) -> Row:
+    """Judge either area at each softening of the stratum corneum."""
+    real, gross = ([_change(runs, f"soft {s:g}", of) for s in scenes.SOFTER] for of in (_length, _gross))
+    holds = [change >= STRIKING for change, _ in real] + [abs(change) <= SIMILAR for change, _ in gross]
+    (less, less_error), (more, error) = real
+    numbers = {"less": less, "less_error": less_error, "more": more, "error": error}
+    numbers |= {"gross": max(change for change, _ in gross), "least": scenes.SOFTER[0], "most": scenes.SOFTER[-1]}
+    return numbers, by_share(sum(holds) / len(holds))
+
+
+def _modulus(runs: Mapping[str, Any]) -> Row:
+    """Judge a softening of the stratum corneum beside as large a change of friction."""
+    (soft, error), (rough, _) = (_change(runs, kind, _length) for kind in (f"soft {scenes.SOFTER[-1]:g}", "rough"))
+    numbers = {"soft": soft, "rough": rough, "error": error, "most": scenes.SOFTER[-1], "friction": scenes.ROUGHER}
     return numbers, by_share(float(abs(soft) > abs(rough)))
 
 
 # -- all -----------------------------------------------------------------------------------------------------
-def _constant(verdict: str) -> tuple[Numbers, str]:
+def _without_numbers(verdict: str) -> Row:
+    """Return a row of what these scenes do not have at all: time, speed, frequency, adhesion without a voltage."""
     return {}, verdict
 
 
-def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, tuple[Numbers, str]]:
-    """Return our numbers and the verdict of every row, by its key."""
+def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, Row]:
+    """Return our numbers and the verdict of every row, by its key, in the order of ``rows.csv``."""
     mu_0 = Scene().friction
     low, high = (1e6 * each for each in g.gaps)
+    of_load = _friction_load(g)
     return {
         "friction_voltage": _power(g, "slip_f_t", VOLTAGES[1:]),
-        "friction_range": _power(g, "slip_f_t", VOLTAGES[1:4]),
-        "area_voltage": _power(g, "slip_contact_length", VOLTAGES[1:4]),
-        "frequency": _constant(by_share(1.0)),
-        "frequency_wide": _constant(MISS),
+        "friction_range": _power(g, "slip_f_t", *AMPLITUDES),
+        "area_voltage": _power(g, "slip_contact_length", *AMPLITUDES),
+        "frequency": _without_numbers(HIT),
+        "frequency_wide": _without_numbers(MISS),
+        "cut_off": _without_numbers(HIT),
         "friction_slip": _friction_slip(g),
-        "area_before": _area_before(g),
-        "area_after": _area_after(g),
-        "area_shear": _area_shear(g),
+        "area_before": _apparent(g, "charged_200", "charged_0", _same),
+        "area_after": _apparent(g, "full_slip_200", "full_slip_0", _falls),
+        "area_shear": _apparent(g, "full_slip_0", "charged_0", _falls),
+        "apparent_sliding": _apparent(g, "full_slip_0", "charged_0", _falls),
         "real_sliding": _trend(g, lambda a: _shear(a) > 0),
         "area_load": _area_load(g),
         "force_depth": _force_depth(g),
         "area_power": _area_power(g),
         "pressure_shape": _pressure(runs),
-        "friction_load": _constant(by_share(1.0)),
-        "friction_acrylic": _constant(by_share(0.0)),
+        "friction_load": of_load["friction_load"],
+        "friction_acrylic": of_load["friction_acrylic"],
+        "friction_power": of_load["friction_power"],
         "softer": _softer(runs),
-        "modulus": _modulus(runs),
-        "time": _constant(MISS),
-        "relaxation": _constant(MISS),
-        "speed": _constant(MISS),
+        "time": _without_numbers(MISS),
+        "relaxation": _without_numbers(MISS),
+        "speed": _without_numbers(MISS),
         "ridges": _ridges(g),
         "gap_sliding": _gap_sliding(g),
-        "friction_occluded": _constant(by_factor(1.0, 1.0, 5.0, 5.0, RATIO)),
+        "friction_occluded": of_load["friction_occluded"],
         "gap": ({"low": low, "high": high}, by_factor(low, high, 1.5, 2.5)),
-        "friction_input": _constant(by_factor(mu_0, mu_0, 0.25, 0.25)),
-        "friction_glass": _constant(by_factor(mu_0, mu_0, 0.4, 0.8)),
-        "adhesion": _constant(MISS),
+        "friction_input": ({"mu": mu_0}, by_factor(mu_0, mu_0, 0.25, 0.25)),
+        "friction_glass": ({"mu": mu_0}, by_factor(mu_0, mu_0, 0.4, 0.8)),
+        "adhesion": _without_numbers(MISS),
+        "modulus": _modulus(runs),
     }
 
 
 def curves(g: Grid) -> dict[str, list[float]]:
     """Return what the page draws: values at full slip over the voltages, by name and force; depth (m) and force (N)."""
-    depth, force, _ = whole(g.coarse)
     shown = {f"{name} {f:g}": g.fine[f"slip_{name}"][FORCES.index(f)].tolist() for name in DRAWN for f in DRAWN_FORCES}
-    return shown | {"depth": depth.tolist(), "force": force.tolist()}
+    return shown | {"depth": g.full_finger["charged_0_depth"].tolist(), "force": list(finger.NEWTONS)}

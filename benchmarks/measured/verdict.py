@@ -1,10 +1,15 @@
 """The rules of the verdicts, the same for every row of a kind; their words are in ``benchmarks/prose/measured.md``."""
 
+from collections.abc import Sequence
+
 HIT, PART, MISS = "hit", "partly", "miss"
 BUILT = "hit by construction"
 """The model's equations or inputs leave nothing else: such a row tests nothing."""
 EXPONENT = 0.25  # from the measured exponent: what 10 % of scatter makes of a factor of 2 in voltage
 RATIO, VALUE = 1.25, 2.0  # largest factors of a ratio that is hit, and of a number that is met partly
+MISFIT = 0.1  # rms of a fitted curve
+STRIKING, SIMILAR = 0.25, 0.1  # relative changes that count as strikingly higher, and as similar
+CHANGED = 0.03  # relative change from which on a gross area counts as another: half a ridge of 17
 
 
 def by_share(share: float) -> str:
@@ -21,6 +26,12 @@ def by_factor(low: float, high: float, least: float, most: float, allowed: float
     return HIT if beyond <= allowed else PART if beyond <= VALUE else MISS
 
 
-def by_fit(value: float, hit: float, part: float) -> str:
-    """Return the verdict on a coefficient of determination, or on another number that is better the larger it is."""
-    return HIT if value >= hit else PART if value >= part else MISS
+def by_form(misfits: Sequence[float], others: Sequence[float]) -> str:
+    """Return the verdict on a measured form of a curve, beside another form with as many parameters.
+
+    Args:
+        misfits: rms of the fitted form, by each measure of it.
+        others: rms of the other form, in the same order. Where it fits too, the curve cannot show which form it has.
+    """
+    found = by_share(sum(each <= MISFIT for each in misfits) / len(misfits))
+    return PART if found == HIT and all(each <= MISFIT for each in others) else found

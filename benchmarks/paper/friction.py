@@ -200,7 +200,8 @@ def _raised(grid: Grid) -> Statement:
 def _lengths(grid: Grid) -> list[Statement]:
     gains = {state: _gain(grid, f"{state}_contact_length", _HIGH) for state in STATES}
     both = np.concatenate(list(gains.values()))
-    counts = {"normal": (gains["normal"] > 1.2).sum(), "slip": (gains["slip"] > 1.2).sum(), "of": len(gains["slip"])}
+    within = (both > 1.2) & (both <= 1.4)
+    counts = {"under": (both <= 1.2).sum(), "over": (both > 1.4).sum(), "within": within.sum(), "of": both.size}
     ranges = _range(gains["normal"] - 1, "normal_low", "normal_high") | _range(gains["slip"] - 1)
     of_friction = (gains["slip"] - 1) / (_gain(grid, "slip_f_t", _HIGH) - 1)
     ridges = {state: grid[f"{state}_ridges_in_contact"] for state in STATES}
@@ -218,7 +219,7 @@ def _lengths(grid: Grid) -> list[Statement]:
     fewer = _range(lost, "least", "largest") | {"some": one_or_two.sum(), "of": one_or_two.size}
     return [
         statement("less", _range(of_friction), (of_friction < 0.5).all() and (both > 1.05).all(), both.max() > 1.05),
-        statement("longer", counts, both.max() > 1.2, **ranges),
+        statement("longer", counts, within.all(), within.mean() >= HALF, **ranges),
         statement("new", sources, sources["both"] == new.size, longer.all()),
         statement("average", _range(change, "least", "largest"), same.all(), same.mean() >= HALF, **over),
         statement("fewer", fewer, one_or_two.all(), one_or_two.mean() >= HALF, more=max(0.0, -lost.min())),
