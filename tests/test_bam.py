@@ -85,6 +85,38 @@ def test_threshold_with_thick_insulators_or_a_short_decay(h_0, h_rms, gamma):
     assert p_ext[1] < p_ext[0] and p_ext[1] < p_ext[2]
 
 
+@pytest.mark.parametrize("stress", [10.0, 1e3, 1e4])
+def test_pull_off_stress_at_the_sticking_voltage(bam, stress):
+    """It is the one given, at the fold; the default finger's is 3.46 kPa at 200 V. Without a stress it is the onset."""
+    voltage = bam.sticking_voltage(stress)
+    fold = bam.pull_off_fold(voltage)
+    assert -bam.external_pressure(fold, voltage) == pytest.approx(stress, rel=1e-9)
+    assert bam.sticking_voltage(3.46e3) == pytest.approx(200.0, rel=1e-3)
+    assert bam.threshold() < bam.sticking_voltage(1e-3) < bam.threshold() * (1 + 1e-6)
+
+
+@pytest.mark.parametrize("gamma", [0.4, 0.5])
+@pytest.mark.parametrize("key", ["h_0", "h_rms", "young"])
+def test_sticking_voltage_rises_with_insulator_roughness_and_modulus(key, gamma):
+    """Over its whole range, five decades of which are asked for; outside, where it would fall, there is none."""
+    first = {"h_0": 1e-8, "h_rms": 1e-8, "young": 1e4}[key]
+    closures = [BearingArea(**{"h_0": H_0, "gamma": gamma} | {key: v}) for v in np.geomspace(first, 1e5 * first, 101)]
+    found = [closure.sticking_voltage() for closure in closures]
+    known = np.array([voltage for voltage in found if voltage is not None])
+    assert len(known) > 40 and (np.diff(known) > 0).all()
+    assert {closure.h_0 <= 1.5 * gamma * closure.h_rms for closure, v in zip(closures, found, strict=True) if v} == {
+        True
+    }
+    assert key == "young" or None in found
+
+
+@pytest.mark.parametrize("numbers", [{"h_0": 128e-6}, {"h_0": 22e-6}, {"h_rms": 0.1e-6}])
+def test_tail_of_the_law_is_no_sticking_voltage(numbers):
+    """Least p_ext is zero at 1e-9 V, 40 V and 0.1 V, where the surfaces are far from contact."""
+    closure = BearingArea(**{"h_0": H_0} | numbers)
+    assert closure.threshold() < 60 and closure.sticking_voltage() is None
+
+
 @pytest.mark.parametrize("h_0", [5e-3, 1.0])
 def test_fold_beyond_the_smallest_numbers(h_0):
     """Some h_rms within h_0, where the repulsion has left e^-300 or e^-60000 of itself."""

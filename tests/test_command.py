@@ -78,6 +78,11 @@ def test_options_of_petsc_are_told_from_the_others(words, own, petsc):
         (["--force", "0.5"], "command line: argument --force: 0.5 has no unit; give one, as in '0.5 N'"),
         (["--force", "nan"], "force is 'nan'; "),
         (["--force", "0.5 N", "--set", "f_ext = 50"], "--set f_ext is given and --force too; give one of the two"),
+        (["--set", "voltage=50", "--set", " voltage = 100"], "--set voltage is given twice; give one value"),
+        (
+            ["--set", "roughness.young=1e5", "--set", "roughness={h_rms=1e-6}"],
+            "--set roughness is given and roughness.young in it too; give one value",
+        ),
         (["--set", "f_ext=-3"], "f_ext is -3 N/m; it must be from 0.001 to 5000 N/m"),
         (["--set", "mesh.contact=2e-4"], "mesh.contact is 0.0002 m, too large for a ridge of 0.000483 m"),
         (["--set", "voltage"], "voltage is no change of a scene; it must be key=value"),

@@ -112,7 +112,8 @@ def test_estimate_refuses_files_and_histories(capsys, argv, words):
 
 def test_estimate_says_where_the_closure_ends(capsys):
     assert main(["estimate", "--set", "roughness.h_rms=1e-7", "--f-ext", "25,75"]) == 0
-    assert "At 2 of 2 points the mean pressure of a ridge is beyond zero separation." in capsys.readouterr().out
+    words = "In 2 of 2 states the closure is out of its range: the mean pressure of ridges is beyond zero separation."
+    assert words in capsys.readouterr().out
 
 
 def test_file_that_cannot_be_written_is_named(capsys, tmp_path, monkeypatch):
@@ -341,6 +342,9 @@ def test_folder_of_no_run(name, tmp_path):
 def test_pressures_at_an_end_of_the_closure_are_counted(capsys):
     """The air gap rises with the pressure under thick insulators; without a voltage the default screen has none."""
     assert main(["microscale", "--set", "electric.d_i=100 um", "--p", "1e3:1e5:3:log"]) == 0
-    assert "At 3 of 3 pressures and voltages the pressure is where d_eq rises with pressure" in capsys.readouterr().out
+    words = (
+        "3 of 3 pressures and voltages the closure is out of its range: the mean pressure of ridges is where d_eq rises"
+    )
+    assert words in capsys.readouterr().out
     assert main(["microscale", "--p", "1e3:1e5:3:log", "--voltage", "0"]) == 0
     assert "pressures and voltages" not in capsys.readouterr().out

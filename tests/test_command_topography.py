@@ -160,6 +160,50 @@ def test_roughness_as_long_as_ridges_is_told(tmp_path, capsys):
     assert any(REMARK in text for text in cylinders.solve(load(None, {"roughness.wavelength": 532e-6})).cautions)
 
 
+# -- maps that do not show the roughness -------------------------------------------------------------------
+def printed(tmp_path, capsys, heights, size) -> str:
+    np.save(tmp_path / "map.npy", heights)
+    argv = ["topography", str(tmp_path / "map.npy"), "--unit", "m", "--size", *map(str, size)]
+    assert main(argv) == 0
+    return capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("slope", "end"), [(3.4, 0.7), (1.5, None), (8.0, None)])
+def test_hurst_exponent_at_an_end_of_its_search_is_not_found(tmp_path, capsys, slope, end):
+    """Spectra that fall as q^-1.5, less steep than any self-affine one, and as q^-8; q^-3.4 is H = 0.7."""
+    n = 64
+    q = np.hypot(*np.meshgrid(np.fft.fftfreq(n), np.fft.fftfreq(n), indexing="ij"))
+    q[0, 0] = 1.0
+    white = np.random.default_rng(0).standard_normal((n, n))
+    heights = np.fft.ifft2(np.fft.fft2(white) * q ** (-slope / 2)).real
+    text = printed(tmp_path, capsys, 3e-6 * heights / heights.std(), (400e-6, 400e-6))
+    line = next(line for line in text.splitlines() if "Hurst" in line)
+    if end is None:
+        assert line.startswith("# Hurst exponent not found within 0.01 to 2, fitted between")
+    else:
+        assert float(line.split()[3].rstrip(",")) == pytest.approx(end, abs=0.15)
+
+
+@pytest.mark.parametrize(("width", "told"), [(0.5e-6, True), (10e-6, True), (100e-6, False)])
+def test_map_smaller_than_the_longest_waves_is_told(tmp_path, capsys, width, told):
+    """By the command, and by a scene that takes its roughness from the map."""
+    heights = SelfAffine().surface((64, 64), (100e-6, 100e-6), 3).heights * width / 100e-6
+    words = f"roughness ends at waves of {width:.3g} m, and skin has waves up to 0.0001 m"
+    assert (words in printed(tmp_path, capsys, heights, (width, width))) == told
+    topography = {"file": str(tmp_path / "map.npy"), "unit": "m", "size": [width, width]}
+    scene = from_data({"roughness": {"topography": topography}})
+    assert any("roughness ends at waves" in text for text in remarks(scene)) == told
+
+
+def test_map_wider_than_any_skin_is_refused(tmp_path, capsys):
+    """160 m, as of lengths in m that are in um."""
+    np.save(tmp_path / "map.npy", SelfAffine().surface((64, 64), (160e-6, 160e-6), 3).heights)
+    words = "map.npy is 160 m x 160 m large, at most 0.1 m is allowed; check the unit of its lengths"
+    assert words in refused(capsys, "topography", str(tmp_path / "map.npy"), "--unit", "m", "--size", "160", "160")
+    with pytest.raises(SceneError, match="at most 0.1 m is allowed"):
+        from_data({"roughness": {"topography": {"file": str(tmp_path / "map.npy"), "unit": "m", "size": [160, 160]}}})
+
+
 def test_unit_of_a_header_is_enough(tmp_path, capsys):
     """Of points whose header has it; a header without that of z needs --unit, also in a scene."""
     x, y = np.meshgrid(np.arange(64) * 2e-3, np.arange(64) * 2e-3, indexing="ij")

@@ -1,5 +1,6 @@
 """The estimate of triangles against meshes, and what it is for: a scene beyond its memory is refused before meshing."""
 
+import re
 from functools import partial
 
 import pytest
@@ -88,6 +89,25 @@ def test_too_fine_a_mesh(mesh, key):
         check(from_data({"mesh": mesh}))
     if key == "contact":
         check(from_data({"mesh": mesh, "numerics": {"memory": 1e12}}))
+
+
+@pytest.mark.parametrize("unknowns", [1000, 27_000, 40_000, 186_000, 3e6])
+def test_memory_needed_is_above_that_allowed_as_printed(monkeypatch, unknowns):
+    """Also where the two differ by less than the digits shown."""
+    monkeypatch.setattr(memory.count, "triangles", lambda *arguments: unknowns / 4)
+    allowed = memory.estimate(from_data({})).memory * (1 - 1e-4)
+    with pytest.raises(SceneError) as refusal:
+        check(from_data({"numerics": {"memory": allowed}}))
+    needed, least = re.search(
+        r"need about ([\d.]+) GB; numerics.memory allows ([\d.]+) GB", str(refusal.value)
+    ).groups()
+    assert float(needed) > float(least) == pytest.approx(allowed / 1e9, rel=1e-5)
+
+
+def test_memory_below_that_of_the_program_is_refused_for_it():
+    """No mesh is coarse enough."""
+    with pytest.raises(SceneError, match=r"allows 0.1 GB, and the program takes 0.23 GB without a mesh; raise it$"):
+        check(from_data({"numerics": {"memory": 1e8}}))
 
 
 def test_default_memory_is_no_parameter():

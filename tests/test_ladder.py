@@ -81,7 +81,7 @@ def test_other_screen_than_the_runs_is_said():
 
 def test_state_past_the_end_of_the_closure_is_said():
     """A tenth of the length bears ten times the pressure, beyond zero separation."""
-    cautions = cylinders.solve(scene(voltage=0.0), cylinders.given(0.15e-3, 16)).cautions
+    cautions = cylinders.solve(scene(voltage=50.0), cylinders.given(0.15e-3, 16)).cautions
     assert any("beyond zero separation" in text for text in cautions)
 
 

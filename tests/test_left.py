@@ -58,6 +58,16 @@ def test_load_that_ends_with_full_slip_is_as_far_as_its_friction():
     assert pace.part == pytest.approx(0.8)
 
 
+def test_time_left_of_a_run_like_none_before_is_not_known():
+    """Until its pace is: the expected times are shares of the whole alone."""
+    times = iter([0.0, 50.0, 50.0])
+    pace = Pace([1e30, 1e30], 0.0, clock=lambda: next(times), known=False)
+    pace.on_path(0.2)
+    assert pace.left() == "not known"
+    pace.on_path(0.5)
+    assert pace.left() == "35 to 71 s"
+
+
 @pytest.mark.parametrize(
     ("low", "high", "words"),
     [(1.5, 6.0, "1.5 to 6 s"), (40.0, 160.0, "0.67 to 2.7 minutes"), (3600.0, 14400.0, "1 to 4 hours")],

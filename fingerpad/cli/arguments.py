@@ -62,7 +62,7 @@ class Parser(argparse.ArgumentParser):
             "scene", nargs="?", type=path, metavar="SCENE", help="scene in TOML (default: press, charge, slide)"
         )
         self.add_argument(
-            "--set", action="append", default=[], metavar="KEY=VALUE", help="a key of the scene, as often as wanted"
+            "--set", action="append", default=[], metavar="KEY=VALUE", help="a key of the scene; one --set for each key"
         )
 
     def add_out(self, default: str | None, what: str) -> None:
@@ -114,10 +114,27 @@ def scene_of(args: argparse.Namespace, meshed: bool = True) -> Scene:
     Raises:
         SceneError: the first key at fault.
     """
-    scene = load(args.scene, dict(override(text) for text in args.set))
+    scene = load(args.scene, changes(args.set))
     if meshed:
         check(scene)
     return scene
+
+
+def changes(given: Sequence[str]) -> dict[str, Any]:
+    """Return the values of ``KEY=VALUE`` by key.
+
+    Raises:
+        SceneError: a key is given twice, by itself or in a table.
+    """
+    found: dict[str, Any] = {}
+    for key, value in map(override, given):
+        for other in found:
+            short, long = sorted((key, other), key=len)
+            if long == short or long.startswith((f"{short}.", f"{short}[")):
+                twice = "twice" if long == short else f"and {clip(long)} in it too"
+                raise SceneError(f"--set {clip(short)} is given {twice}; give one value")
+        found[key] = value
+    return found
 
 
 def refuse_twice(args: argparse.Namespace, key: str, option: str) -> None:

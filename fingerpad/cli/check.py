@@ -9,7 +9,7 @@ from fingerpad.cli.arguments import Parser, echo, scene_of
 from fingerpad.io.folder import check_folder
 from fingerpad.io.left import about, between
 from fingerpad.model import expected as cost
-from fingerpad.model.memory import estimate
+from fingerpad.model.memory import MEASURED, Budget, estimate
 from fingerpad.model.options import ModelOptions, plan
 from fingerpad.model.touching import by_rule
 from fingerpad.scene import Load, Scene
@@ -43,12 +43,15 @@ def main(argv: Sequence[str]) -> int:
         ("Laws, numbers in SI units", (f"{name.replace('_', ' ')}: {law}" for name, law in used(scene).items())),
         ("Model", _model(scene, needed) if own is None else _model_of_file(scene, own)),
         ("Omitted", (f"{omission.what}: {omission.reason}" for omission in needed.omitted)),
-        (f"Cost, an estimate within a factor of {cost.FACTOR:g}", _cost(scene, needed, own)),
+        (f"Cost, within a factor of {cost.FACTOR:g} where it is known", _cost(scene, needed, own)),
     ):
         shown = list(lines) or ["nothing"]
         echo("\n".join([title, *(f"  {line}" for line in shown)]))
     echo(_picture(scene, needed, args.out, own))
-    echo("The scene can be run.")
+    if cost.beyond_loads(scene):
+        echo("The scene is valid; whether its loads can be reached is not known.")
+    else:
+        echo("The scene can be run.")
     return 0
 
 
@@ -99,7 +102,7 @@ def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
     yield f"some {about(found.triangles)} triangles of element {scene.numerics.element}"
     yield f"some {about(found.unknowns)} unknowns, within a factor of 1.5"
     yield f"{len(ridges)} of {scene.geometry.ridge_count} ridges can touch, {how}"
-    yield f"some {found.memory * 1e-9:.2g} GB of memory, of the {scene.numerics.memory * 1e-9:.3g} GB allowed"
+    yield f"{_memory(found)}, of the {scene.numerics.memory * 1e-9:.3g} GB allowed"
 
 
 def _model_of_file(scene: Scene, own: "Section") -> Iterator[str]:
@@ -108,7 +111,13 @@ def _model_of_file(scene: Scene, own: "Section") -> Iterator[str]:
     yield f"the lowest point is {_um(own.lowest[1])} above the screen"
     yield f"some {about(found.unknowns)} unknowns, within a factor of 1.5"
     yield f"{own.ridges} ridges can touch, as the file has them"
-    yield f"some {found.memory * 1e-9:.2g} GB of memory; a mesh of a file is not refused for it"
+    yield f"{_memory(found)}; a mesh of a file is not refused for it"
+
+
+def _memory(found: Budget) -> str:
+    beyond = found.unknowns > MEASURED
+    measured = f" (extrapolated: measured up to {about(MEASURED)} unknowns)" if beyond else ""
+    return f"some {found.memory * 1e-9:.2g} GB of memory{measured}"
 
 
 def _um(length: float) -> str:
@@ -116,15 +125,19 @@ def _um(length: float) -> str:
 
 
 def _cost(scene: Scene, needed: ModelOptions, own: "Section | None") -> Iterator[str]:
-    unknowns = None if own is None else estimate(scene, triangles=len(own.triangles)).unknowns
+    unknowns = estimate(scene, needed, None if own is None else len(own.triangles)).unknowns
     found = cost.expected(scene, needed, unknowns)
     few, many = (about(found.factorisations * factor) for factor in (1 / cost.FACTOR, cost.FACTOR))
-    yield f"{few} to {many} factorisations"
-    yield f"{_within(found.seconds)} of processor time, on a machine like that of docs/performance.md:"
-    yield f"  {_within(found.path)} for the path of the loads"
-    if found.errors:
-        yield f"  {_within(found.errors)} for the error estimate"
-    yield f"  {_within(found.beside)} for set-up, tables and pictures"
+    loads, mesh = cost.beyond_loads(scene), cost.beyond_mesh(unknowns)
+    yield f"the work is not known: {loads}" if loads else f"{few} to {many} factorisations"
+    if loads or mesh:
+        yield f"the time is not known: {mesh or 'the work is not'}"
+    else:
+        yield f"{_within(found.seconds)} of processor time, on a machine like that of docs/performance.md:"
+        yield f"  {_within(found.path)} for the path of the loads"
+        if found.errors:
+            yield f"  {_within(found.errors)} for the error estimate"
+        yield f"  {_within(found.beside)} for set-up, tables and pictures"
     yield f"{cost.COMPILING:.0f} s more the first time, when the forms are compiled"
     if scene.accuracy is not None:
         yield "and that of finer meshes, to the accuracy asked for: perhaps several times as much"

@@ -1,13 +1,13 @@
 """``fingerpad estimate``: friction over force and voltage by the closed form, without finite elements."""
 
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from fingerpad.cli import ranges, tables
 from fingerpad.cli.arguments import Parser, echo, refuse_twice, scene_of
 from fingerpad.io.quantities import PER_LENGTH
+from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.answer import refuse_others
 from fingerpad.reduced.known import KNOWN_ERROR, KNOWN_FORCES, KNOWN_RUNS, KNOWN_VOLTAGES, changed, outside
@@ -53,7 +53,9 @@ def main(argv: Sequence[str]) -> int:
     echo(f"Friction coefficient {scene.friction:g}.\n")
     echo(tables.text(_COLUMNS, rows))
     echo("\nmu_app is friction over force, at full slip; contact is the length of skin on the screen.")
-    for note in (PER_LENGTH, *_known(scene, rows), *(f"{text}." for text in remarks(scene)), *_places(rows), *lost):
+    states = [row["state"] for row in rows if "state" in row]
+    limits = (f"{text[0].upper()}{text[1:]}." for text in on_states(states, scene.closure()))
+    for note in (PER_LENGTH, *_known(scene, rows), *(f"{text}." for text in remarks(scene)), *limits, *lost):
         echo(note)
     tables.write_files(args, _COLUMNS, rows, draw)
     return 0
@@ -84,20 +86,13 @@ def grid(scene: Scene, forces: Sequence[float], voltages: Sequence[float]) -> tu
             try:
                 found = cylinders.solve(_with(scene, f_ext=f_ext, voltage=voltage))
                 row |= {c.key: getattr(found.full_slip, c.key) for c in _COLUMNS if c.key not in row}
-                row["place"] = scene.closure().state(found.record["slip_p_c"], voltage)
+                row["state"] = found.full_slip
             except SceneError as error:
                 lost.append(f"At {f_ext:g} N/m and {voltage:g} V: {error}.")
             rows.append(row)
     if len(lost) == len(rows):
         raise SceneError(lost[0].partition(": ")[2].rstrip("."))
     return rows, lost
-
-
-def _places(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
-    """Yield how many points are at an end of the closure."""
-    places = Counter[str](row["place"] for row in rows if row.get("place"))
-    for place, count in places.items():
-        yield f"At {count} of {len(rows)} points the mean pressure of a ridge is {place}."
 
 
 def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:

@@ -1,6 +1,5 @@
 """``fingerpad microscale``: air gap, attraction and real area of contact of a rough ridge over its pressure."""
 
-from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -9,10 +8,12 @@ import numpy as np
 
 from fingerpad.cli import ranges, tables
 from fingerpad.cli.arguments import Parser, echo, refuse_twice, scene_of
+from fingerpad.model.cautions import on_closure
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import remarks
 from geometry.units import to_si
+from variational.roughness.bam import STICKING, BearingArea
 
 _PRESSURES = "1e3:1e6:13:log"
 _COLUMNS = (
@@ -58,13 +59,12 @@ def main(argv: Sequence[str]) -> int:
     echo("\npressure: mean contact pressure of the ridge; external: that less the attraction, what the finger presses")
     echo("with; separation: mean, of skin and screen; air gap: equivalent one; real area: of the nominal area.")
     echo(f"The air gap stays constant below {scene.roughness.p_floor * 1e-3:g} kPa (roughness.p_floor) and above")
-    echo(f"{closure.full_pressure * 1e-3:.4g} kPa, the pressure at zero separation. ", end="")
-    echo(f"A ridge would stick without any force from {closure.threshold():.3g} V.")
+    echo(f"{closure.full_pressure * 1e-3:.4g} kPa, the pressure at zero separation.")
+    echo(_sticking(closure))
     for text in remarks(scene):
         echo(f"{text}.")
-    places = Counter(filter(None, (closure.state(row["p_c"], row["voltage"]) for row in rows)))
-    for place, count in places.items():
-        echo(f"At {count} of {len(rows)} pressures and voltages the pressure is {place}.")
+    for text in on_closure(closure, [(row["p_c"], 1.0, row["voltage"]) for row in rows], "pressures and voltages"):
+        echo(f"{text[0].upper()}{text[1:]}.")
     tables.write_files(args, _COLUMNS, rows, draw)
     return 0
 
@@ -84,6 +84,15 @@ def _pressures(text: str) -> list[float]:
             raise SceneError(f"--p has the value {value}; pressures are numbers greater than 0, in Pa")
         found.append(p)
     return found
+
+
+def _sticking(closure: BearingArea) -> str:
+    """Return from which voltage on a ridge sticks, in a sentence."""
+    voltage = closure.sticking_voltage()
+    if voltage is None:
+        return "The insulators are thick for this roughness: the model has no voltage from which a ridge would stick."
+    stress = f"{STICKING * 1e-3:g} kPa"
+    return f"From {voltage:.3g} V a ridge would stick: to pull it off takes {stress} or more (a convention)."
 
 
 def table(scene: Scene, voltages: Sequence[float], pressures: Sequence[float]) -> list[dict[str, Any]]:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.cli import ranges
-from fingerpad.cli.arguments import Parser, echo, positive
+from fingerpad.cli.arguments import Parser, changes, echo, positive
 from fingerpad.ctrl_c import raises
 from fingerpad.io.folder import check_folder
 from fingerpad.runs import batch  # noqa: F401  # before Ctrl-C raises
@@ -87,7 +87,7 @@ def study(file: Path | None, given: Sequence[str], over: Sequence[str]) -> tuple
         axes[key] = _words(values) or ranges.read(f"--over {key}", values)
     if not axes:
         raise SceneError("nothing is varied; give a table [sweep] in the scene file or --over KEY=RANGE")
-    for key, value in map(override, given):
+    for key, value in changes(given).items():
         if key in axes:
             raise SceneError(f"--set {key} is given and {key} is varied; give one of the two")
         put(data, key, value)

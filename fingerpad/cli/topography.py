@@ -9,10 +9,10 @@ from fingerpad.cli.arguments import Parser, echo, path, positive, writable
 from fingerpad.io.titles import plain
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError, clip
-from fingerpad.scene.remarks import ridges_as_roughness
+from fingerpad.scene.remarks import missing_waves, ridges_as_roughness
 from variational.roughness.heightfile import Found, NoUnit, scan
 from variational.roughness.heightheader import UNITS
-from variational.roughness.spectrum import Fit, power_spectrum, roughness_table
+from variational.roughness.spectrum import HURST, Fit, power_spectrum, roughness_table
 from variational.roughness.topography import distribution
 
 _EXAMPLES = """
@@ -108,12 +108,13 @@ def _report(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iter
         yield f"# {missing} pixels missing ({share:.2g} %), filled smoothly, which makes h_rms a little smaller"
     yield f"# skewness {heights.skewness:.2f}, kurtosis {heights.kurtosis:.2f} (0 and 3 of the Gaussian of the model)"
     long, short = (2e6 * math.pi / q for q in fit.q_range)
-    yield f"# Hurst exponent {fit.hurst:.2f}, fitted between wavelengths of {long:.3g} µm and {short:.3g} µm"
+    yield f"# {_hurst(fit)}, fitted between wavelengths of {long:.3g} µm and {short:.3g} µm"
     if fit.resolved:
         yield f"# roll-off at {fit.wavelength * um:.3g} µm: the largest wavelength"
     else:
         yield "# no roll-off within the map: the shorter side of the map stands for the largest wavelength"
-    for remark in ridges_as_roughness(table["wavelength"], Scene().geometry.ridge_wavelength):
+    remarks = ridges_as_roughness(table["wavelength"], Scene().geometry.ridge_wavelength)
+    for remark in remarks + missing_waves(min(m.size)):
         yield f"# {remark}"
     try:
         from_data({"roughness": {key: float(f"{value:.4g}") for key, value in table.items()}})
@@ -123,6 +124,13 @@ def _report(file: Path, found: Found, table: dict[str, float], fit: Fit) -> Iter
     yield "[roughness]"
     for key, value in table.items():
         yield f"{key} = {value:.4g}"
+
+
+def _hurst(fit: Fit) -> str:
+    """Return the Hurst exponent in words."""
+    if fit.hurst_found:
+        return f"Hurst exponent {fit.hurst:.2f}"
+    return f"Hurst exponent not found within {HURST[0]:g} to {HURST[1]:g}"
 
 
 def draw(file: Path, name: str, found: Found, fit: Fit) -> None:
@@ -149,7 +157,7 @@ def draw(file: Path, name: str, found: Found, fit: Fit) -> None:
         kept = ring.psd > 0
         psd.loglog(ring.q[kept], ring.psd[kept], "o", ms=4, color="0.5", label="map, Hann's window")
         q = np.geomspace(*fit.q_range, 100)
-        plot.curve(psd, 1, q, fit.psd(q), f"fit: Hurst exponent {fit.hurst:.2f}")
+        plot.curve(psd, 1, q, fit.psd(q), f"fit: {_hurst(fit)}")
         psd.set(xlabel="wavevector q (1/m)", ylabel="power spectrum C (m⁴)")
         for ax in (shares, psd):
             ax.legend()

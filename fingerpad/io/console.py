@@ -59,6 +59,7 @@ class Console:
         slipping: Collection[str] = (),
         mu_0: float = 0,
         whole: bool = True,
+        known: bool = True,
     ) -> None:
         """Take what is expected of a path that starts now.
 
@@ -69,8 +70,9 @@ class Console:
             mu_0: friction coefficient.
             whole: whether this is all; else what follows takes a time that cannot be told, and the time left is of the
                 path alone.
+            known: whether the times are; else they are good for the loads' shares of the whole.
         """
-        self._pace, self._slipping, self._mu_0 = Pace([*loads.values()], after), slipping, mu_0
+        self._pace, self._slipping, self._mu_0 = Pace([*loads.values()], after, known=known), slipping, mu_0
         self._of = "" if whole else ", path alone"
 
     def phase(self, text: str, part: float | None = None) -> None:
@@ -111,9 +113,7 @@ class Console:
         )
         loads = f"{s.load}: {s.f_ext:.1f} N/m, {s.voltage:.0f} V, x {s.bone_x * 1e3:.2f} mm"
         words = loads if math.isnan(s.mu_app) else f"{loads}, µ_app {s.mu_app:z.3f}"
-        self._progress.update(
-            self._task, completed=self._pace.part, description=words, left=f"{self._pace.left()} left{self._of}"
-        )
+        self._progress.update(self._task, completed=self._pace.part, description=words, left=f"time left: {left}")
 
     def close(self) -> None:
         """Take the progress bar away."""

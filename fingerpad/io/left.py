@@ -50,14 +50,18 @@ def about(value: float) -> str:
 class Pace:
     """How far a run is, in time: its loads, then its error estimate."""
 
-    def __init__(self, loads: Sequence[float], after: float, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self, loads: Sequence[float], after: float, clock: Callable[[], float] = time.monotonic, known: bool = True
+    ) -> None:
         """Start.
 
         Args:
             loads: expected time of each load (s).
             after: expected time after the loads (s).
             clock: returns the time (s).
+            known: whether these times are more than the loads' shares of the whole; else the pace alone counts.
         """
+        self._known = known
         self._loads, self._after, self._clock, self._start = loads, after, clock, clock()
         self._whole = sum(loads) + after
         self.part = 0.0
@@ -81,4 +85,6 @@ class Pace:
 
     def left(self) -> str:
         """Return the time left in words."""
+        if not self._known and self.part < _KNOWN:
+            return "not known"
         return between(*left(self._whole, self._clock() - self._start, self.part))

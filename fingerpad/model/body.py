@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 import fingerpad.started  # noqa: F401
 from fingerpad.io.states import full_slip
+from fingerpad.model import cautions
 from fingerpad.model.balance import force_error, refuse_strained, steady
 from fingerpad.model.gathered import Nodes, Points
 from fingerpad.model.state import contact_state, step_record
@@ -237,6 +238,14 @@ class Body:
         """The skin that can touch, in the last accepted state; arrays of shape (facets, points), from left to right."""
         assert self.state.skin is not None
         return self.state.skin
+
+    @property
+    def cautions(self) -> list[str]:
+        """Limits of validity that accepted states reach: of the closure, and of the contact's stiffness beside the gap.
+
+        They are computed of all states so far; without ``roughness`` there are none.
+        """
+        return cautions.on_states(self.states, self._closure)
 
     @property
     def _d_eq(self) -> Array:

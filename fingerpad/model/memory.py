@@ -6,8 +6,10 @@ factors of MUMPS are most, grows as the power 1.13 of the unknowns: runs on one 
 ranks take some 0.2 GB each; refining to an accuracy, which holds two meshes at a time, takes more as well.
 """
 
+import math
 from dataclasses import dataclass
 
+from fingerpad.io.left import about
 from fingerpad.model.options import ModelOptions, plan
 from fingerpad.model.touching import by_rule
 from fingerpad.scene import Numerics, Scene
@@ -17,6 +19,7 @@ from geometry.profiles import GeometryError
 
 _UNKNOWNS = {"P1": 1.0, "P2": 4.0, "P2 reduced": 4.0, "P2-P1": 4.5, "P3": 9.0}  # of a triangle, on large meshes
 _AT_LEAST = 0.23e9  # bytes, of the program itself
+MEASURED = 873_000  # unknowns, the most of these runs
 _FIRST, _POWER = 1.06e3, 1.13  # bytes of one unknown, and the power with which they grow
 
 
@@ -55,11 +58,14 @@ def refuse_beyond(finger: Fingertip, size: MeshSize, numerics: Numerics, needed:
     Raises:
         GeometryError: how much, and what to change.
     """
+    allowed = f"numerics.memory allows {numerics.memory / 1e9:g} GB"
+    if numerics.memory <= _AT_LEAST:
+        raise GeometryError(f"{allowed}, and the program takes {_AT_LEAST / 1e9:g} GB without a mesh; raise it")
     found = _budget(finger, size, numerics.element, needed)
     if found.memory > numerics.memory:
         raise GeometryError(
-            f"the mesh would have some {_about(found.triangles)} triangles and {_about(found.unknowns)} unknowns, and "
-            f"need about {_about(found.memory / 1e9)} GB; numerics.memory allows {numerics.memory / 1e9:.3g} GB: "
+            f"the mesh would have some {about(found.triangles)} triangles and {about(found.unknowns)} unknowns, and "
+            f"need about {about(_up(found.memory / 1e9))} GB; {allowed}: "
             f"raise it, or make {_finest(finger, size, needed.receptors)} larger"
         )
 
@@ -73,9 +79,10 @@ def _of(triangles: float, element: str) -> Budget:
     return Budget(triangles, unknowns, _AT_LEAST + _FIRST * unknowns**_POWER)
 
 
-def _about(value: float) -> str:
-    """Return a number of two digits, as it is read."""
-    return f"{float(f'{value:.2g}'):,.0f}".replace(",", " ")
+def _up(value: float) -> float:
+    """Return a number rounded up to two digits, which is above all that the number itself is above."""
+    step = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return math.ceil(value / step) * step
 
 
 def _finest(finger: Fingertip, size: MeshSize, receptors: bool) -> str:

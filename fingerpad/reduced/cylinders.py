@@ -27,6 +27,7 @@ import numpy as np
 from fingerpad.io.place import difference
 from fingerpad.io.result import Cost, Result
 from fingerpad.io.states import PREFIXES, WORDS
+from fingerpad.model.cautions import on_states
 from fingerpad.reduced import known
 from fingerpad.reduced.answer import STATES, Stopwatch, at_rest, at_slip, refuse_others
 from fingerpad.scene import Scene, SceneError
@@ -190,7 +191,8 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         }
         found[state] = at_rest(scene, contact) if state == "charged" else at_slip(scene, contact)
         states[state] = ridge
-        cautions += _places(scene, state, ridge)
+        cautions += _others(state, ridge)
+    cautions += on_states(found.values(), scene.closure())
     more: dict[str, Any] = {
         f"{PREFIXES[state]}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
     }
@@ -211,18 +213,12 @@ def _ridge(scene: Scene, footprint: Footprint, state: str) -> RidgeState:
     return Cylinder(radius, modulus, scene.h_0, closure).under_load(f, scene.voltage)
 
 
-def _places(scene: Scene, state: str, ridge: RidgeState) -> list[str]:
-    """Return remarks on the ridges' place on the closure and on other equilibria."""
-    found = []
-    place = scene.closure().state(ridge.p_c, scene.voltage)
-    if place:
-        found.append(f"{WORDS[state]}: a mean pressure of {ridge.p_c:.4g} Pa is {place}")
-    if ridge.others:
-        pressures = ", ".join(f"{p:.4g}" for p in ridge.others)
-        found.append(
-            f"{WORDS[state]}: further equilibria at a mean pressure of {pressures} Pa, of ridges not on the screen yet"
-        )
-    return found
+def _others(state: str, ridge: RidgeState) -> list[str]:
+    """Return a remark on other equilibria."""
+    if not ridge.others:
+        return []
+    pressures = ", ".join(f"{p:.4g}" for p in ridge.others)
+    return [f"{WORDS[state]}: further equilibria at a mean pressure of {pressures} Pa, of ridges not on the screen yet"]
 
 
 def tip_radius(finger: Fingertip) -> float:

@@ -29,6 +29,7 @@ from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt, Interrupted
 from fingerpad.io.result import Cost, Result
 from fingerpad.io.states import WORDS
+from fingerpad.model.cautions import on_states
 from fingerpad.model.touching import by_rule
 from fingerpad.reduced import ridge_cell
 from fingerpad.reduced.answer import Stopwatch, TooLight, at_rest, at_slip, refuse_others
@@ -118,7 +119,8 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: 
     made = f"tables of the ridge took {made_in:.2f} s of processor time when they were made; kept in {folder}"
     counted = "ridges are counted by their mean height, which misses some that barely touch"
     notes = [made, "receptors are not in this model", counted]
-    least, cautions = min(finger.touching for finger in fingers), remarks(scene)
+    least = min(finger.touching for finger in fingers)
+    cautions = [*remarks(scene), *on_states(named.values(), scene.closure())]
     if least < _FEW:
         cautions.append(
             f"the skin touches over {math.floor(10 * least) / 10:g} ridges; fewer than {_FEW} stand apart, and this "

@@ -14,6 +14,7 @@ from fingerpad.io.over_time import NOTE, long_steps
 from fingerpad.io.provenance import provenance
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
+from fingerpad.model import cautions
 from fingerpad.model.balance import broken, force_error
 from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Step
@@ -178,7 +179,11 @@ class Attempt:
             failure=failure or broken(named.get("full_slip"), error, mu_0),
             interrupted=self._ended.get("interrupted", ""),
             notes=tuple(notes),
-            cautions=(*remarks(scene), *long_steps(loads, error)),
+            cautions=(
+                *remarks(scene),
+                *cautions.on_states(record.states, scene.closure()),
+                *long_steps(loads, error),
+            ),
             record=more,
             folder=self._writer.folder,
             drawing=drawing,

@@ -17,9 +17,10 @@ from fingerpad.io.place import Place
 from fingerpad.io.provenance import provenance
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
+from fingerpad.model import expected
 from fingerpad.model.cost import Clock
-from fingerpad.model.expected import ERRORS, by_load
 from fingerpad.model.journal import Journal
+from fingerpad.model.memory import estimate
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.touching import by_rule
 from fingerpad.runs.attempt import Attempt
@@ -132,11 +133,13 @@ def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console, journal
 def _expect(scene: Scene, model: FingerModel, comm: MPI.Comm, console: Console, unknowns: int | None = None) -> None:
     """Tell the console what the path will take, about; of a mesh whose unknowns are not estimated but known."""
     loads = scene.loads()
-    seconds = [each / comm.size for each in by_load(scene, model.options, unknowns)]
+    size = estimate(scene, model.options).unknowns if unknowns is None else unknowns
+    seconds = [each / comm.size for each in expected.by_load(scene, size)]
+    known = not (expected.beyond_loads(scene) or expected.beyond_mesh(size))
     path = {load.name: each for load, each in zip(loads, seconds, strict=True)}
     slipping = [load.name for load in loads if load.until_full_slip]
-    after = ERRORS * sum(seconds) if model.options.errors and not model.asked else 0.0
-    console.expect(path, after, slipping, coefficient(scene) or 0.0, whole=not model.asked)
+    after = expected.ERRORS * sum(seconds) if model.options.errors and not model.asked else 0.0
+    console.expect(path, after, slipping, coefficient(scene) or 0.0, whole=not model.asked, known=known)
 
 
 def exit_code(result: Result) -> int:

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from fingerpad.scene.scene import Scene
 
+_LONGEST = 100e-6  # m, lambda_0 of the paper (Table 3), and the default
+
 
 def remarks(scene: "Scene") -> list[str]:
     """Return the remarks on a scene for the cautions of its results.
@@ -13,7 +15,24 @@ def remarks(scene: "Scene") -> list[str]:
     """
     if scene.laws.closure is not None or scene.laws.mesh is not None:
         return []
-    return ridges_as_roughness(scene.roughness.wavelength, scene.geometry.ridge_wavelength)
+    found = ridges_as_roughness(scene.roughness.wavelength, scene.geometry.ridge_wavelength)
+    return found + missing_waves(scene.roughness.wavelength)
+
+
+def missing_waves(longest: float) -> list[str]:
+    """Return a remark where roughness ends at waves that are short beside the paper's largest ones.
+
+    *Assumption*: they are below half of 100 µm. h_rms of a self-affine surface is then 0.6 of the whole one's or less.
+
+    Args:
+        longest: wave (m) that a height map can hold, its shorter side, or largest one of the roughness.
+    """
+    if longest >= _LONGEST / 2:
+        return []
+    return [
+        f"roughness ends at waves of {longest:.3g} m, and skin has waves up to {_LONGEST:.3g} m: waves longer than a "
+        "height map are missing in its h_rms, which depends on the size of the map; take a larger map"
+    ]
 
 
 def ridges_as_roughness(wavelength: float, ridge_wavelength: float) -> list[str]:

@@ -16,6 +16,7 @@ from variational.roughness.missing import filled
 from variational.roughness.topography import HeightMap
 
 _HIGHEST = 1.0  # m, of what can be roughness
+_WIDEST = 0.1  # m, of a map of skin: five fingertips
 _TEXT = (".txt", ".csv", ".tsv", ".dat", ".asc", ".xyz", ".prn")
 
 
@@ -158,9 +159,13 @@ def _named(path: Path, heights: NDArray[np.float64], size: tuple[float, float], 
         raise ValueError(f"{path} has heights over {over:.3g} m, at most {_HIGHEST:g} m is allowed; check their unit")
     try:
         missing = int(np.count_nonzero(~np.isfinite(heights)))
-        return Found(HeightMap(filled(heights) if heights.ndim == 2 else heights, size), missing, layout)
+        found = HeightMap(filled(heights) if heights.ndim == 2 else heights, size)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
+    if max(size) > _WIDEST:
+        wide = f"{size[0]:.3g} m x {size[1]:.3g} m"
+        raise ValueError(f"{path} is {wide} large, at most {_WIDEST:g} m is allowed; check the unit of its lengths")
+    return Found(found, missing, layout)
 
 
 def _read(path: Path, missing: str | None) -> _Read:

@@ -27,7 +27,9 @@ from variational.roughness.topography import HeightMap
 
 Array = NDArray[np.float64]
 Window = Literal["none", "hann"]
-_HURST = (0.01, 2.0)  # searched; above 1 a surface is not self-affine, which the fitted value shows
+HURST = (0.01, 2.0)
+"""Range in which the Hurst exponent is searched; above 1 a surface is not self-affine, which the fitted value shows."""
+_END = 1e-3  # distance of an exponent from an end of that range at which it is the end's
 _FLAT = 1e-12  # rms height over the largest height, at which what is left of a map is roundoff
 _SIGNIFICANT = 2.0  # gain in log-likelihood, two standard deviations, that tells a roll-off from none
 
@@ -50,12 +52,19 @@ class Fit:
     level: float
     """C (m^4) of the plateau."""
     hurst: float
+    """Exponent of greatest likelihood in :data:`HURST`; at an end of that range, see :attr:`hurst_found`, it is none of
+    the surface."""
     wavelength: float
     """lambda_0 (m) where the plateau ends; without a roll-off the largest wavelength of the fit, a lower bound."""
     resolved: bool
     """Whether a roll-off is told from a power law throughout, by two standard deviations."""
     q_range: tuple[float, float]
     """Wavevectors (1/m) of the fit."""
+
+    @property
+    def hurst_found(self) -> bool:
+        """Whether the likelihood has its maximum inside of the range searched."""
+        return HURST[0] + _END < self.hurst < HURST[1] - _END
 
     @property
     def q_0(self) -> float:
@@ -138,7 +147,7 @@ class PowerSpectrum:
             return float(weight @ model + np.log(weight @ (psd * np.exp(-model))))
 
         def best(ln_q_0: float) -> tuple[float, float]:
-            found = minimize_scalar(lambda hurst: surprise(ln_q_0, hurst), bounds=_HURST, method="bounded")
+            found = minimize_scalar(lambda hurst: surprise(ln_q_0, hurst), bounds=HURST, method="bounded")
             return float(found.fun), float(found.x)
 
         # The likelihood has a kink wherever q_0 passes a mode: a scan finds the valley, the search its bottom.

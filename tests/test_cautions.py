@@ -1,0 +1,126 @@
+"""Cautions of a state are the same whatever computed it: a run, a body, a cheaper model, a table."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+import fingerpad as fp
+import geometry
+from fingerpad.cli import main
+from fingerpad.model.cautions import on_states
+from fingerpad.reduced import cylinders
+from tests.small_finger import small
+from variational.contact.penalty import Penalty
+from variational.materials.ogden import Ogden
+from variational.roughness.bam import BearingArea
+from variational.roughness.closure import AirGap, Closure
+from variational.state import ContactState, RidgeStates, StepRecord
+
+THICK = 50e-6 / 3.4  # h_0 of 50 um of polyimide (m)
+SKIN, RIDGE = Ogden(86.76e3, -14.53, 0.48), geometry.ridge(size=30e-6)
+RISES, DEEP = "d_eq rises with pressure", "deeper in the screen than a tenth of the air gap"
+COARSE = {"contact": 40e-6, "receptor": 80e-6, "interface": 200e-6, "growth": 0.8}
+OUTPUT = {"receptors": False, "errors": False, "each_load": False}
+
+
+@dataclass(frozen=True)
+class Gap(Closure):
+    """A closure that holds up to a pressure."""
+
+    gap: float = 2e-6
+    limit: float = 1e5
+
+    def __call__(self, p_c):
+        return AirGap(self.gap + 0 * np.asarray(p_c, dtype=float))
+
+    def state(self, p_c, voltage):
+        return "too high" if p_c > self.limit else ""
+
+
+def state(p_c=(5e4,), force=(1.0,), voltage=200.0, penetration=1e-8) -> ContactState:
+    p_c, force = np.array(p_c), np.array(force)
+    length = np.divide(force, p_c, out=np.zeros_like(p_c), where=p_c > 0)
+    zero = np.zeros_like(p_c)
+    ridges = RidgeStates(np.arange(len(p_c)), length, force, zero, zero, p_c, zero)
+    record = StepRecord(penetration, *[0] * 11)
+    return ContactState(
+        f_ext=1.0, voltage=voltage, f_t=0.0, mu_app=0.0, f_contact=float(force.sum()), f_electrostatic=0.0,
+        ridges_in_contact=len(p_c), contact_length=float(length.sum()), ridges=ridges, record=record,
+    )  # fmt: skip
+
+
+# -- rules -------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(("share", "told"), [(0.09, False), (0.11, True)])
+def test_ridges_under_a_tenth_of_the_force_are_left_out(share, told):
+    """As those that come and go at the edge."""
+    found = on_states([state((5e4, 2e5, 0.0), (1 - share, share, 0.0))], Gap())
+    words = "in 1 of 1 states the closure is out of its range: the mean pressure of ridges is too high"
+    assert found == ([words] if told else [])
+
+
+@pytest.mark.parametrize(("penetration", "told"), [(0.19e-6, False), (0.21e-6, True)])
+def test_penetration_beyond_a_tenth_of_the_air_gap(penetration, told):
+    """With a voltage or without, of an air gap of 2 um."""
+    for voltage in (0.0, 200.0):
+        found = on_states([state(penetration=1e-8), state(voltage=voltage, penetration=penetration)], Gap())
+        assert [text.startswith(f"in 1 of 2 states the skin is {DEEP}, 0.21 µm where") for text in found] == [
+            True
+        ] * told
+
+
+def test_states_without_contact_voltage_or_closure_have_none():
+    """The closure acts through a voltage alone."""
+    high = {"p_c": (2e5,), "penetration": 1.0}
+    assert on_states([state((0.0,), (0.0,), penetration=1.0)], Gap()) == [] == on_states([state(**high)], None)
+    assert not any("out of its range" in text for text in on_states([state(voltage=0.0, **high)], Gap()))
+
+
+def test_state_without_ridges_has_their_mean():
+    """Of a cheaper model, whose ridges are alike."""
+    whole = state((5e4, 3e5), (1.0, 6.0))  # 7 N/m on 40 um: 175 kPa
+    alone = ContactState(**{key: getattr(whole, key) for key in ("f_ext", "voltage", "f_t", "mu_app", "f_contact")},
+        f_electrostatic=0.0, ridges_in_contact=2, contact_length=whole.contact_length)  # fmt: skip
+    assert [on_states([alone], Gap(limit=limit)) != [] for limit in (1.7e5, 1.8e5)] == [True, False]
+
+
+# -- doors -------------------------------------------------------------------------------------------------
+def body(roughness, contact=Penalty(1.5e12, 5e10)) -> fp.Body:  # noqa: B008
+    return fp.Body(RIDGE, SKIN, contact=contact, friction=0.25, roughness=roughness)
+
+
+def test_body_with_a_thick_insulator():
+    """Its air gap rises with the attraction, from 0.4 um at 500 V; a thin insulator has no caution."""
+    assert body(BearingArea(0.51e-6)).press(4.4).charge(100.0).cautions == []
+    pad = body(BearingArea(THICK)).press(4.4)
+    assert pad.cautions == []
+    (caution,) = pad.charge(500.0).cautions
+    assert RISES in caution
+
+
+def test_body_on_soft_contact():
+    """Springs 150 times softer than the default."""
+    (caution,) = body(BearingArea(0.51e-6), Penalty(1e10, 5e8)).press(4.4).cautions
+    assert DEEP in caution
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [({"contact": {"eps_n": 1e11}}, DEEP), ({"roughness": {"young": 3e4}}, "beyond zero separation")],
+)
+def test_run(values, words):
+    """Springs of the screen too soft, and a roughness that the skin fills: friction is the same for any softer one."""
+    history = [{"name": "press", "f_ext": 1.0}, {"name": "charge", "voltage": 20.0}]
+    scene = small().replace(mesh=COARSE, output=OUTPUT, history=history, **values)
+    assert sum(words in text for text in fp.run(scene).cautions) == 1
+
+
+@pytest.mark.parametrize("young", [1e5, 3e4, 1e4])
+def test_cylinders_and_tables(young, capsys):
+    """Of clamped closures, whose friction is one number."""
+    found = cylinders.solve(fp.Scene(roughness={"young": young}))
+    assert any("beyond zero separation" in text for text in found.cautions)
+    assert found.full_slip.mu_app == pytest.approx(0.5379, abs=1e-4)
+    for command in ("estimate", "microscale"):
+        assert main([command, "--set", f"roughness.young={young}"]) == 0
+        assert "the closure is out of its range: the mean pressure of ridges is beyond" in capsys.readouterr().out
