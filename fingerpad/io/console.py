@@ -59,6 +59,7 @@ class Console:
         slipping: Collection[str] = (),
         mu_0: float = 0,
         whole: bool = True,
+        unsure: int | None = None,
     ) -> None:
         """Take what is expected of a path that starts now.
 
@@ -69,8 +70,9 @@ class Console:
             mu_0: friction coefficient.
             whole: whether this is all; else what follows takes a time that cannot be told, and the time left is of the
                 path alone.
+            unsure: number of the first load whose time is no more than a guess; None without one.
         """
-        self._pace, self._slipping, self._mu_0 = Pace([*loads.values()], after), slipping, mu_0
+        self._pace, self._slipping, self._mu_0 = Pace([*loads.values()], after, unsure=unsure), slipping, mu_0
         self._of = "" if whole else ", path alone"
 
     def phase(self, text: str, part: float | None = None) -> None:
@@ -82,7 +84,7 @@ class Console:
         """
         if part is not None:
             self._pace.after_path(part)
-        left = "" if part is None else f"{self._pace.left()} left"
+        left = "" if part is None else f"time left: {self._pace.left()}"
         if self._progress.disable:
             self.show("; ".join(filter(None, (text, left))))
         self._progress.update(self._task, completed=self._pace.part, description=text, left=left)
@@ -111,9 +113,7 @@ class Console:
         )
         loads = f"{s.load}: {s.f_ext:.1f} N/m, {s.voltage:.0f} V, x {s.bone_x * 1e3:.2f} mm"
         words = loads if math.isnan(s.mu_app) else f"{loads}, µ_app {s.mu_app:z.3f}"
-        self._progress.update(
-            self._task, completed=self._pace.part, description=words, left=f"{self._pace.left()} left{self._of}"
-        )
+        self._progress.update(self._task, completed=self._pace.part, description=words, left=f"time left: {left}")
 
     def close(self) -> None:
         """Take the progress bar away."""

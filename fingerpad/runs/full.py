@@ -136,7 +136,9 @@ def _expect(scene: Scene, model: FingerModel, comm: MPI.Comm, console: Console, 
     path = {load.name: each for load, each in zip(loads, seconds, strict=True)}
     slipping = [load.name for load in loads if load.until_full_slip]
     after = ERRORS * sum(seconds) if model.options.errors and not model.asked else 0.0
-    console.expect(path, after, slipping, coefficient(scene) or 0.0, whole=not model.asked)
+    waves = [k for k, load in enumerate(loads) if load.wave is not None]  # none is among the runs of the rule
+    unsure = waves[0] if waves else None
+    console.expect(path, after, slipping, coefficient(scene) or 0.0, whole=not model.asked, unsure=unsure)
 
 
 def exit_code(result: Result) -> int:
