@@ -271,9 +271,13 @@ def draw(docs: Path) -> Path:
     whole, _, whole_safe = coverage([case for case in cases if case.source == WHOLE])
     densities = [case for case in cases if case.source in _PARAMETERS and case.kind == "energy density"]
     alone, _, alone_safe = coverage(densities)
+    density, _, density_safe = coverage(cases, "energy density")
+    other, other_safe = n - density, safe - density_safe
     finding = text["finding"].format(
         n=n, bare=bare, safe=safe, of_bare=of_bare, of_safe=of_safe, verdicts=verdicts,
         whole=whole, whole_safe=whole_safe, alone=alone, alone_safe=alone_safe,
+        other=other, other_safe=other_safe, of_other=100 * other_safe / other,
+        density=density, density_safe=density_safe, of_density=100 * density_safe / density,
     )  # fmt: skip
     one = text["one"].format(scatter=max(case.error for case in densities if case.source == "growth"))
 

@@ -176,9 +176,11 @@ def test_nothing_is_cut_off(whole, tmp_path, width):
 
 def test_curves_are_told_apart_without_colour(whole, tmp_path):
     """By their strokes: known, of unknown error, and the default's for comparison."""
-    program = f"""{SET} set({{ voltage: 300, "roughness.h_rms": 4 }});
-    const lines = [...document.querySelectorAll("#over_voltage polyline")];
-    return lines.map((each) => each.getAttribute("stroke-dasharray"));"""
+    program = f"""{SET} return [{{ voltage: 300 }}, {{ voltage: 300, "roughness.h_rms": 4 }}].flatMap((values) => {{
+      set(values);
+      const lines = [...document.querySelectorAll("#over_voltage polyline")];
+      return lines.map((each) => each.getAttribute("stroke-dasharray"));
+    }});"""
     assert len(set(asked(whole, program, tmp_path))) == 3
 
 

@@ -10,34 +10,21 @@ import pytest
 from fingerpad.cli import estimate, main, microscale, sweep, tables
 from fingerpad.io import style
 from fingerpad.io.result import Result
-from fingerpad.reduced import cylinders, known
+from fingerpad.reduced import cylinders
 from fingerpad.runs.sweep import sweep as run_sweep
 from fingerpad.scene import Scene, SceneError, from_data, keys, load
-from tests.commands import kept, refused
+from fingerpad.scene.remarks import LEAKAGE
+from tests.commands import refused
 from variational.roughness.bam import BearingArea
 
 
 # -- estimate ----------------------------------------------------------------------------------------------
-def test_known_error_is_that_of_the_kept_runs():
-    """The figures printed are the largest differences of closed form and full runs in docs/models.json, rounded up."""
-    runs = kept("models.json")["scenes"]
-    assert len(runs) == known.KNOWN_RUNS
-    points = [tuple(float(part.split()[0]) for part in name.split(",")) for name in runs]
-    assert known.KNOWN_FORCES == (min(f for f, _ in points), max(f for f, _ in points))
-    assert known.KNOWN_VOLTAGES == (min(u for _, u in points), max(u for _, u in points))
-    for key, largest in known.KNOWN_ERROR.items():
-        ratios = [
-            found["cylinders"]["summary"][f"slip_{key}"] / found["full"]["summary"][f"slip_{key}"]
-            for found in runs.values()
-        ]
-        worst = max(abs(ratio - 1) for ratio in ratios)
-        assert worst <= largest < worst + 1e-4
-
-
 def test_estimate_is_the_closed_form(tmp_path, capsys):
     file = tmp_path / "mu.csv"
     assert main(["estimate", "--f-ext", "50,75", "--voltage", "0:100:2", "--csv", str(file)]) == 0
-    assert "Known error: mu_app within 2.4 %" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert "Known error: mu_app and friction within 2.4 %, attraction within 5.0 %, contact within 6.3 % of 44" in out
+    assert out.count(LEAKAGE) == 1
     with file.open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
     assert [(float(r["f_ext"]), float(r["voltage"])) for r in rows] == [(50, 0), (50, 100), (75, 0), (75, 100)]
@@ -55,7 +42,7 @@ def test_estimate_says_where_its_error_is_not_known(capsys):
     assert main(["estimate", "--f-ext", "75,500", "--set", "friction=0.3"]) == 0
     text = capsys.readouterr().out
     assert "1 of 2 points are outside of that" in text
-    assert "Those runs have the default friction" in text
+    assert "Those runs have the default friction; here the error is not known." in text
 
 
 def test_estimate_refuses(capsys):

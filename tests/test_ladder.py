@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from fingerpad.io.quantities import PLUS_MINUS
 from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
 from fingerpad.runs import compare
@@ -73,10 +74,10 @@ def test_force_beyond_the_runs_is_said():
 
 def test_other_screen_than_the_runs_is_said():
     found = cylinders.solve(scene(friction=0.3, electric={"d_i": 2e-6}))
-    assert any("known with the default friction, electric; here" in text for text in found.cautions)
+    assert any("known with the default friction, electric, and not here" in text for text in found.cautions)
     assert not cylinders.solve(scene(friction=0.3), cylinders.given(1.5e-3, 16)).cautions, "its length is given"
     own = scene().with_laws(closure=scene().closure(), friction=Coulomb(0.3))
-    assert any("the default friction, closure; here" in text for text in cylinders.solve(own).cautions)
+    assert any("the default friction, closure, and not here" in text for text in cylinders.solve(own).cautions)
 
 
 def test_state_past_the_end_of_the_closure_is_said():
@@ -170,7 +171,7 @@ def test_errors_of_a_run_stand_beside_its_values(tmp_path):
     assert next(line for line in lines if line.startswith("charged normal contact: contact length")).endswith(
         "  1.7000"
     )
-    assert "±: estimated discretisation error" in lines
+    assert PLUS_MINUS in lines
 
 
 def test_closed_form_has_no_discretisation_error(default):

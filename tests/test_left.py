@@ -60,17 +60,52 @@ def test_load_that_ends_with_full_slip_is_as_far_as_its_friction():
 
 def test_time_left_of_a_run_like_none_before_is_not_known():
     """Until its pace is: the expected times are shares of the whole alone."""
-    times = iter([0.0, 50.0, 50.0])
-    pace = Pace([1e30, 1e30], 0.0, clock=lambda: next(times), known=False)
-    pace.on_path(0.2)
+    times = iter([0.0, 0.0, 50.0])
+    pace = Pace([1e30, 1e30], 0.0, clock=lambda: next(times), unsure=0)
+    pace.on_path(0.05)
     assert pace.left() == "not known"
     pace.on_path(0.5)
     assert pace.left() == "35 to 71 s"
 
 
+def test_full_slip_of_a_load_before_is_none_of_the_next():
+    """The first load has ended, with friction at its largest; and such a load is not done before full slip is held."""
+    pace = Pace([20.0, 80.0], 0.0, clock=lambda: 0.0)
+    pace.on_path(0.5, slipped=1.0)
+    assert pace.part == pytest.approx(0.2)
+    pace.on_path(0.5 + 0.1 / 2, slipped=1.0)
+    assert pace.part < 1
+
+
+def test_time_left_is_not_known_before_a_waveform_has_its_pace():
+    """Of 10 s that were expected for the waveform and 1 s for what follows it takes four times as long.
+
+    Nothing is told before a tenth of both; at 20 % what is left is 0.8 of 44 s, within the factor of a pace.
+    """
+    now = [0.0]
+    pace = Pace([10.0, 10.0], 1.0, lambda: now[0], unsure=1)
+    for done, seconds in ((0.25, 5.0), (0.5, 10.0), (0.54, 13.2)):
+        now[0] = seconds
+        pace.on_path(done)
+        assert pace.left() == "not known"
+    now[0] = 10.0 + 0.2 * 44
+    pace.on_path(0.5 + 0.22 / 2)
+    low, _, high, unit = pace.left().split()
+    assert unit == "s" and float(low) < 35.2 < float(high) < 2 * 35.2
+    now[0] = 10.0 + 42.0
+    pace.after_path(0.5)
+    assert float(pace.left().split()[0]) < 2.0 < float(pace.left().split()[2]) < 4.0
+
+
 @pytest.mark.parametrize(
     ("low", "high", "words"),
-    [(1.5, 6.0, "1.5 to 6 s"), (40.0, 160.0, "0.67 to 2.7 minutes"), (3600.0, 14400.0, "1 to 4 hours")],
+    [
+        (9e-10, 1.4e-9, "less than 1 s"),
+        (0.0, 0.0, "less than 1 s"),
+        (1.5, 6.0, "1.5 to 6 s"),
+        (40.0, 160.0, "0.67 to 2.7 minutes"),
+        (3600.0, 14400.0, "1 to 4 hours"),
+    ],
 )
 def test_range_is_in_the_unit_of_the_longer_time(low, high, words):
     assert between(low, high) == words
@@ -95,7 +130,7 @@ def test_phase_is_a_line_in_a_file(capsys):
     console.phase("meshing")
     console.phase("estimating", 1.0)
     console.close()
-    assert capsys.readouterr().out == "meshing\nestimating; 0 to 0 s left\n"
+    assert capsys.readouterr().out == "meshing\nestimating; time left: less than 1 s\n"
 
 
 @pytest.mark.parametrize(("whole", "words"), [(True, "20 to 60 s"), (False, "20 to 60 s, path alone")])

@@ -49,6 +49,14 @@ def test_scenes_differ_and_their_mesh_is_given():
     assert all(scene.mesh.touching_half_arc is not None for scene in scenes.values())
 
 
+def test_held_out_loads_are_none_of_the_others():
+    """No model has a length of their forces; the mesh is that of the forty, and the kept ones are these."""
+    found = models.held_out()
+    assert not {scene.f_ext for scene in found.values()} & set(cylinders.FORCES)
+    assert {scene.mesh.contact for scene in found.values()} == {models.SIZE}
+    assert list(found) == list(harness.kept("models").numbers["held_out"])
+
+
 def test_scenes_beyond_have_the_mesh_of_the_others():
     """Their changes are understood, and the contact size is that of the forty."""
     found = models.beyond()
@@ -93,10 +101,14 @@ def test_page(tmp_path):
     lost = dict.fromkeys((*models._KEPT, "full_slip")) | {"failure": "TIME_LIMIT: not done"}
     half = lost | {"slip_mu_app": 0.25, "slip_ridges_in_contact": 7, "full_slip": True, "failure": None}
     beyond = {"twice the voltage": lost, models.HALF_STEPS: half}
-    harness.keep("models", {"scenes": scenes, "beyond": beyond}, BY, tmp_path)
+    less = answer(**values | {"normal_f_electrostatic": 0.8})
+    held = {"8.2 N/m, 153 V": {"cylinders": less, "full": answer(**values)}}
+    harness.keep("models", {"scenes": scenes, "held_out": held, "beyond": beyond}, BY, tmp_path)
     text = models.draw(tmp_path).read_text(encoding="utf-8")
     assert "give µ_app within 10.0 %" in text
-    assert "full slip in 2 of 3 scenes" in text
+    assert "full slip in 3 of 4 scenes" in text
+    assert "| `cylinders` | 8.2 N/m, 153 V | +0.0 | +0.0 | +0.0 | -20.0 |" in text
+    assert "attraction is within 20.0 % by the cylinders" in text
     assert "No answer at 75 N/m, 200 V." in text
     assert "1 of the answers are by an older law of one ridge" in text
     assert "| 75 | +0.0 | – | – | – | +10.0 |" in text

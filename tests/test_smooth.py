@@ -144,6 +144,12 @@ def test_every_number_comes_with_its_error(answer):
     assert answer[0].cost.factorisations > 0
 
 
+def test_error_of_the_model_is_not_known_of_another_finger(answer):
+    """Its ± is of the mesh alone, and nothing else is told of its error."""
+    assert answer[0].record["model_error"] == {}
+    assert any("known with the default geometry, and not here" in text for text in answer[0].cautions)
+
+
 class Recorder:
     """In the place of a console."""
 

@@ -122,24 +122,28 @@
     }
   }
 
-  const known_at = (values) => within(values.f_ext, data.known.forces) && within(values.voltage, data.known.voltages);
+  const inside = (values) => within(values.f_ext, data.known.forces) && within(values.voltage, data.known.voltages);
   const within = (value, [low, high]) => value >= low && value <= high;
   const changed = (values) => [...new Set(fields.map((field) => field.key)
     .filter((key) => !FOOTPRINT.includes(key) && key !== "f_ext" && key !== "voltage" && values[key] !== defaults[key])
     .map((key) => key.split(".")[0]))];
+  /** Return whether the error of an answer is known: at the loads of the full runs, with all else as they have it. */
+  const known_at = (values, given) => !given && inside(values) && changed(values).length === 0;
 
   function curve(values, given, key, highest, lowest) {
-    return Array.from({ length: POINTS }, (_, k) => {
-      const x = lowest + ((highest - lowest) * k) / (POINTS - 1), here = { ...values, [key]: x };
-      const found = answer(here, given);
-      return { x, y: typeof found === "string" ? null : found.mu_app, known: !given && known_at(here) };
+    const even = Array.from({ length: POINTS }, (_, k) => lowest + ((highest - lowest) * k) / (POINTS - 1));
+    const ends = key === "voltage" ? data.known.voltages : data.known.forces; // where the line ceases to be solid
+    const places = new Set([...even, ...ends.filter((x) => x > lowest && x < highest)]);
+    return [...places].sort((a, b) => a - b).map((x) => {
+      const here = { ...values, [key]: x }, found = answer(here, given);
+      return { x, y: typeof found === "string" ? null : found.mu_app, known: known_at(here, given) };
     });
   }
 
   const ROWS = [
     ["mu_app", "friction coefficient µ_app", "", 1, 3, "mu_app"],
     ["f_t", "friction force", "N/m", 1, 2, "mu_app"],
-    ["f_electrostatic", "attraction", "N/m", 1, 2],
+    ["f_electrostatic", "attraction", "N/m", 1, 2, "f_electrostatic"],
     ["contact_length", "contact length", "mm", 1e3, 3, "contact_length"],
     ["ridges_in_contact", "ridges in contact", "", 1, 0],
     ["p_c", "mean contact pressure", "kPa", 1e-3, 2],
@@ -147,7 +151,8 @@
   ];
 
   function show_point(found, values, given) {
-    const sure = !given && known_at(values), body = find("point").tBodies[0];
+    const sure = known_at(values, given), body = find("point").tBodies[0];
+    find("point").caption.textContent = `At this point${sure ? "" : ": error not known"}`;
     body.replaceChildren(...ROWS.map(([key, words, unit, per, digits, error]) => {
       const value = found[key] * per, band = error && sure ? ` ± ${(value * data.known.error[error]).toFixed(digits)}` : "";
       const cell = create("td", { id: "value_" + key }, `${value.toFixed(digits)}${band} ${unit}`.trim());
@@ -161,11 +166,11 @@
     const where = `${forces.map(Number).join(" to ")} N/m and ${voltages.map(Number).join(" to ")} V`, said = [];
     if (given) said.push("The contact is as given along both curves; the error of this answer is not known.");
     else {
-      said.push(`Known error: µ_app within ${percent(error.mu_app)}, contact length within ` +
-        `${percent(error.contact_length)} of ${runs} full runs at ${where}.`);
-      if (!known_at(values)) said.push("This point is outside of that; its error is not known.");
+      said.push(`Known error: µ_app and friction within ${percent(error.mu_app)}, attraction within ` +
+        `${percent(error.f_electrostatic)}, contact length within ${percent(error.contact_length)} of ${runs} full runs at ${where}.`);
+      if (!inside(values)) said.push("This point is outside of that; its error is not known.");
       const keys = changed(values);
-      if (keys.length) said.push(`Those runs have the default ${keys.join(", ")}; here the error may be larger.`);
+      if (keys.length) said.push(`Those runs have the default ${keys.join(", ")}; here the error is not known.`);
     }
     const state = found.closure.state(found.p_c, values.voltage);
     if (state) said.push(`The mean pressure of ${show(found.p_c, 4)} Pa is ${state}.`);
@@ -191,7 +196,7 @@
       plot.draw(find(id), { x, y: mu, points, other: other.filter((p) => p.y !== null), mark, error: data.known.error.mu_app, title });
       const missing = points.filter((p) => p.y === null).length;
       find("caption_" + (key === "f_ext" ? "force" : "voltage")).textContent = `Over ${x} at a ${at}. ` +
-        (given ? "The curve is dashed, since its error is not known." : `Shaded: known error${same ? "" : " with the defaults"}; dashed: error not known.`) +
+        (points.some((p) => p.known) ? "Shaded: known error; dashed: error not known." : "The curve is dashed, since its error is not known.") +
         (same ? "" : " Dotted: the default friction, coating, roughness and finger.") +
         (missing ? ` ${missing} of ${points.length} points have no equilibrium and are left out.` : "");
       rows.push(...points.map((p) => [key === "voltage" ? values.f_ext : p.x, key === "voltage" ? p.x : values.voltage, p.y]));
@@ -232,7 +237,8 @@
     else show_point(found, values, given);
     if (text) find("notes").textContent = "";
     else remarks(found, values, given);
-    find("always").textContent = text ? "No answer at this point." : `µ_app ${find("value_mu_app").textContent}`;
+    const sure = known_at(values, given) ? "" : ", error not known";
+    find("always").textContent = text ? "No answer at this point." : `µ_app ${find("value_mu_app").textContent}${sure}`;
     find("command").textContent = command(values, given);
     draw(values, given, text ? null : found);
   }

@@ -8,9 +8,9 @@ from importlib.resources import files
 from fingerpad.calculator.fields import data
 from fingerpad.installed import version
 from fingerpad.io.quantities import PER_LENGTH
-from fingerpad.reduced import cylinders
-from fingerpad.reduced.known import KNOWN_ERROR, KNOWN_FORCES, KNOWN_RUNS, KNOWN_VOLTAGES
+from fingerpad.reduced import cylinders, known
 from fingerpad.scene import Scene
+from fingerpad.scene.remarks import LEAKAGE
 
 _TABLE = (20.0, 50.0, 75.0, 100.0, 150.0), (0.0, 50.0, 100.0, 150.0, 200.0)  # N/m, V
 
@@ -22,12 +22,11 @@ def page() -> str:
         (own / name).read_text(encoding="utf-8").rstrip()
         for name in ("page.css", "closed_form.js", "plot.js", "page.js")
     )
-    low, high = (" to ".join(f"{end:g}" for end in ends) for ends in (KNOWN_FORCES, KNOWN_VOLTAGES))
     values = {
-        "error": f"{100 * KNOWN_ERROR['mu_app']:.1f} %",
-        "runs": str(KNOWN_RUNS),
-        "forces": f"{low} N/m",
-        "voltages": f"{high} V",
+        "error": f"{100 * known.KNOWN_ERROR['cylinders']['full_slip']['mu_app']:.1f} %",
+        "runs": str(known.KNOWN_RUNS),
+        "where": known.where(),
+        "leakage": html.escape(LEAKAGE),
         "table": _table(),
         "defaults": _defaults(),
         "per_length": html.escape(PER_LENGTH),

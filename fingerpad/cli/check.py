@@ -14,7 +14,7 @@ from fingerpad.model.options import ModelOptions, plan
 from fingerpad.model.touching import by_rule
 from fingerpad.scene import Load, Scene
 from fingerpad.scene.laws import used
-from fingerpad.scene.remarks import remarks
+from fingerpad.scene.remarks import leakage, remarks
 from geometry.sizing import touching_ridges
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def _aims(load: Load) -> Iterator[str]:
 
 
 def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
-    yield from remarks(scene)
+    yield from (*remarks(scene), *leakage(scene))
     found, touching = estimate(scene, needed), by_rule(scene)
     ridges = touching_ridges(touching.geometry, touching.mesh)
     if scene.contact.formulation == "augmented":

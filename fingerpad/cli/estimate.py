@@ -8,12 +8,11 @@ from fingerpad.cli import ranges, tables
 from fingerpad.cli.arguments import Parser, echo, refuse_twice, scene_of
 from fingerpad.io.quantities import PER_LENGTH
 from fingerpad.model.cautions import on_states
-from fingerpad.reduced import cylinders
+from fingerpad.reduced import cylinders, known
 from fingerpad.reduced.answer import refuse_others
-from fingerpad.reduced.known import KNOWN_ERROR, KNOWN_FORCES, KNOWN_RUNS, KNOWN_VOLTAGES, changed, outside
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError
-from fingerpad.scene.remarks import remarks
+from fingerpad.scene.remarks import LEAKAGE, remarks
 
 _COLUMNS = (
     tables.Column("f_ext", "force", "N/m"),
@@ -55,7 +54,8 @@ def main(argv: Sequence[str]) -> int:
     echo("\nmu_app is friction over force, at full slip; contact is the length of skin on the screen.")
     states = [row["state"] for row in rows if "state" in row]
     limits = (f"{text[0].upper()}{text[1:]}." for text in on_states(states, scene.closure()))
-    for note in (PER_LENGTH, *_known(scene, rows), *(f"{text}." for text in remarks(scene)), *limits, *lost):
+    said = (*([LEAKAGE] if any(voltages) else []), *(f"{text}." for text in remarks(scene)), *limits)
+    for note in (PER_LENGTH, *_known(scene, rows), *said, *lost):
         echo(note)
     tables.write_files(args, _COLUMNS, rows, draw)
     return 0
@@ -97,15 +97,15 @@ def grid(scene: Scene, forces: Sequence[float], voltages: Sequence[float]) -> tu
 
 def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
     """Return what is known of the error of these rows."""
-    mu, length = (f"{100 * value:.1f} %" for value in KNOWN_ERROR.values())
-    (low, high), (none, most) = KNOWN_FORCES, KNOWN_VOLTAGES
-    where = f"{low:g} to {high:g} N/m and {none:g} to {most:g} V"
-    said = [f"Known error: mu_app within {mu}, contact within {length} of {KNOWN_RUNS} full runs at {where}."]
-    beyond = sum(outside(row["f_ext"], row["voltage"]) for row in rows)
+    bands = known.KNOWN_ERROR["cylinders"]["full_slip"]
+    mu, length, pull = (f"within {100 * bands[key]:.1f} %" for key in ("mu_app", "contact_length", "f_electrostatic"))
+    runs = f"{known.KNOWN_RUNS} full runs at {known.where()}"
+    said = [f"Known error: mu_app and friction {mu}, attraction {pull}, contact {length} of {runs}."]
+    beyond = sum(known.outside(row["f_ext"], row["voltage"]) for row in rows)
     if beyond:
         said.append(f"{beyond} of {len(rows)} points are outside of that; their error is not known.")
-    if keys := changed(scene):
-        said.append(f"Those runs have the default {', '.join(keys)}; here the error may be larger.")
+    if keys := known.changed(scene):
+        said.append(f"Those runs have the default {', '.join(keys)}; here the error is not known.")
     return said
 
 

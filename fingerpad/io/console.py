@@ -59,7 +59,7 @@ class Console:
         slipping: Collection[str] = (),
         mu_0: float = 0,
         whole: bool = True,
-        known: bool = True,
+        unsure: int | None = None,
     ) -> None:
         """Take what is expected of a path that starts now.
 
@@ -70,9 +70,9 @@ class Console:
             mu_0: friction coefficient.
             whole: whether this is all; else what follows takes a time that cannot be told, and the time left is of the
                 path alone.
-            known: whether the times are; else they are good for the loads' shares of the whole.
+            unsure: number of the first load whose time is no more than a guess; None without one.
         """
-        self._pace, self._slipping, self._mu_0 = Pace([*loads.values()], after, known=known), slipping, mu_0
+        self._pace, self._slipping, self._mu_0 = Pace([*loads.values()], after, unsure=unsure), slipping, mu_0
         self._of = "" if whole else ", path alone"
 
     def phase(self, text: str, part: float | None = None) -> None:
@@ -84,7 +84,7 @@ class Console:
         """
         if part is not None:
             self._pace.after_path(part)
-        left = "" if part is None else f"{self._pace.left()} left"
+        left = "" if part is None else f"time left: {self._pace.left()}"
         if self._progress.disable:
             self.show("; ".join(filter(None, (text, left))))
         self._progress.update(self._task, completed=self._pace.part, description=text, left=left)

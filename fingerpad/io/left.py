@@ -1,11 +1,16 @@
 """The time that is left of something, as a range: by what was expected at first, by the pace so far later."""
 
+import math
 import time
 from collections.abc import Callable, Sequence
 
 _EXPECTED = 2.0  # factor either way within which a time is expected
 _KNOWN = 1 / 3  # part done from which on the pace alone counts
 _LEAST = 1.25  # factor either way of the pace at the end
+_SURE = 0.1  # part done of loads without an expected time from which on their pace is known
+_SLIPS = 0.9  # of a load that ends with full slip: done where friction is at its largest, before it is held
+_NEAR = 1e-9  # of a load: roundoff of its end
+_SHORT = 1.0  # s, below which no time is told
 
 
 def left(expected: float, elapsed: float, part: float) -> tuple[float, float]:
@@ -26,6 +31,8 @@ def left(expected: float, elapsed: float, part: float) -> tuple[float, float]:
 
 def between(low: float, high: float) -> str:
     """Return a range of times (s) in words, in the unit in which the longer one is read."""
+    if high < _SHORT:
+        return f"less than {_SHORT:g} s"
     size, unit = _unit(high)
     return f"{about(low / size)} to {about(high / size)} {unit}"
 
@@ -51,7 +58,11 @@ class Pace:
     """How far a run is, in time: its loads, then its error estimate."""
 
     def __init__(
-        self, loads: Sequence[float], after: float, clock: Callable[[], float] = time.monotonic, known: bool = True
+        self,
+        loads: Sequence[float],
+        after: float,
+        clock: Callable[[], float] = time.monotonic,
+        unsure: int | None = None,
     ) -> None:
         """Start.
 
@@ -59,11 +70,13 @@ class Pace:
             loads: expected time of each load (s).
             after: expected time after the loads (s).
             clock: returns the time (s).
-            known: whether these times are more than the loads' shares of the whole; else the pace alone counts.
+            unsure: number of the first load whose time is no more than a guess: the time left is known from its own
+                pace alone. None without such a load.
         """
-        self._known = known
         self._loads, self._after, self._clock, self._start = loads, after, clock, clock()
         self._whole = sum(loads) + after
+        self._before = 0.0 if unsure is None else sum(loads[:unsure]) / self._whole
+        self._unsure, self._entered = unsure is not None, math.nan
         self.part = 0.0
         """Part of the time that is done."""
 
@@ -75,16 +88,24 @@ class Pace:
             slipped: part of the present load, where it ends with full slip: friction over its largest value.
         """
         number = min(done, 1.0) * len(self._loads)
-        k = min(int(number + 1e-9), len(self._loads) - 1)
-        part = max(number - k, min(slipped, 1.0))
+        k = min(int(number + _NEAR), len(self._loads) - 1)
+        part = number - k
+        if part > _NEAR:  # else the load before has just ended, perhaps with full slip
+            part = max(part, min(slipped, _SLIPS))
         self.part = (sum(self._loads[:k]) + part * self._loads[k]) / self._whole
+        if math.isnan(self._entered) and self.part >= self._before:
+            self._entered = self._clock()
 
     def after_path(self, part: float) -> None:
         """Take the part that is done of what comes after the loads."""
         self.part = (sum(self._loads) + part * self._after) / self._whole
 
     def left(self) -> str:
-        """Return the time left in words."""
-        if not self._known and self.part < _KNOWN:
+        """Return in words that so much time is left, or that it is not known."""
+        if not self._unsure:
+            return between(*left(self._whole, self._clock() - self._start, self.part))
+        part = (self.part - self._before) / (1 - self._before)
+        if math.isnan(self._entered) or part < _SURE:
             return "not known"
-        return between(*left(self._whole, self._clock() - self._start, self.part))
+        passed = self._clock() - self._entered
+        return between(*left(passed / part, passed, part))

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from fingerpad.io.states import LoadResult
 
 NOTE = (
-    "Loads over time are quasi-static: no inertia, no viscous skin, no leakage of charge. A frequency only sets how "
-    "far the finger slides in a period."
+    "Loads over time are quasi-static: no inertia, no viscous skin, and no leakage of charge, which lowers the "
+    "attraction of a real finger below about 1 kHz. A frequency only sets how far the finger slides in a period."
 )
 """What a result with a load over time says of it."""
 HARMONICS, SAMPLED = 6, 4

@@ -62,6 +62,10 @@ PER_LENGTH = (
     "are about 0.5 N in all."
 )
 
+PLUS_MINUS = (
+    "±: estimated discretisation error; what the finger and the model assume is not in it (docs/assumptions.md)."
+)
+
 
 def cell(key: str, value: float, error: float = math.nan) -> str:
     """Return a quantity of :data:`QUANTITIES` as :meth:`Quantity.shown` does."""

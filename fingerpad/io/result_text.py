@@ -2,7 +2,7 @@
 
 import math
 
-from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
+from fingerpad.io.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import LoadResult, called
 
@@ -55,7 +55,7 @@ def _remarks(result: Result) -> list[str]:
         reached = any(load.full_slip_reached for load in result.loads)
         found.append(f"Full slip was {'not held over a further 0.2 mm' if reached else 'not reached'}.")
     if any(state.error.known() for state in result.named.values()):
-        found.append("±: estimated discretisation error, of the mesh alone.")
+        found.append(PLUS_MINUS)
     sizes = {name: state.mesh_contact for name, state in result.named.items() if not math.isnan(state.mesh_contact)}
     if len(set(sizes.values())) > 1:  # with an accuracy
         each = (f"{1e6 * size:.3g} µm ({called(name, result.named[name].voltage)})" for name, size in sizes.items())
@@ -81,7 +81,7 @@ def _in_time(load: LoadResult, least: float) -> str:
     unit = f" {quantity.unit}" if quantity.unit else ""
     words = f"{load.name}: {quantity.words.split()[-1]} {cell(key, ends.min)} to {cell(key, ends.max)}{unit}"
     words += "" if math.isnan(mean) else f", mean {cell(key, mean)}{unit}"
-    if not (rubs and passed.periods):
-        return words
-    most, frequency = max(zip(passed.f_t_amplitude, passed.frequency, strict=True))
-    return f"{words}; amplitude of f_T at {frequency:.4g} Hz {cell('f_t', most)} N/m"
+    if rubs and passed.periods:
+        most, frequency = max(zip(passed.f_t_amplitude, passed.frequency, strict=True))
+        words += f"; amplitude of f_T at {frequency:.4g} Hz {cell('f_t', most)} N/m"
+    return f"{words}; {load.sticking}" if rubs and load.sticking else words

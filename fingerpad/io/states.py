@@ -166,6 +166,18 @@ class LoadResult:
     """Whether the state at the end is stable; None where this was not examined."""
     over_time: OverTime | None = None
     """Means over time and spectrum of friction; None where the load takes no time."""
+    full_slip_part: float = math.nan
+    """Part of the load's states after its begin that are of full slip; NaN where its voltage is no waveform."""
+
+    @property
+    def sticking(self) -> str:
+        """In words that friction is not that of sliding; empty where every state is of full slip, or unexamined."""
+        part = self.full_slip_part
+        if math.isnan(part) or part == 1:
+            return ""
+        if part == 0:
+            return "part of the skin sticks in every state, so that friction stays below that of sliding"
+        return f"full slip in {100 * part:.0f} % of its states; in the others part of the skin sticks"
 
     def rubs(self, least: float) -> bool:
         """Return whether there is friction in the load, above a force (N/m) up to which it is roundoff."""
@@ -231,4 +243,7 @@ def load_result(
         least, most = min(known, key=of), max(known, key=of)
         extremes[quantity] = Extreme(of(least), least.step, of(most), most.step, least.time, most.time)
     slips = any(state.slip_began for state in mine), any(state.slip_held for state in mine)
-    return LoadResult(name, mine[-1], extremes, *slips, stable, passed)
+    # The state at the begin of a waveform may be that at the end of a slide.
+    under = [] if wave is None or passed is None else [state for state in own if state.time > passed.start]
+    slides = sum(state.slip_began > 0 for state in under) / len(under) if under else math.nan
+    return LoadResult(name, mine[-1], extremes, *slips, stable, passed, slides)

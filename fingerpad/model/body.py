@@ -186,7 +186,7 @@ class Body:
         return self._reach(Target("lift", bone_height=_finite("height", height, "m")))
 
     def charge(self, voltage: Quantity) -> "Body":
-        """Change the voltage U (V) between screen and body, of either sign; return the body.
+        """Change the voltage U (V) between screen and body, of either sign, without leakage; return the body.
 
         Raises:
             ValueError: the body has no roughness.

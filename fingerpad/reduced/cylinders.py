@@ -33,7 +33,7 @@ from fingerpad.reduced.answer import STATES, Stopwatch, at_rest, at_slip, refuse
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import skin_modulus, used
 from fingerpad.scene.messages import show
-from fingerpad.scene.remarks import remarks
+from fingerpad.scene.remarks import leakage, remarks
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState, hertz_modulus
@@ -175,8 +175,9 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     footprint = footprint or fitted(scene)
     found: dict[str, ContactState] = {}
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
-    notes, states = (footprint.source, exact, "the bone's height is not in this model"), {}
-    cautions = [*remarks(scene), *([] if footprint.charged else known.cautions(scene))]
+    errors = {} if footprint.charged else known.errors("cylinders", scene)
+    notes = footprint.source, exact, known.in_words(errors), "the bone's height is not in this model", *leakage(scene)
+    cautions, states = [*remarks(scene), *([] if footprint.charged else known.cautions(scene))], {}
     for state in STATES:
         try:
             ridge = _ridge(scene, footprint, state)
@@ -196,7 +197,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     more: dict[str, Any] = {
         f"{PREFIXES[state]}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
     }
-    more["laws"] = used(scene)
+    more |= {"laws": used(scene), "model_error": errors}
     cost = Cost(processor_seconds=clock.seconds())
     return Result(
         scene, "cylinders", None, found["charged"], found["full_slip"],

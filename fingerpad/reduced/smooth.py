@@ -31,12 +31,12 @@ from fingerpad.io.result import Cost, Result
 from fingerpad.io.states import WORDS
 from fingerpad.model.cautions import on_states
 from fingerpad.model.touching import by_rule
-from fingerpad.reduced import ridge_cell
+from fingerpad.reduced import known, ridge_cell
 from fingerpad.reduced.answer import Stopwatch, TooLight, at_rest, at_slip, refuse_others
 from fingerpad.reduced.stages import Stages, ridges
 from fingerpad.richardson import MeshParameter
 from fingerpad.scene import Scene, SceneError, laws
-from fingerpad.scene.remarks import remarks
+from fingerpad.scene.remarks import leakage, remarks
 from geometry import fingertip, tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
@@ -118,9 +118,10 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: 
     made_in = sum(tables.seconds for tables in used)
     made = f"tables of the ridge took {made_in:.2f} s of processor time when they were made; kept in {folder}"
     counted = "ridges are counted by their mean height, which misses some that barely touch"
-    notes = [made, "receptors are not in this model", counted]
+    bands = known.errors("smooth", scene)
+    notes = [made, known.in_words(bands), "receptors are not in this model", counted, *leakage(scene)]
     least = min(finger.touching for finger in fingers)
-    cautions = [*remarks(scene), *on_states(named.values(), scene.closure())]
+    cautions = [*remarks(scene), *known.cautions(scene), *on_states(named.values(), scene.closure())]
     if least < _FEW:
         cautions.append(
             f"the skin touches over {math.floor(10 * least) / 10:g} ridges; fewer than {_FEW} stand apart, and this "
@@ -136,7 +137,7 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: 
     size = fingers[0].solver.layout.global_size
     cost = Cost(processor_seconds=clock.seconds(), factorisations=sum(counts), unknowns=size, ranks=comm.size)
     states = (None, named["charged"], named.get("full_slip"))
-    more["laws"] = laws.used(scene)
+    more |= {"laws": laws.used(scene), "model_error": bands}
     return Result(
         scene, "smooth", *states, cost=cost, notes=tuple(notes), cautions=tuple(cautions), record=more
     )  # fmt: skip

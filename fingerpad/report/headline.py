@@ -24,7 +24,6 @@ def conditions(result: Result) -> str:
 
 def head(result: Result) -> str:
     """Return the finding: the largest number of the page, and whether to rely on it."""
-    kind, words = trust.verdict(trust.findings(result))
     slip, charged = result.full_slip, result.charged
     whole = result.finger if result.asked_force is not None else None
     if whole is not None and "full_slip" in whole.states:
@@ -38,7 +37,9 @@ def head(result: Result) -> str:
     elif (timed := _timed(result)) is not None:
         ends = timed.extremes["mu_app"]
         number = f"µ<sub>app</sub> from {cell('mu_app', ends.min)} to {cell('mu_app', ends.max)}"
+        number += ", without full slip" if timed.full_slip_part == 0 else ""
         said = f"apparent friction coefficient in the load {timed.name}, over time"
+        said += f": {timed.sticking}" if timed.sticking else ""
         if slip is not None:
             said += f"; {cell('mu_app', slip.mu_app, slip.error.mu_app)} at full slip, {conditions(result)}"
     elif slip is not None and math.isnan(slip.mu_app):
@@ -57,11 +58,13 @@ def head(result: Result) -> str:
         said = f"contact length in {called('charged', charged.voltage)}; {conditions(result)}"
     else:
         number, said = "No contact state was kept", conditions(result)
+    kind, words = trust.verdict(trust.findings(result), number.partition(" ± ")[2])
+    more = ' <a href="#trust">What is not in it</a>' if kind == trust.GOOD else ""
     where = "" if result.folder is None else f" · {html.text(result.folder.resolve().name)}"
     return (
         f'<header><p class="kind">fingerpad · report of a run{where}</p><h1>{number}</h1>'
         f'<p class="said">{html.text(said)}</p>'
-        f'<p class="verdict {kind}"><b>{MARKS[kind]}</b> {html.text(words)}</p></header>'
+        f'<p class="verdict {kind}"><b>{MARKS[kind]}</b> {html.text(words)}{more}</p></header>'
     )
 
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from fingerpad.io.quantities import PER_LENGTH, QUANTITIES, cell
+from fingerpad.io.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import before_sliding, called
 from fingerpad.report import over_time, parameters, receptors, trust
@@ -115,7 +115,7 @@ def _numbers(result: Result) -> str:
     if result.asked_force is not None:
         notes.append(_OF_FORCE[result.model == "full"])
     if any(state.error.known() for state in result.named.values()):
-        notes.append("±: estimated discretisation error, of the mesh alone.")
+        notes.append(PLUS_MINUS)
     if slip is not None and not math.isnan(slip.penalty.contact_length):
         friction = f"µ_app at full slip by {slip.penalty.mu_app:+.2g}"
         if math.isnan(slip.penalty.mu_app):

@@ -32,6 +32,8 @@ class Table:
     """Of the program that made the table; empty where it is not known."""
     cautions: tuple[str, ...] = ()
     """Limits of validity that points reach."""
+    notes: tuple[str, ...] = ()
+    """Remarks on the points."""
 
 
 def read(folder: Path) -> Result | Table:
@@ -101,8 +103,9 @@ def _sweep(folder: Path) -> Table:
         raise SceneError(f"table.csv in {name} is cut short; give the command of the sweep again to write it anew")
     try:
         asked = dict(json.loads((folder / "sweep.json").read_text(encoding="utf-8")))
-        more = str(asked["model"]), str(asked.get("version", "")), tuple(map(str, asked.get("cautions", ())))
-        return Table(folder, axes, rows, dict(asked["parameters"]), *more)
+        more = str(asked["model"]), str(asked.get("version", ""))
+        said = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
+        return Table(folder, axes, rows, dict(asked["parameters"]), *more, *said)
     except FileNotFoundError:
         return Table(folder, axes, rows, None)
     except (OSError, ValueError, KeyError, TypeError) as error:

@@ -168,7 +168,7 @@ def _points(table: Table) -> str:
         "Every point",
         html.table((*heads, ""), rows, "numbers"),
         html.paragraph(MODEL_ERROR if FORCE in table.axes else PER_LENGTH, "note"),
-        html.items(table.cautions),
+        html.items((*table.notes, *table.cautions)),
     )
 
 

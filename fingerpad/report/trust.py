@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from fingerpad.io.result import Result
 from fingerpad.io.states import called
+from fingerpad.reduced import known
 from variational.state import ContactState
 
 GOOD, CARE, BAD = "holds", "care", "fails"
@@ -31,20 +32,26 @@ def findings(result: Result) -> list[Finding]:
     found = [_end(result)]
     found += _full_slip(result)
     if result.model != "full":
-        words = f"The model is {result.model!r}, a cheaper one: see docs/models.md for its error beside the full model."
+        words = f"The model is {result.model!r}, a cheaper one; {known.in_words(result.record.get('model_error', {}))}."
         return [*found, Finding("model", CARE, words), *_cautions(result)]
     for examined in (_cautions, _mesh, _balance, _stability, _jumps, _restarts):
         found += examined(result)
     return found
 
 
-def verdict(found: list[Finding]) -> tuple[str, str]:
-    """Return the worst verdict and a sentence for the head of a page."""
+def verdict(found: list[Finding], error: str = "") -> tuple[str, str]:
+    """Return the worst verdict and a sentence for the head of a page.
+
+    Args:
+        found: what was looked at.
+        error: estimated discretisation error of the number in the head, with its unit; empty where it has none.
+    """
     bad, care = ([each for each in found if each.verdict == kind] for kind in (BAD, CARE))
     for kind, worst, first in ((BAD, bad, "Do not use these numbers as they are"), (CARE, care, "Use with care")):
         if worst:
             return kind, f"{first}: {' and '.join(each.what for each in worst)}. {worst[0].words}"
-    return GOOD, "Everything that was examined holds: the numbers can be used within their ±."
+    solved = f"solved to ± {error}" if error else "solved"
+    return GOOD, f"All that was examined holds: {solved}; what the finger and the model assume is not in it."
 
 
 def _cautions(result: Result) -> Iterator[Finding]:
@@ -68,6 +75,9 @@ def _full_slip(result: Result) -> Iterator[Finding]:
         how = "not held over a further 0.2 mm" if reached else "not reached"
         words = f"Full slip was {how}, so there is no friction of full slip."
         yield Finding("full slip was not reached", BAD if result.failure else CARE, words)
+    for load in result.loads:
+        if load.full_slip_part == 0 and load.rubs(result.record.get("force_error") or 0.0):
+            yield Finding("no full slip under a waveform", CARE, f"In the load {load.name} {load.sticking}.")
 
 
 def _mesh(result: Result) -> Iterator[Finding]:

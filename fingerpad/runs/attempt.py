@@ -27,7 +27,7 @@ from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene
 from fingerpad.scene.laws import coefficient, used
-from fingerpad.scene.remarks import remarks
+from fingerpad.scene.remarks import leakage, remarks
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
@@ -147,7 +147,7 @@ class Attempt:
         final = {} if refinement is None else refinement.base.views
         named = record.named(final, [load.name for load in scene.loads()])
         unknowns, notes, more = finger.unknowns, [*restarts.notes], dict[str, Any]()
-        notes += [NOTE] if any(load.takes_time for load in scene.loads()) else []
+        notes += [*leakage(scene), *([NOTE] if any(load.takes_time for load in scene.loads()) else [])]
         if refinement is not None:
             named = with_errors(refinement, named)
             unknowns, more["accuracy"] = refinement.base.unknowns, refinement.summary()

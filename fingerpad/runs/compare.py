@@ -10,7 +10,7 @@ Where each model is good enough: ``docs/models.md``.
 import math
 from collections.abc import Sequence
 
-from fingerpad.io.quantities import QUANTITIES, cell
+from fingerpad.io.quantities import PLUS_MINUS, QUANTITIES, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import called
 from fingerpad.reduced.answer import STATES
@@ -34,7 +34,8 @@ def table(results: Sequence[Result]) -> str:
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
     said = [(result.model, (*result.notes, *result.cautions, result.failure)) for result in results]
-    notes = [f"{model}: {note}" for model, each in said for note in each if note]
+    shared = [note for note in said[0][1] if note and len(said) > 1 and all(note in each for _, each in said)]
+    notes = [f"{model}: {note}" for model, each in said for note in each if note and note not in shared]
     if any(state.error.known() for result in results for state in result.named.values()):
-        notes.insert(0, "±: estimated discretisation error")
-    return "\n".join(lines + notes)
+        notes.insert(0, PLUS_MINUS)
+    return "\n".join(lines + notes + shared)

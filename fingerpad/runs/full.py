@@ -135,11 +135,17 @@ def _expect(scene: Scene, model: FingerModel, comm: MPI.Comm, console: Console, 
     loads = scene.loads()
     size = estimate(scene, model.options).unknowns if unknowns is None else unknowns
     seconds = [each / comm.size for each in expected.by_load(scene, size)]
-    known = not (expected.beyond_loads(scene) or expected.beyond_mesh(size))
     path = {load.name: each for load, each in zip(loads, seconds, strict=True)}
     slipping = [load.name for load in loads if load.until_full_slip]
     after = expected.ERRORS * sum(seconds) if model.options.errors and not model.asked else 0.0
-    console.expect(path, after, slipping, coefficient(scene) or 0.0, whole=not model.asked, known=known)
+    console.expect(path, after, slipping, coefficient(scene) or 0.0, whole=not model.asked, unsure=_unsure(scene, size))
+
+
+def _unsure(scene: Scene, unknowns: float) -> int | None:
+    """Return the number of the first load that is none like those of the kept runs, None without one."""
+    if expected.beyond_loads(scene) or expected.beyond_mesh(unknowns):
+        return 0
+    return next((k for k, load in enumerate(scene.loads()) if load.wave is not None), None)
 
 
 def exit_code(result: Result) -> int:

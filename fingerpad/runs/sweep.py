@@ -25,6 +25,7 @@ from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import clip, show
 from fingerpad.scene.reading import plain, put
+from fingerpad.scene.remarks import leakage
 
 FILES = ("table.csv", sweep_dataset.FILE, "report.html", "sweep.json")
 """What a sweep writes into its folder beside its points."""
@@ -86,9 +87,10 @@ def sweep(
     for name in FILES[1:]:  # else that of an earlier sweep may stay beside this one's table
         (folder / name).unlink(missing_ok=True)
     asked = {"version": version(), "model": model, "parameters": scene.parameters()}
-    replace_json(folder / FILES[-1], asked | {"cautions": done.cautions()})
+    leaks = next((note for each in done for note in leakage(each.scene)), "")
+    replace_json(folder / FILES[-1], asked | {"cautions": done.cautions(), "notes": [leaks] if leaks else []})
     done.to_csv(folder / FILES[0])
-    notes = tuple(filter(None, (sweep_dataset.save(done), _older(done, folder / model))))
+    notes = tuple(filter(None, (leaks, sweep_dataset.save(done), _older(done, folder / model))))
     attempt(folder)
     return replace(done, notes=notes)
 

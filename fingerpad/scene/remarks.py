@@ -1,10 +1,23 @@
-"""Remarks on values of a scene that can be run and may not be meant."""
+"""Remarks on values of a scene that can be run and may not be meant.
+
+A voltage attracts as over lossless insulators, Eq. 3 of the paper. Skin conducts, and so does the air gap: below about
+1 kHz the attraction falls with the frequency, and that of a constant voltage leaks away (Persson and Guo 2019, arXiv
+1908.01140; measured by Meyer et al. 2013, ``docs/measured.md``). A constant voltage of a scene can be the effective
+value of an alternating one, so that it has a note alone. The mean of a waveform is a constant voltage, and has a
+caution.
+"""
 
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from fingerpad.scene.scene import Scene
 
+LEAKAGE = (
+    "Attraction is computed without leakage of charge (Eq. 3): a voltage is the effective value of an alternating "
+    "drive above about 1 kHz. A constant voltage leaks away in a real finger, and attracts less."
+)
+"""Note on every result with a constant voltage."""
+_MEAN = 0.01  # of the peak: mean of a waveform that is none
 _LONGEST = 100e-6  # m, lambda_0 of the paper (Table 3), and the default
 
 
@@ -13,10 +26,28 @@ def remarks(scene: "Scene") -> list[str]:
 
     There is none on keys that a law or a mesh of its own replaces.
     """
-    if scene.laws.closure is not None or scene.laws.mesh is not None:
+    found = [*offsets(scene)]
+    if scene.laws.closure is None and scene.laws.mesh is None:
+        found += ridges_as_roughness(scene.roughness.wavelength, scene.geometry.ridge_wavelength)
+        found += missing_waves(scene.roughness.wavelength)
+    return found
+
+
+def leakage(scene: "Scene") -> list[str]:
+    """Return the note on a constant voltage; none at 0 V, or where a caution on an offset says it."""
+    return [LEAKAGE] if any(load.level for load in scene.loads()) and not offsets(scene) else []
+
+
+def offsets(scene: "Scene") -> list[str]:
+    """Return a caution on the waveform with the largest mean voltage; none where no mean reaches 1 % of its peak."""
+    waves = [(load.name, load.wave) for load in scene.loads() if load.wave is not None]
+    name, wave = max(waves, key=lambda each: abs(each[1].mean), default=("", None))
+    if wave is None or abs(wave.mean) < _MEAN * wave.peak:
         return []
-    found = ridges_as_roughness(scene.roughness.wavelength, scene.geometry.ridge_wavelength)
-    return found + missing_waves(scene.roughness.wavelength)
+    return [
+        f"the voltage of the load {name} has a mean of {wave.mean:.4g} V, which leaks away in a real finger; here it "
+        "attracts all the time, without leakage (Eq. 3), so that the attraction is too large"
+    ]
 
 
 def missing_waves(longest: float) -> list[str]:

@@ -16,7 +16,7 @@ waveform's own voltage. Fewer or more samples follow from ``numerics.step_scale`
 import csv
 import math
 from collections.abc import Iterator
-from itertools import count
+from itertools import count, pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -137,6 +137,14 @@ class Waveform(Part):
     def peak(self) -> float:
         """Largest amount of the voltage (V)."""
         return max(map(abs, self.voltages)) if self.voltages else abs(self.offset) + (self.amplitude or 0.0)
+
+    @property
+    def mean(self) -> float:
+        """Mean voltage (V) of a period; of a file over its length."""
+        if self.times is None or self.voltages is None:
+            return self.offset
+        pieces = zip(pairwise(self.times), pairwise(self.voltages), strict=True)
+        return sum((t1 - t0) * (u0 + u1) / 2 for (t0, t1), (u0, u1) in pieces) / self.times[-1]
 
     def __str__(self) -> str:
         """Return the wave in words."""

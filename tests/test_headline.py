@@ -1,0 +1,98 @@
+"""The head of a report: what its ± holds, and a waveform under which the finger sticks."""
+
+import math
+import re
+from dataclasses import replace
+
+import pytest
+
+import fingerpad as fp
+from fingerpad.io.quantities import PLUS_MINUS
+from fingerpad.io.result import Result
+from fingerpad.io.result_text import text
+from fingerpad.io.states import load_result
+from fingerpad.report import trust
+from fingerpad.report.headline import head
+from fingerpad.scene import from_data
+from variational.state import ContactState, Errors
+
+WAVE = {"waveform": "sine", "amplitude": 120.0, "frequency": 20.0, "offset": 200.0}
+SCENE = from_data(
+    {
+        "history": [
+            {"name": "press", "f_ext": 10.0},
+            {"name": "wave", "bone_x_by": 1e-3, "duration": 0.1, "voltage": WAVE},
+        ]
+    }
+)
+
+
+def state(time: float = math.nan, f_t: float = 4.0, **values) -> ContactState:
+    given = {"f_ext": 10.0, "voltage": 100.0, "f_contact": 16.0, "f_electrostatic": 6.0, "load": "wave", "step": 9}
+    given |= {"ridges_in_contact": 5, "contact_length": 1e-3, "f_t": f_t, "mu_app": f_t / 10.0}
+    return ContactState(**given | values, time=time)
+
+
+def waved(*slips: bool) -> Result:
+    """Return a run whose waveform begins in full slip, with states in full slip or not after that."""
+    later = (state(0.1 * (k + 1) / len(slips), 1.0 + k, slip_began=9 * slip) for k, slip in enumerate(slips))
+    load = load_result("wave", [state(0.0, slip_began=9), *later], None, (), SCENE.history[1].wave)
+    return Result(SCENE, "full", None, state(), state(), loads=(load,))
+
+
+# -- a waveform under which the finger sticks --------------------------------------------------------------
+def test_waveform_without_full_slip_is_in_the_title():
+    """Though it began in full slip, that of the slide before; the verdict and the printed result have it too."""
+    found = waved(False, False, False, False)
+    page = head(found)
+    assert "from 0.1000 to 0.4000, without full slip</h1>" in page
+    words = "part of the skin sticks in every state, so that friction stays below that of sliding"
+    assert page.count(words) == 2 and 'class="verdict care"' in page
+    assert words in text(found)
+
+
+def test_waveform_with_some_full_slip_says_in_how_much():
+    """Of the states after its begin; no reason for a caution, and nothing where all are of full slip."""
+    some, every = waved(True, False, True, False), waved(True, True, True, True)
+    words = "full slip in 50 % of its states; in the others part of the skin sticks"
+    assert words in head(some) and words in text(some) and "without full slip" not in head(some)
+    assert "sticks" not in head(every) + text(every)
+    for found in (some, every):
+        assert not any(each.what == "no full slip under a waveform" for each in trust.findings(found))
+
+
+def test_finger_that_does_not_rub_does_not_stick():
+    """Without friction there is none to be below that of sliding."""
+    still = waved(False, False)
+    loads = tuple(replace(load, extremes=load.extremes | {"f_t": replace(load.extremes["f_t"], min=0.0, max=0.0)})
+                  for load in still.loads)  # fmt: skip
+    assert "sticks" not in head(replace(still, loads=loads)) + text(replace(still, loads=loads))
+
+
+# -- what ± holds ------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(("error", "words"), [(0.0026, "solved to ± 0.0026; what"), (math.nan, "holds: solved; what")])
+def test_verdict_has_the_error_of_the_headline(monkeypatch, error, words):
+    """It is of the solution alone; a link leads to what is not in it."""
+    monkeypatch.setattr(trust, "findings", lambda result: [trust.Finding("mesh", trust.GOOD, "small")])
+    page = head(Result(fp.Scene(), "full", None, None, state(error=Errors(mu_app=error))))
+    assert f"{words} the finger and the model assume is not in it." in page
+    assert '<a href="#trust">' in page and "can be used" not in page
+    assert bool(re.search(r"= 0\.4000 ± 0\.0026</h1>", page)) == (error == 0.0026)
+
+
+def test_unit_of_the_error_is_that_of_the_headline(monkeypatch):
+    monkeypatch.setattr(trust, "findings", lambda result: [])
+    page = head(Result(fp.Scene(), "full", None, state(error=Errors(contact_length=2e-5)), None))
+    assert "solved to ± 0.020 mm; what" in page
+
+
+def test_verdict_with_a_caution_has_no_link(monkeypatch):
+    monkeypatch.setattr(trust, "findings", lambda result: [trust.Finding("mesh", trust.CARE, "It is coarse.")])
+    page = head(Result(fp.Scene(), "full", None, None, state(error=Errors(mu_app=0.0026))))
+    assert "Use with care: mesh. It is coarse." in page and "href" not in page
+
+
+def test_plus_minus_is_explained_where_it_is_printed():
+    shown = text(Result(fp.Scene(), "full", None, None, state(error=Errors(mu_app=0.0026))))
+    assert PLUS_MINUS in shown and "what the finger and the model assume is not in it" in PLUS_MINUS
+    assert PLUS_MINUS not in text(Result(fp.Scene(), "full", None, None, state()))
