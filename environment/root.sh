@@ -101,7 +101,7 @@ said=$(bwrap --unshare-user --ro-bind / / true 2>&1) ||
         "kernel.apparmor_restrict_unprivileged_userns=0), $others"
 
 build=$(mktemp -d "$cache/build.XXXXXXXX")
-trap 'rm -rf "$build" 2>/dev/null || true' EXIT
+trap 'rm -rf --one-file-system "$build" 2>/dev/null || true' EXIT
 chmod 755 "$build"
 mkdir -m 1777 "$build/tmp"
 

@@ -17,7 +17,6 @@ from geometry.bodies import block
 from geometry.mesh import TaggedMesh, load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles
-from variational import jit
 
 LONGER = (
     "accuracy api counts demo demos element ending energy environment faults formulations light mirror needs own_laws "
@@ -48,11 +47,10 @@ def pytest_ignore_collect(collection_path, config):
 
 
 def pytest_sessionstart():
-    """Delete compiles that were killed, each of which would block its form; give each rank a folder of its own.
+    """Give each rank a folder of its own.
 
     Ranks that share one delete its old runs under each other's hands.
     """
-    jit.delete_unfinished(MPI.COMM_WORLD)
     if MPI.COMM_WORLD.size > 1:
         root = Path(tempfile.gettempdir()) / f"fingerpad-tests-{os.getuid()}-{MPI.COMM_WORLD.rank}"
         root.mkdir(mode=0o700, exist_ok=True)

@@ -1,17 +1,21 @@
 """What every run is checked for: balance of forces, and the cone of friction at full slip."""
 
+from contextlib import nullcontext
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from fingerpad.model import balance
 from fingerpad.model.finger import Finger
+from fingerpad.report import trust
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.solvers.continuation import StepFailed
 from variational.state import ContactState, StepRecord
 
 PENALTY = Penalty(1e12, 1e11)
+LEFT = 1e-4  # N/m, what the solves leave of a sum of forces
 SLIP = {"f_contact": 100.0, "f_electrostatic": 25.0, "f_ext": 75.0, "f_t": -25.0, "voltage": 200.0, "mu_app": 1 / 3}
 
 
@@ -19,16 +23,32 @@ SLIP = {"f_contact": 100.0, "f_electrostatic": 25.0, "f_ext": 75.0, "f_t": -25.0
     ("change", "words"),
     [
         ({}, ""),
-        ({"f_ext": 75.1}, "out of balance by -0.1 N/m"),
-        ({"f_t": 25.1}, "friction at full slip is 25.1 N/m and its limit 25 N/m"),
+        ({"f_ext": 75.0 + 0.9 * LEFT}, ""),
+        ({"f_ext": 75.0 + 1.1 * LEFT}, "out of balance by -0.00011 N/m"),
+        ({"f_ext": 75.0 - 1.1 * LEFT}, "out of balance by 0.00011 N/m"),
+        ({"f_t": 25.0 + 0.9 * LEFT}, ""),
+        ({"f_t": 25.0 + 1.1 * LEFT}, "friction at full slip is 25.00011 N/m and its limit 25 N/m"),
+        ({"f_t": 1.1 * LEFT - 25.0}, "friction at full slip is 24.99989 N/m and its limit 25 N/m"),
     ],
 )
 def test_balance_and_cone(change, words):
-    """Errors of 0.1 N/m are a thousand times what the solves leave."""
+    """The limit is what the solves leave of a sum of forces; roundoff of the cone is 0.25 % of it."""
     slip = ContactState(**(SLIP | {"ridges_in_contact": 3, "contact_length": 1e-3} | change))
-    found = balance.broken(slip, 1e-4, 0.25)
+    found = balance.broken(slip, LEFT, 0.25)
     assert words in found and bool(found) == bool(words)
-    assert balance.broken(None, 1e-4, 0.25) == ""
+    assert balance.broken(None, LEFT, 0.25) == ""
+
+
+@pytest.mark.parametrize(
+    ("record", "limit"), [({"force_error": LEFT}, LEFT), ({}, 1e-3 * 75.0)], ids=["known", "not known"]
+)
+def test_report_has_the_same_limit(record, limit):
+    """A thousandth of the load in results that do not have what the solves leave."""
+    touching = SLIP | {"ridges_in_contact": 3, "contact_length": 1e-3}
+    for part in (0.9, -0.9, 1.1, -1.1):
+        slip = ContactState(**(touching | {"f_contact": 100.0 + part * limit}))
+        (found,) = trust._balance(SimpleNamespace(full_slip=slip, record=record))
+        assert found.verdict == (trust.GOOD if abs(part) < 1 else trust.BAD)
 
 
 @pytest.mark.parametrize(
@@ -38,6 +58,25 @@ def test_forces_left_at_a_node(floor, words):
     """Where the solve ended at its roundoff no tolerance helps, and none is named."""
     with pytest.raises(StepFailed, match=f"^here: a force of 0.00075 N/m is left at a node; .*{words}"):
         balance.refuse_unbalanced("here", 1e-5, None, None, 75.0, 1e-9, floor)
+
+
+@pytest.mark.parametrize(
+    ("node", "sideways", "down", "words"),
+    [
+        (0.9, 0.9, -0.9, ""),
+        (1.1, 0.0, 0.0, "is left at a node"),
+        (0.0, -1.1, 0.0, "bears 25 N/m sideways and the screen 24.9999175 N/m"),
+        (0.0, 0.0, 1.1, "bears 75 N/m downwards and the screen 75.0000825 N/m"),
+    ],
+)
+def test_limit_of_what_is_left(node, sideways, down, words):
+    """A millionth of 75 N/m, at a node and between the two ridges on the screen and the bone."""
+    friction, contact, attraction = [20.0, 5.0 + sideways * 75e-6], [60.0, 40.0 + down * 75e-6], [15.0, 10.0]
+    parts = {"f_friction": friction, "f_contact": contact, "f_attraction": attraction}
+    loads = SimpleNamespace(**{name: np.array(values) for name, values in parts.items()})
+    refused = pytest.raises(StepFailed, match=f"^here: .*{words}") if words else nullcontext()
+    with refused:
+        balance.refuse_unbalanced("here", node * 1e-6, loads, np.array([25.0, 75.0]), 75.0, 1e-9, 0.0)
 
 
 def test_finger_tells_the_roundoff_of_its_solver():

@@ -1,43 +1,223 @@
-"""The cache of compiled forms."""
+"""The cache of compiled forms: several processes, killed and stopped ones, and compilers that fail."""
 
+import errno
 import os
+import shutil
+import signal
 import subprocess
 import sys
+import sysconfig
 import time
+from pathlib import Path
 
 import numpy as np
+import pytest
 import ufl
 from dolfinx import fem, mesh
 from mpi4py import MPI
 
+from fingerpad.cli import main
+from fingerpad.installed import COMPILER
+from tests.one_form import integral
+from tests.small_finger import SMALL
 from variational import jit
 
-
-def test_sweep_takes_what_a_killed_compile_left(tmp_path, monkeypatch):
-    """Old and unfinished goes; finished, or young enough to be at work on, stays."""
-    monkeypatch.setitem(jit.OPTIONS, "cache_dir", tmp_path)
-    for name in ("dead.c", "done.c", "done.c.cached", "young.c"):
-        (tmp_path / name).touch()
-    for name in ("dead.c", "done.c"):
-        os.utime(tmp_path / name, times=(time.time() - 600,) * 2)
-    jit.delete_unfinished(MPI.COMM_SELF)
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["done.c", "done.c.cached", "young.c"]
+ROOT = Path(__file__).resolve().parents[1]
+UNFINISHED, WAITING = "did not finish; compiling again", "waiting for another process"
+COMPILE = """#!/bin/sh
+echo "$@" >> {folder}/called
+while [ -e {folder}/hold ]; do sleep 0.05; done
+exec {compiler} "$@"
+"""
 
 
-def test_sweep_leaves_what_a_compiler_is_at(tmp_path, monkeypatch):
-    """However old: on a machine with much to do a compile takes minutes."""
-    monkeypatch.setitem(jit.OPTIONS, "cache_dir", tmp_path)
-    source = tmp_path / "slow_form.c"
-    source.touch()
-    os.utime(source, times=(time.time() - 6000,) * 2)
-    command = [sys.executable, "-c", "input(print(flush=True))", str(source)]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as compiler:
-        assert compiler.stdout.readline()  # it runs, so that its command line is its own
-        jit.delete_unfinished(MPI.COMM_SELF)
-        assert source.exists()
-        compiler.communicate(b"\n")
-    jit.delete_unfinished(MPI.COMM_SELF)
-    assert not source.exists()
+class Others:
+    """Other processes with the same cache, whose compiler waits as long as there is a file."""
+
+    def __init__(self, folder: Path) -> None:
+        self.cache, self.hold, self.called = (folder / name for name in ("cache", "hold", "called"))
+        self._compiler = folder / "compiler"
+        real = os.environ.get("CC") or sysconfig.get_config_var("CC")
+        self._compiler.write_text(COMPILE.format(folder=folder, compiler=real))
+        self._compiler.chmod(0o755)
+        self._folder, self._started = folder, list[subprocess.Popen]()
+        self.hold.touch()
+
+    def start(self) -> subprocess.Popen:
+        """Start one; return when it compiles, or waits for one that does."""
+        environment = os.environ | {"CC": str(self._compiler), "TMPDIR": str(self._folder), "PYTHONPATH": str(ROOT)}
+        command = [sys.executable, str(ROOT / "tests" / "one_form.py"), str(self.cache)]
+        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        other = subprocess.Popen(command, env=environment, text=True, **pipes)
+        first = not self._started
+        self._started.append(other)
+        if first:
+            while not self.called.exists():
+                assert other.poll() is None, other.stderr.read()
+                time.sleep(0.02)
+        else:
+            assert WAITING in other.stderr.readline()
+        return other
+
+    def end(self) -> None:
+        """Let every compiler go on, and kill what is still there."""
+        self.hold.unlink(missing_ok=True)
+        for other in self._started:
+            other.kill()
+            other.communicate()
+
+
+@pytest.fixture
+def cache(tmp_path, monkeypatch):
+    """An empty cache; waiting is told at once."""
+    monkeypatch.setitem(jit.OPTIONS, "cache_dir", tmp_path / "cache")
+    monkeypatch.setattr(jit, "_SILENT", 0.0)
+    return tmp_path / "cache"
+
+
+@pytest.fixture
+def others(tmp_path, cache):
+    others = Others(tmp_path)
+    yield others
+    others.end()
+
+
+def test_killed_compile_is_made_again_at_once(others, capfd):
+    """Nobody waits for it, though the compiler that the killed process started is still there."""
+    other = others.start()
+    other.kill()
+    other.wait()
+    assert integral() == 2.5
+    words = capfd.readouterr().err
+    assert UNFINISHED in words and WAITING not in words
+    others.hold.unlink()
+    assert integral() == 2.5 and capfd.readouterr().err == ""
+
+
+def test_stopped_compile_loses_nothing(others, monkeypatch, capfd):
+    """However long it was stopped: another process compiles for itself, and the first one goes on to its end."""
+    other = others.start()
+    other.send_signal(signal.SIGSTOP)
+    for file in others.cache.iterdir():
+        os.utime(file, times=(0, 0))
+    monkeypatch.setitem(jit.OPTIONS, "timeout", 0)
+    assert integral() == 2.5 and UNFINISHED in capfd.readouterr().err
+    others.hold.unlink()
+    other.send_signal(signal.SIGCONT)
+    assert other.communicate()[0] == "2.5\n" and other.returncode == 0
+    assert integral() == 2.5 and capfd.readouterr().err == ""
+
+
+def test_two_processes_compile_a_form_once(others):
+    """The second waits, says so, and takes what the first has compiled."""
+    first, second = others.start(), others.start()
+    calls = others.called.read_text()
+    others.hold.unlink()
+    for other in (first, second):
+        printed, words = other.communicate()
+        assert (printed, other.returncode) == ("2.5\n", 0) and UNFINISHED not in words
+    assert others.called.read_text().count(" -c ") == calls.count(" -c ") == 1
+
+
+@pytest.mark.parametrize(
+    ("left", "compiled"),
+    [
+        ("source", True),  # by FFCx alone, killed in mid-compile
+        ("source finished", True),
+        ("finished", True),
+        ("source finished empty", True),  # a machine that lost its power
+        ("library finished", False),  # FFCx, once another process has deleted the source
+    ],
+)
+def test_what_is_not_whole_is_compiled_again(cache, tmp_path, monkeypatch, capfd, left, compiled):
+    """And what is whole is taken."""
+    monkeypatch.setitem(jit.OPTIONS, "cache_dir", tmp_path / "good")
+    integral()
+    cache.mkdir()
+    (good,) = (tmp_path / "good").glob("*.so")
+    name = good.name.partition(".")[0]
+    for kind in left.split():
+        if kind == "library":
+            shutil.copy(good, cache)
+        else:
+            (cache / {"source": f"{name}.c", "finished": f"{name}.c.cached", "empty": good.name}[kind]).touch()
+    monkeypatch.setitem(jit.OPTIONS, "cache_dir", cache)
+    assert integral() == 2.5
+    assert (UNFINISHED in capfd.readouterr().err) is compiled
+    assert (cache / f"{name}.c").exists() is compiled or "source" in left
+
+
+def test_without_locks(cache, monkeypatch):
+    """Some file systems have none: processes then compile a form several times."""
+
+    def refuse(file, how):
+        raise OSError(errno.ENOLCK, "no locks")
+
+    monkeypatch.setattr(jit.fcntl, "flock", refuse)
+    assert integral() == 2.5
+
+
+def test_compiler_that_fails_is_one_sentence(cache, monkeypatch):
+    """It names the cause; with a compiler that works the next compile succeeds."""
+    monkeypatch.setenv("CC", "false")
+    with pytest.raises(jit.CompileError, match="^a form cannot be compiled in .* kept in .*/false' failed") as found:
+        integral()
+    assert found.value.name == COMPILER and "\n" not in str(found.value)
+    monkeypatch.delenv("CC")
+    assert integral() == 2.5
+
+
+def test_compiler_that_gets_a_signal_starts_again(cache, tmp_path, monkeypatch):
+    """Ctrl-C reaches all processes of a terminal, and the run holds it back until the end of its step."""
+    compiler, real = tmp_path / "compiler", os.environ.get("CC") or sysconfig.get_config_var("CC")
+    compiler.write_text(f'#!/bin/sh\nif mkdir {tmp_path / "once"} 2>&-; then kill -INT $$; fi\nexec {real} "$@"\n')
+    compiler.chmod(0o755)
+    monkeypatch.setenv("CC", str(compiler))
+    assert integral() == 2.5 and (tmp_path / "once").exists()
+
+
+def test_cache_that_cannot_be_written_is_one_sentence(cache):
+    cache.touch()
+    with pytest.raises(jit.CompileError, match="^a form cannot be compiled .* exists: .*cache"):
+        integral()
+
+
+def test_command_refuses_where_the_compiler_fails(cache, monkeypatch, tmp_path, capfd):
+    """In one line, without a traceback."""
+    monkeypatch.setenv("CC", "false")
+    assert main(["run", str(SMALL), "--out", str(tmp_path / "results"), "--quiet"]) == 2
+    (line,) = capfd.readouterr().err.splitlines()
+    assert line.startswith("fingerpad: a form cannot be compiled in ")
+
+
+@pytest.mark.mpi
+def test_failure_of_the_first_rank_has_its_cause_on_all(cache, monkeypatch):
+    monkeypatch.setenv("CC", "false")
+    with pytest.raises(jit.CompileError, match="/false' failed"):
+        integral(MPI.COMM_WORLD)
+
+
+@pytest.mark.mpi
+@pytest.mark.skipif(MPI.COMM_WORLD.size == 1, reason="a rank among others")
+def test_failure_of_one_rank_is_all_ranks(monkeypatch):
+    """None goes on and waits for it."""
+
+    def fail(comm):
+        if comm.rank == comm.size - 1:
+            raise OSError("no room on its node")
+
+    monkeypatch.setattr(jit, "_on_each_rank", fail)
+    with pytest.raises(jit.CompileError, match="^no room on its node$"):
+        jit._on_all_ranks(MPI.COMM_WORLD)
+
+
+@pytest.mark.mpi
+def test_ranks_that_work_alone_share_a_cache(tmp_path, monkeypatch):
+    """All compile a form at the same time."""
+    monkeypatch.setitem(jit.OPTIONS, "cache_dir", MPI.COMM_WORLD.bcast(tmp_path))
+    MPI.COMM_WORLD.barrier()
+    assert integral() == 2.5
+    MPI.COMM_WORLD.barrier()
 
 
 def test_compiled_forms_keep_what_is_no_number():

@@ -166,3 +166,16 @@ def test_shift_is_no_part_of_roundoff(body):
     assert shifted == pytest.approx(plain, rel=1e-9) and plain > 0
     assert float(eta.value) == 1e16
     assert tangent.matrix.norm() == larger
+
+
+def test_error_in_a_callback_is_raised_as_it_was(flat, monkeypatch):
+    """Not as PETSc's error -1, which names no cause."""
+
+    def fail(*args):
+        raise OSError("the cause")
+
+    solver = make(flat)
+    monkeypatch.setattr(solver.equations, "residual", fail)
+    solver.new_load(Control(0.0, -1e-6), 0.0)
+    with pytest.raises(OSError, match="^the cause$"):
+        solver.solve()

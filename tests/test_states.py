@@ -102,6 +102,17 @@ def test_press_charge_slide(pressed):
     assert states.partial_slip(pressed.rows).bone_x < 0.1e-3 + 1e-12
 
 
+def test_full_slip_is_no_partial_slip(pressed):
+    """Not where a slide has no other state either, and not where a state of full slip is nearer to one half."""
+    pressed.slide("slide", 0.4e-3)
+    partial = states.partial_slip(pressed.rows)
+    assert not partial.all_slip
+    rows = [row for row in pressed.rows if row.load == "press" or row.all_slip]
+    assert rows[-1].slip_held and states.partial_slip(rows) is None
+    rows = [replace(row, slipping=0.5) if row.all_slip else row for row in pressed.rows]
+    assert states.partial_slip(rows) == partial
+
+
 def test_way_through_the_air_is_no_slide(pressed):
     """Pressed, lifted, moved over by 1 mm, pressed and charged: normal contact is that of the second place."""
     pressed.still("lift", f_ext=0.0)

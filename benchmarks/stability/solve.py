@@ -27,7 +27,7 @@ from fingerpad.runs.processes import limit_processor_time
 from geometry import strip, tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
-from variational import compat, jit
+from variational import compat
 from variational.body import Body
 from variational.kinematics import deformation_gradient
 from variational.materials.ogden import Ogden
@@ -137,5 +137,4 @@ def run(case: Case) -> Outcome:
 
 if __name__ == "__main__":
     limit_processor_time(float(sys.argv[2]))
-    jit.delete_unfinished(MPI.COMM_WORLD)
     print(json.dumps(asdict(run(Case(**json.loads(sys.argv[1]))))))

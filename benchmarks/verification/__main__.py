@@ -9,8 +9,6 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from mpi4py import MPI
-
 from benchmarks.harness import DOCS, keep, made
 from benchmarks.verification import (
     adhesion,
@@ -23,7 +21,6 @@ from benchmarks.verification import (
     tube,
 )
 from benchmarks.verification.case import Case, Row, draw, numbers
-from variational import jit
 
 AREAS: dict[str, tuple[Case, ...]] = {
     "Constitutive": constitutive.CASES + tube.CASES,
@@ -43,7 +40,6 @@ def main(given: Sequence[str] | None = None) -> int:
     parser.add_argument("--small", action="store_true", help="coarse meshes, as in the tests")
     parser.add_argument("--docs", type=Path, default=DOCS, help="folder of the page and its numbers")
     args = parser.parse_args(given)
-    jit.delete_unfinished(MPI.COMM_WORLD)
     results: dict[str, list[tuple[Case, Sequence[Row]]]] = {area: [] for area in args.only}
     for area, case in ((name, case) for name in args.only for case in AREAS[name]):
         start = time.perf_counter()

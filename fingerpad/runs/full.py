@@ -29,7 +29,6 @@ from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import coefficient
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
-from variational import jit
 
 
 def run(
@@ -93,7 +92,6 @@ def _checkpoint(scene: Scene, folder: Path) -> Checkpoint:
 
 def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console, journal: Journal | None) -> Result:
     """Run a scene until nothing must be added to its model."""
-    jit.delete_unfinished(comm)
     writer.log.info("scene %s", json.dumps(scene.parameters()))
     clock, restarts = Clock(comm), Restarts(writer.log, console)
     if journal is not None:

@@ -144,7 +144,7 @@ class Iteration:
         self._keeps = 0.0 if shifted else _CONTRACTS
         self._balances = not (shifted or self._layer is None or self.equations.holds_skin)
         with self.equations.timings.phase("factorisation"):
-            self.snes.solve(None, x)
+            self._solve(x)
             iterations = self.snes.getIterationNumber()
             cycles = self.snes.getConvergedReason() == PETSc.SNES.ConvergedReason.DIVERGED_LOCAL_MIN
             uncharged = float(self.equations.problem.voltage.value) == 0.0
@@ -152,7 +152,7 @@ class Iteration:
             if cycles and uncharged and (kept or self._balances):
                 self._keeps, self._balances, self._ahead, self.tangent.stale = 0.0, False, False, True
                 x.array_w[:] = start
-                self.snes.solve(None, x)
+                self._solve(x)
                 iterations += self.snes.getIterationNumber()
         self.counts.newton += iterations
         seconds["factorisation"] -= seconds["assembly"] - assembly
@@ -170,6 +170,17 @@ class Iteration:
         self.equations.residual(x, self.f)
         norm = float(self.f.norm())
         self.floor = norm / self.force_scale if norm > self.tolerance else 0.0
+
+    def _solve(self, x: PETSc.Vec) -> None:
+        """Let SNES iterate; what one of its callbacks raised is raised as it was, not as PETSc's error -1."""
+        try:
+            self.snes.solve(None, x)
+            return
+        except PETSc.Error as error:
+            raised = error.__cause__
+            if raised is None:
+                raise
+        raise raised
 
     def forget(self) -> None:
         """Leave nothing of earlier solves to the next one: neither a factorisation nor a layer; collective."""
