@@ -1,5 +1,6 @@
 """The program ``fingerpad``, also as ``python3 -m fingerpad``."""
 
+import os
 import sys
 
 from fingerpad.ctrl_c import ends_at_once
@@ -8,9 +9,19 @@ from fingerpad.ctrl_c import ends_at_once
 def main() -> int:
     """Run the command in the process's arguments; return the exit code."""
     ends_at_once()
+    _open_streams()
     from fingerpad.cli import main as command
 
     return command()
+
+
+def _open_streams() -> None:
+    """Open the standard streams that the caller has closed, to nowhere; files of results would take their numbers."""
+    while (number := os.open(os.devnull, os.O_RDWR)) <= 2:
+        pass
+    os.close(number)
+    sys.stdout = sys.stdout or os.fdopen(1, "w")
+    sys.stderr = sys.stderr or os.fdopen(2, "w")
 
 
 if __name__ == "__main__":

@@ -3,10 +3,14 @@
 A number may be given as text with a unit (:mod:`geometry.units`).
 
 A value outside its range is a slip, of the keyboard or of units, and not a choice. Most slips of units are a power of a
-thousand; where one of them leads back into the range, the refusal says so.
+thousand; where one of them leads back into the range, the refusal says so. What a program has computed is no slip, and
+is taken as it is inside :func:`computed`.
 """
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,6 +34,17 @@ _SLIPS = {
 }
 OUT_OF_RANGE = "out_of_range"  # kinds of the errors that a range raises
 NO_QUANTITY = "no_quantity"
+_COMPUTED = ContextVar("computed", default=False)
+
+
+@contextmanager
+def computed() -> Iterator[None]:
+    """Refuse no number inside the block for its range: a program has computed them from numbers within theirs."""
+    before = _COMPUTED.set(True)
+    try:
+        yield
+    finally:
+        _COMPUTED.reset(before)
 
 
 @dataclass(frozen=True)
@@ -61,7 +76,7 @@ class Range:
             value = float(value)
         typed = isinstance(value, str) and self.unit != ""
         number = float(handler(self._read(value) if typed else value)) + 0.0  # which has no zero with a sign
-        if number not in self:
+        if number not in self and not _COMPUTED.get():
             given = {"words": self.words(number, slip=not typed), "range": self, "number": number, "slip": not typed}
             raise PydanticCustomError(OUT_OF_RANGE, "{words}", given)
         return number

@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from fingerpad.io import finger_picture, history_picture, skin_picture
+from fingerpad.io import finger_picture, history_picture, skin_picture, style
 from fingerpad.runs import full
 from fingerpad.scene import Scene
 
@@ -35,6 +34,6 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, pictures: b
 
     Commands and demos draw theirs. With ``pictures`` they are built, and not written.
     """
-    built = patch.object(Figure, "savefig", lambda figure, path, **options: touch(path))
+    built = patch.object(style, "save", lambda figure, path: figure if path is None else touch(path))
     with built if pictures else no_pictures():
         return full.run(scene, folder, comm).to_dict()

@@ -158,4 +158,4 @@ def test_mesh_is_read_again_with_its_names(tmp_path, capsys):
 
 
 def test_mesh_refuses_another_name(capsys):
-    assert "does not end with .msh" in refused(capsys, "mesh", "--out", "finger.stl")
+    assert "finger.stl cannot be a mesh; its name must end with .msh" in refused(capsys, "mesh", "--out", "finger.stl")

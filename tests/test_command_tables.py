@@ -89,7 +89,7 @@ def test_colours_of_voltages_go_up_to_the_largest_amount(command, voltages, tmp_
     ("argv", "words"),
     [
         (["--plot", "mu.txt"], "mu.txt cannot be a picture; its name must end with one of .png"),
-        (["--plot", "same.png", "--csv", "same.png"], "the picture and --csv are both same.png; give a file for each"),
+        (["--plot", "same.png", "--csv", "same.png"], "same.png is given twice, once to be written;"),
         (["demos/scenes/unload.toml"], "history is given; the model 'cylinders' answers for press, charge and slide"),
     ],
 )
@@ -115,7 +115,7 @@ def test_file_that_cannot_be_written_is_named(capsys, tmp_path, monkeypatch):
     assert "mu_app" in said.out and "mu.csv cannot be used: No space left on device" in said.err
 
 
-def test_file_in_a_folder_that_takes_none_is_named(capsys, monkeypatch):
+def test_file_in_a_folder_that_takes_none_is_named(capsys, tmp_path, monkeypatch):
     """As it was given, where the file that is written first cannot be deleted either: on a read-only disk."""
 
     def read_only(file, *data, **options):
@@ -123,8 +123,9 @@ def test_file_in_a_folder_that_takes_none_is_named(capsys, monkeypatch):
 
     monkeypatch.setattr(Path, "write_bytes", read_only)
     monkeypatch.setattr(Path, "unlink", read_only)
-    assert main(["estimate", "--csv", "/dev/stdout"]) == 2
-    assert capsys.readouterr().err == "fingerpad: /dev/stdout cannot be used: Read-only file system\n"
+    monkeypatch.chdir(tmp_path)
+    assert main(["estimate", "--csv", "mu.csv"]) == 2
+    assert capsys.readouterr().err == "fingerpad: mu.csv cannot be used: Read-only file system\n"
 
 
 # -- microscale --------------------------------------------------------------------------------------------

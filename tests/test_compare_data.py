@@ -201,8 +201,10 @@ def test_numbers_are_written(folder, table, tmp_path, capsys):
     assert float(rows[2]["ours"]) == known(folder).at(np.array([75.0]), np.array([100.0]))[0]
     said = refused(capsys, *argv, "--out", str(csv_file))
     assert "out.csv cannot be a picture" in said
-    picture = str(tmp_path / "out.png")
-    assert "the picture and --csv are both" in refused(capsys, *argv[:-1], picture, "--out", picture)
+    measured = str(tmp_path / "first.csv")
+    before = (tmp_path / "first.csv").read_bytes()
+    assert "first.csv is there and is not a table of this command" in refused(capsys, *argv[:-1], measured)
+    assert (tmp_path / "first.csv").read_bytes() == before
 
 
 def test_picture_has_the_values_of_the_table(folder, table):

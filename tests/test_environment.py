@@ -143,6 +143,13 @@ def test_folder_that_is_gone(checkout, tmp_path):
     assert done.returncode == 1 and "the current folder is gone" in done.stderr
 
 
+def test_too_few_open_files(checkout):
+    """Bubblewrap would end with a message of its own, and what it had started would stay."""
+    command = f'ulimit -n 16 && exec "{checkout}/environment/run" true'
+    done = subprocess.run(["bash", "-c", command], env=environment(checkout), capture_output=True, text=True)
+    assert done.returncode == 1 and done.stderr.startswith("fingerpad: ulimit -n allows 16 open files, and a run needs")
+
+
 def test_modules_of_the_project_are_not_looked_for_in_the_current_folder(checkout):
     show = "import os; print(os.environ.get('PYTHONSAFEPATH'))"
     assert enter(checkout, sys.executable, "-c", show, "-m fingerpad run").stdout == "1\n"

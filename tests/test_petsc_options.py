@@ -1,6 +1,7 @@
 """Options of PETSc that it refuses or does not know end a run before it starts, with one sentence."""
 
 import pytest
+from mpi4py import MPI
 from petsc4py import PETSc
 
 from fingerpad.io import petsc_options
@@ -29,6 +30,8 @@ def given():
         ("-fingerpad_snes_max_it abc", "-fingerpad_snes_max_it abc"),
         ("-fingerpad_snes_type nonsense", "-fingerpad_snes_type nonsense"),
         ("-fingerpad_pc_factor_mat_solver_type nonsense", "-fingerpad_pc_factor_mat_solver_type nonsense"),
+        ("-fingerpad_pc_factor_mat_solver_type superlu_dist", "-fingerpad_pc_factor_mat_solver_type superlu_dist"),
+        ("-fingerpad_pc_type cholesky", "-fingerpad_pc_type cholesky"),
         ("-fingerpad_mat_mumps_icntl_14 x", "-fingerpad_mat_mumps_icntl_14 x"),
         ("-fingerpad_snes_lag_jacobian -5", "-fingerpad_snes_lag_jacobian -5"),
     ],
@@ -36,7 +39,7 @@ def given():
 def test_values_that_petsc_refuses(given, text, named):
     given(text)
     with pytest.raises(OptionError) as refusal:
-        petsc_options.check()
+        petsc_options.check(MPI.COMM_WORLD)
     assert str(refusal.value).startswith(f"PETSc refuses {named}: ")
     assert len(str(refusal.value)) < 300 and "\n" not in str(refusal.value)
 
@@ -64,10 +67,10 @@ def test_what_petsc_reads_is_allowed(given, capfd):
     assert capfd.readouterr() == ("", "")
 
 
-def test_what_one_equation_does_not_have_is_left_to_the_first_solve(given):
-    """A multigrid of one equation may have no coarser level; the options' names are judged when all is solved."""
+def test_what_two_equations_do_not_have_is_left_to_the_first_solve(given):
+    """A multigrid of two equations may have no coarser level; the options' names are judged when all is solved."""
     given("-fingerpad_pc_type gamg -fingerpad_mg_levels_9_ksp_typo cg")
-    petsc_options.check()
+    petsc_options.check(element="P2-P1")
     with pytest.raises(OptionError, match="mg_levels_9_ksp_typo"):
         petsc_options.refuse_unread()
 

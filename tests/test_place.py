@@ -77,7 +77,7 @@ def test_results_of_earlier_versions_are_known_by_their_summary(scene, folder):
     (folder / "summary.json").write_text("null")
     (folder / "steps.csv").touch()
     with (
-        pytest.raises(PlaceError, match="results of an unknown scene"),
+        pytest.raises(PlaceError, match="holds steps.csv of an unknown scene"),
         Place(folder, scene.parameters(), MPI.COMM_WORLD),
     ):
         pass

@@ -132,7 +132,10 @@ def test_every_parameter_is_listed_with_its_unit(page):
 def test_picture_that_is_no_picture_is_left_out(copy):
     (copy / "surface.png").write_bytes(b"")
     (copy / "surface_press.npz").write_bytes(b"PK")
-    assert "data:image/png" not in write(copy).read_text(encoding="utf-8")
+    page = write(copy).read_text(encoding="utf-8")
+    assert "data:image/png" not in page
+    assert "surface.png is left out: it is no picture of a run, or not a whole one." in page
+    assert "surface_press.npz is left out: it has no arrays of a run." in page
 
 
 def test_jumps_are_marked(folder):
@@ -263,6 +266,9 @@ def test_half_written_run_is_reported_as_such(copy):
         ({"table.csv": "a,b\n1,2\n"}, "is not the table of a sweep"),
         ({"table.csv": "voltage,slip_mu_app,failure\n100,0.3,\n200"}, "is cut short"),
         ({"scene.json": "{}"}, "has no accepted step yet"),
+        ({"scene.json": '{"trace": 5}', "steps.csv": "step\n"}, "has no accepted step yet"),
+        ({"summary.json": "[" * 100_000}, "its files are not whole, or not of a run"),
+        ({"scene.json": "[" * 100_000, "steps.csv": "step\n"}, "cannot be read"),
         ({"full/0123/asked.json": "{}"}, "has not ended (0 runs are there)"),
     ],
 )

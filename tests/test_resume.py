@@ -271,11 +271,14 @@ def test_refused_options(tmp_path):
     for words in (["scene.toml"], ["--set", "voltage=1"], ["--model", "smooth"], ["--out", "x"], ["--force", "1 N"]):
         with pytest.raises(SceneError, match="and --resume are given"):
             command.main([*words, "--resume", str(tmp_path)])
-    with pytest.raises(SceneError, match=r"has no scene.json, and so no run to go on with"):
+    with pytest.raises(SceneError, match=r"has no scene.json of a run, and so no run to go on with"):
         command.main(["--resume", str(tmp_path)])
     for kept, match in (
         ('{"model": "smooth"}', "only a full one can go on"),
         ('{"laws": {"friction": {}}}', "resume=True"),
+        ('{"trace": 5}', "has no scene.json of a run"),
+        ('{"laws": {"mesh": []}}', "has no scene.json of a run"),
+        ('{"mesh": ' * 100_000 + "0" + "}" * 100_000, "has no scene.json of a run"),
     ):
         (tmp_path / "scene.json").write_text(kept, encoding="utf-8")
         with pytest.raises(SceneError, match=match):

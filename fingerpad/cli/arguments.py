@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
 from fingerpad.io import terminal
 from fingerpad.model.check import check
@@ -19,9 +19,20 @@ from fingerpad.scene.messages import SceneError, clip
 from geometry.units import to_si
 
 _PETSC = "-fingerpad_"  # prefix of PETSc's options
-PICTURES = (".png", ".pdf", ".svg", ".jpg", ".jpeg", ".eps", ".tif", ".tiff", ".webp")
-"""Endings of the names of pictures."""
 _NEAR = 0.6  # likeness, from 0 to 1, at which an option may have been meant
+
+
+class Kind(NamedTuple):
+    """A kind of files that a command writes."""
+
+    words: str
+    endings: tuple[str, ...]
+    """Of their names; the first one's letters stand for the file in the help."""
+    begins: str = ""
+    """Of their text; a file that begins otherwise is a user's, and is not replaced."""
+
+
+PICTURE = Kind("a picture", (".png", ".pdf", ".svg", ".jpg", ".jpeg", ".eps", ".tif", ".tiff", ".webp"))
 
 
 class Parser(argparse.ArgumentParser):
@@ -43,6 +54,7 @@ class Parser(argparse.ArgumentParser):
             formatter_class=argparse.RawDescriptionHelpFormatter,
             allow_abbrev=False,
         )
+        self._written: dict[str, Kind] = {}  # files, by the names of their values
 
     def error(self, message: str) -> NoReturn:
         """Refuse what argparse refuses, without its usage.
@@ -65,10 +77,24 @@ class Parser(argparse.ArgumentParser):
             "--set", action="append", default=[], metavar="KEY=VALUE", help="a key of the scene; one --set for each key"
         )
 
-    def add_out(self, default: str | None, what: str) -> None:
-        """Add the folder or file that results go to."""
-        chosen = None if default is None else Path(default)
-        self.add_argument("--out", type=path, metavar="PATH", default=chosen, help=what)
+    def add_out(self, default: str, what: str) -> None:
+        """Add the folder that results go to."""
+        self.add_argument("--out", type=path, metavar="PATH", default=Path(default), help=what)
+
+    def add_file(self, option: str, kind: Kind, what: str, default: str | None = None, dest: str | None = None) -> None:
+        """Add a file that the command writes, which is refused where it may not be replaced.
+
+        Args:
+            option: as ``--csv``.
+            kind: of the file.
+            what: for the help.
+            default: name of the file; without it, no file is written by default.
+            dest: name of the value; by default that of the option.
+        """
+        name, chosen = dest or option.lstrip("-"), None if default is None else Path(default)
+        self._written[name] = kind
+        metavar = kind.endings[0][1:].upper()
+        self.add_argument(option, dest=name, type=path, metavar=metavar, default=chosen, help=what)
 
     def read(self, argv: Sequence[str]) -> argparse.Namespace:
         """Return the options of a command line that has none of PETSc's.
@@ -97,6 +123,14 @@ class Parser(argparse.ArgumentParser):
         args, rest = self.parse_known_args(words)
         if rest:
             self._refuse(rest[0], petsc)
+        values = [each for value in vars(args).values() for each in (value if isinstance(value, list) else [value])]
+        for name, kind in self._written.items():
+            file = getattr(args, name)
+            if file is None:
+                continue
+            refuse_file(file, kind)
+            if sum(isinstance(each, Path) and _same(each, file) for each in values) > 1:
+                raise SceneError(f"{clip(str(file), 80)} is given twice, once to be written; give it another name")
         return args, passed
 
     def _refuse(self, word: str, petsc: bool) -> NoReturn:
@@ -231,27 +265,39 @@ def length(text: str) -> float:
     return value
 
 
-def writable(file: Path | None, picture: bool = False) -> None:
-    """Refuse a file that cannot be written to; nothing is made.
+def refuse_file(file: Path, kind: Kind) -> None:
+    """Refuse a file that cannot be written, or that no command of this kind has written; nothing is made.
 
     Args:
         file: to be written.
-        picture: whether it is one, whose format the end of its name gives.
+        kind: what it is to be.
 
     Raises:
-        SceneError: its folder is not there or read-only, it is a folder itself or read-only, or of another format.
+        SceneError: its folder is not there or read-only, it is no ordinary file, read-only, or of another kind.
     """
-    if file is None:
-        return
     name = clip(str(file), 80)
     if file.is_dir():
         raise SceneError(f"{name} is a folder; give a name of a file")
     if not file.absolute().parent.is_dir():
         raise SceneError(f"{name} cannot be written, since its folder is not there; make it first")
-    if not os.access(file if file.exists() else file.absolute().parent, os.W_OK):
+    there = os.path.lexists(file)
+    if there and (file.is_symlink() or not file.is_file()):
+        raise SceneError(f"{name} cannot be written, since it is no ordinary file; give another one")
+    if not os.access(file if there else file.absolute().parent, os.W_OK):
         raise SceneError(f"{name} cannot be written, since it is read-only; give another one")
-    if picture and file.suffix.lower() not in PICTURES:
-        raise SceneError(f"{name} cannot be a picture; its name must end with one of {', '.join(PICTURES)}")
+    if file.suffix.lower() not in kind.endings:
+        several = "one of " if len(kind.endings) > 1 else ""
+        raise SceneError(f"{name} cannot be {kind.words}; its name must end with {several}{', '.join(kind.endings)}")
+    if there and kind.begins:
+        begins = kind.begins.encode()
+        with file.open("rb") as present:
+            if present.read(len(begins)) not in (b"", begins):
+                raise SceneError(f"{name} is there and is not {kind.words} of this command; give another name")
+
+
+def _same(one: Path, other: Path) -> bool:
+    """Return whether two paths lead to one file."""
+    return one.absolute() == other.absolute() or (one.exists() and other.exists() and one.samefile(other))
 
 
 def echo(text: str = "", end: str = "\n") -> None:

@@ -1,9 +1,9 @@
 """``fingerpad calculator``: the closed form as one HTML page with sliders, which needs no Python and no network."""
 
 from collections.abc import Sequence
-from pathlib import Path
+from importlib.resources import files
 
-from fingerpad.cli.arguments import Parser, echo, writable
+from fingerpad.cli.arguments import Kind, Parser, echo
 from fingerpad.io.files import replace
 
 _EXAMPLES = """
@@ -19,11 +19,12 @@ def main(argv: Sequence[str]) -> int:
         "Write a page that draws friction over force and voltage by the closed form, for any browser, offline.",
         _EXAMPLES,
     )
-    parser.add_out("calculator.html", "file of the page (default: calculator.html)")
+    head = (files("fingerpad.calculator") / "page.html").read_text(encoding="utf-8").partition("{{")[0]
+    kind = Kind("a page", (".html",), head)
+    parser.add_file("--out", kind, "file of the page (default: calculator.html)", "calculator.html")
     args = parser.read(argv)
-    writable(args.out)
     from fingerpad.calculator.page import page
 
-    replace(Path(args.out), page())
+    replace(args.out, page())
     echo(f"Written: {args.out}")
     return 0

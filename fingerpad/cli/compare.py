@@ -5,7 +5,7 @@ from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, length, path, positive, scene_of
 from fingerpad.ctrl_c import raises
-from fingerpad.io.folder import check_folder
+from fingerpad.io.folder import below, check_folder
 from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
 from fingerpad.runs.solve import MODELS, solved
@@ -54,7 +54,7 @@ def main(argv: Sequence[str]) -> int:
     def answer(model: str) -> Result:
         if model == "cylinders":
             return cylinders.solve(scene, footprint)
-        out = args.out / "full" if model == "full" else args.out
+        out = below(args.out, "full") if model == "full" else args.out
         return solved(scene, model, out, lines=not args.quiet, bar=not args.quiet)
 
     def answer_or_refusal(model: str) -> Result:

@@ -42,9 +42,8 @@ def main(argv: Sequence[str]) -> int:
     which = parser.add_mutually_exclusive_group(required=True)
     which.add_argument("--run", nargs="+", type=path, metavar="DIR", help="folders of runs")
     which.add_argument("--sweep", type=path, metavar="DIR", help="folder of a sweep over f_ext, voltage or both")
-    tables.add_files(parser, "picture of tables and ours", "--out")
+    tables.add_files(parser, _COLUMNS, "picture of tables and ours", "--out")
     args = parser.read(argv)
-    tables.check_files(args)
     measured = [read(file) for file in args.tables]
     found = ours.read(args.run or [args.sweep], sweep=args.sweep is not None)
     compared = [_Compared(table, ours.ours(found, table)) for table in measured]

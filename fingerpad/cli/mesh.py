@@ -2,9 +2,10 @@
 
 from collections.abc import Sequence
 
-from fingerpad.cli.arguments import Parser, echo, path, scene_of, writable
+from fingerpad.cli.arguments import PICTURE, Kind, Parser, echo, scene_of
 from fingerpad.scene.messages import SceneError
 
+_MESH = Kind("a mesh", (".msh",), "$MeshFormat\n2.2 ")
 _EXAMPLES = """
     fingerpad mesh --out finger.msh --plot finger.png
     fingerpad mesh scene.toml --set mesh.contact=20e-6 --out coarse.msh
@@ -19,13 +20,9 @@ def main(argv: Sequence[str]) -> int:
         _EXAMPLES,
     )
     parser.add_scene()
-    parser.add_out("finger.msh", "file for gmsh (default: finger.msh)")
-    parser.add_argument("--plot", type=path, metavar="PNG", help="picture of the mesh")
+    parser.add_file("--out", _MESH, "file for gmsh (default: finger.msh)", "finger.msh")
+    parser.add_file("--plot", PICTURE, "picture of the mesh")
     args = parser.read(argv)
-    writable(args.out)
-    writable(args.plot, picture=True)
-    if args.out.suffix != ".msh":
-        raise SceneError(f"--out {args.out.name[:60]} does not end with .msh, the ending of the format of gmsh")
     scene = scene_of(args)
     if scene.laws.mesh is not None:
         raise SceneError("geometry.file is given, which is a mesh already; fingerpad check draws it")

@@ -41,9 +41,8 @@ def main(argv: Sequence[str]) -> int:
     parser.add_scene()
     parser.add_argument("--voltage", metavar="RANGE", help="voltages (V): 200, or 0,100, or 0:200:5, or with units")
     parser.add_argument("--p", metavar="RANGE", default=_PRESSURES, help=f"pressures (Pa); default {_PRESSURES}")
-    tables.add_files(parser, "picture")
+    tables.add_files(parser, _COLUMNS, "picture")
     args = parser.read(argv)
-    tables.check_files(args)
     refuse_twice(args, "voltage", "--voltage")
     scene = scene_of(args, meshed=False)
     if args.voltage is None and scene.history is not None:

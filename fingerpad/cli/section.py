@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,7 +103,7 @@ def write(scene: Scene, file: Path) -> Section:
     with meshed(scene, scene.output.receptors, False) as gmsh:
         gmsh.option.setNumber("Mesh.ScalingFactor", 1e-3)
         gmsh.option.setNumber("Mesh.MshFileVersion", 2.2)
-        part = file.with_name(f".{file.stem}.part.msh")
+        part = file.with_name(f"{file.stem}.{uuid4().hex[:8]}.part.msh")
         try:
             gmsh.write(str(part))
             part.replace(file)

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from fingerpad.cli.arguments import Parser, echo, path, writable
+from fingerpad.cli.arguments import PICTURE, Kind, Parser, echo
 from fingerpad.io.files import replace
-from fingerpad.scene.messages import SceneError, clip
 
 
 @dataclass(frozen=True)
@@ -45,27 +44,19 @@ def write(file: Path, columns: Sequence[Column], rows: Sequence[Mapping[str, Any
     """Write a table as CSV in SI units, unrounded; :mod:`fingerpad.cli.ranges` has rounded its values."""
     out = io.StringIO()
     writer = csv.DictWriter(out, [c.key for c in columns], extrasaction="ignore", lineterminator="\n")
-    writer.writeheader()
     writer.writerows(rows)
-    replace(file, out.getvalue())
+    replace(file, _head(columns) + out.getvalue())
 
 
-def add_files(parser: Parser, picture: str, option: str = "--plot") -> None:
-    """Add the options of a picture and of a table in a file; ``picture`` is the help of the picture's ``option``."""
-    parser.add_argument(option, dest="plot", type=path, metavar="PNG", help=picture)
-    parser.add_argument("--csv", type=path, metavar="CSV", help="table in SI units; results are unrounded")
+def _head(columns: Sequence[Column]) -> str:
+    return ",".join(c.key for c in columns) + "\n"
 
 
-def check_files(args: argparse.Namespace) -> None:
-    """Refuse files of :func:`add_files` that cannot be written to.
-
-    Raises:
-        SceneError: the first of them, or both are one file.
-    """
-    writable(args.plot, picture=True)
-    writable(args.csv)
-    if args.plot and args.csv and args.plot.absolute() == args.csv.absolute():
-        raise SceneError(f"the picture and --csv are both {clip(str(args.csv), 80)}; give a file for each")
+def add_files(parser: Parser, columns: Sequence[Column], picture: str, option: str = "--plot") -> None:
+    """Add the options of a table in a file and of a picture; ``picture`` is the help of the picture's ``option``."""
+    parser.add_file(option, PICTURE, picture, dest="plot")
+    table = Kind("a table", (".csv",), _head(columns))
+    parser.add_file("--csv", table, "table in SI units; results are unrounded")
 
 
 def write_files(

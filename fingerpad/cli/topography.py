@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from fingerpad.cli.arguments import Parser, echo, path, positive, writable
+from fingerpad.cli.arguments import PICTURE, Parser, echo, path, positive
 from fingerpad.io.titles import plain
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError, clip
@@ -52,9 +52,8 @@ def main(argv: Sequence[str]) -> int:
     )
     words = "mark of missing pixels, beside nan and empty places; nan if there are no others"
     parser.add_argument("--missing", metavar="MARK", help=words)
-    parser.add_argument("--plot", type=path, metavar="PNG", help="picture of map, heights and spectrum")
+    parser.add_file("--plot", PICTURE, "picture of map, heights and spectrum")
     args = parser.read(argv)
-    writable(args.plot, picture=True)
     found = _scan(args)
     flat = found.map.detrended("curvature")
     try:

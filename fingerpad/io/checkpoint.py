@@ -9,7 +9,6 @@ the run reaches its end. adios4dolfinx keeps fields only, which are the smaller 
 import hashlib
 import json
 import os
-import shutil
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.io.files import replace_json
+from fingerpad.io.files import read_object, remove, replace_json
 from fingerpad.scene import SceneError
 
 Arrays = dict[str, NDArray[Any]]
@@ -64,7 +63,7 @@ class Checkpoint:
             raise CheckpointError(f"{results} has no checkpoint to go on from: its run has {why}")
         file = self._folder / "head.json"
         try:
-            head = dict(json.loads(file.read_text(encoding="utf-8")))
+            head = read_object(file)
         except (OSError, ValueError) as error:
             raise CheckpointError(f"{file} cannot be read ({error}); run again without --resume") from None
         for name, value in self._head.items():
@@ -87,7 +86,7 @@ class Checkpoint:
     def _ended(self) -> bool:
         """Return whether the run has written its results, and was not stopped before."""
         try:
-            summary = json.loads((self._results / "summary.json").read_text(encoding="utf-8"))
+            summary = read_object(self._results / "summary.json")
         except (OSError, ValueError):
             return False
         return not summary.get("interrupted")
@@ -107,8 +106,9 @@ class Checkpoint:
         file = self._part(number)
         beside = file.with_suffix(".part")
         whole: dict[str, Any] = {_FACTS: np.frombuffer(json.dumps(facts).encode(), dtype=np.uint8), **arrays}
+        remove(beside)
         try:
-            with beside.open("wb") as stream:
+            with beside.open("xb") as stream:
                 np.savez(stream, **whole)
                 stream.flush()
                 os.fsync(stream.fileno())
@@ -124,5 +124,4 @@ class Checkpoint:
 
     def delete(self) -> None:
         """Delete all parts."""
-        if self._folder.exists():
-            shutil.rmtree(self._folder)
+        remove(self._folder)

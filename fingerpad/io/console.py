@@ -48,9 +48,12 @@ class Console:
             self._progress.start()
 
     def show(self, text: str) -> None:
-        """Print a line above the progress bar."""
+        """Print a line above the progress bar; the run goes on where nobody reads any more, as after ``| head``."""
         if self._lines:
-            self._progress.console.print(text, highlight=False, soft_wrap=True, markup=False)
+            try:
+                self._progress.console.print(text, highlight=False, soft_wrap=True, markup=False)
+            except (BrokenPipeError, SystemExit):  # the latter is rich's
+                self._lines = False
 
     def expect(
         self,

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -10,6 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from fingerpad.io import finger_picture, history_picture, skin_picture, time_picture, titles
+from fingerpad.io.files import replace
 from fingerpad.io.over_time import without_parts_of_jumps
 from fingerpad.io.skin_picture import SurfaceProfile
 from fingerpad.io.states import PREFIXES, WORDS, before_sliding, called, named, partial_slip
@@ -120,7 +122,7 @@ class Drawing:
             for field, value in vars(profile).items()
             if isinstance(value, np.ndarray)
         }
-        np.savez_compressed(path.with_name(f"{path.name}.npz"), **arrays)
+        _put(path.with_name(f"{path.name}.npz"), arrays)
         self._skin(path.with_name(f"{path.name}.png"), profiles, states)
 
     def _slides(self) -> bool:
@@ -148,7 +150,10 @@ class Drawing:
         if final is not None and self.finer[final].snapshot is not None:
             return self._final(path, final)
         if not self.ends:
-            raise ValueError("the result has no finger to draw: no load was reached, or its folder has no finger_*.npz")
+            raise ValueError(
+                "the result has no finger to draw: no load was reached, or its folder has no finger_*.npz that can be "
+                "read"
+            )
         return self._end(path, list(self.ends)[-1])
 
     def _end(self, path: Path | None, load: str) -> Figure:
@@ -216,7 +221,14 @@ class Drawing:
 
 def _keep(path: Path, state: ContactState, snapshot: "Snapshot", sites: NDArray[np.float64] | None) -> None:
     shown: dict[str, Any] = {} if sites is None else {"merkel": sites}
-    np.savez_compressed(path, bone_x=np.array(state.bone_x), **shown, **vars(snapshot))
+    _put(path, {"bone_x": np.array(state.bone_x), **shown, **vars(snapshot)})
+
+
+def _put(path: Path, arrays: Mapping[str, Any]) -> None:
+    """Write arrays into a file, which is there as a whole or not at all."""
+    data = BytesIO()
+    np.savez_compressed(data, **arrays)
+    replace(path, data.getvalue())
 
 
 def _title(name: str, state: ContactState) -> str:

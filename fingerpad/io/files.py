@@ -1,14 +1,24 @@
-"""Files that are there as a whole or not at all, and tables of whole rows."""
+"""Files that are there as a whole or not at all, and tables of whole rows.
+
+No symbolic link is written through: a file takes the place of one of its name, and what the link leads to stays.
+"""
 
 import contextlib
 import csv
+import errno
 import io
 import json
 import math
+import os
+import shutil
+import stat
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 from uuid import uuid4
+
+_MOST_BYTES = 200_000_000  # of a file that is read; a summary of a thousand loads has two millions
+_MOST_DEPTH = 50  # of what it holds, which has some ten
 
 
 def replace(file: Path, text: str | bytes) -> None:
@@ -32,6 +42,57 @@ def replace_json(file: Path, data: Any) -> None:
     replace(file, json.dumps(_finite(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n")
 
 
+def read_object(file: Path) -> dict[str, Any]:
+    """Return the object that a JSON file of a folder of results holds, whoever wrote it.
+
+    Raises:
+        OSError: it cannot be read.
+        ValueError: it is no ordinary file, too large, or holds something else than an object of some depth.
+    """
+    about = file.stat()
+    if not stat.S_ISREG(about.st_mode) or about.st_size > _MOST_BYTES:
+        raise ValueError(f"{file.name} is no ordinary file of at most {_MOST_BYTES} bytes")
+    try:
+        found = json.loads(file.read_text(encoding="utf-8"))
+    except RecursionError:
+        found = None
+    if not isinstance(found, dict) or not _is_shallow(found, _MOST_DEPTH):
+        raise ValueError(f"{file.name} holds no object, or one that is nested too deep")
+    return found
+
+
+def _is_shallow(data: Any, depth: int) -> bool:
+    inner = data.values() if isinstance(data, dict) else data if isinstance(data, list) else ()
+    return depth > 0 and all(_is_shallow(each, depth - 1) for each in inner)
+
+
+def lock_file(file: Path) -> BinaryIO:
+    """Open a file for a lock; it is made if need be, and its content stays.
+
+    Raises:
+        OSError: it cannot be opened, or is no ordinary file, such as a symbolic link.
+    """
+    flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
+    try:
+        opened = os.fdopen(os.open(file, flags, 0o666), "r+b", buffering=0)
+    except OSError as error:
+        if error.errno != errno.ELOOP:
+            raise
+    else:
+        if stat.S_ISREG(os.fstat(opened.fileno()).st_mode):
+            return opened
+        opened.close()
+    raise OSError(errno.EINVAL, f"{file.name} in it is no ordinary file", str(file))
+
+
+def remove(file: Path) -> None:
+    """Delete a file, a folder or a symbolic link, but not what a link leads to; nothing where there is none."""
+    if file.is_dir() and not file.is_symlink():
+        shutil.rmtree(file)
+    else:
+        file.unlink(missing_ok=True)
+
+
 def _finite(data: Any) -> Any:
     if isinstance(data, Mapping):
         return {key: _finite(value) for key, value in data.items()}
@@ -45,7 +106,8 @@ class Table:
 
     def __init__(self, file: Path, columns: Mapping[str, Any]) -> None:
         """Start the file with its header; an earlier one goes."""
-        self._file = file.open("wb", buffering=0)
+        remove(file)
+        self._file = file.open("xb", buffering=0)
         self._columns = list(columns)
         self.write(dict(zip(self._columns, self._columns, strict=True)))
 

@@ -43,3 +43,18 @@ def check_folder(folder: Path, option: str = "--out") -> None:
         raise SceneError(f"{name} cannot be a folder, since {which} is a file; give another one")
     if not os.access(there, os.W_OK | os.X_OK):
         raise SceneError(f"{name} cannot be written to: {clip(str(there), _PATH)} is read-only; give another one")
+
+
+def below(folder: Path, name: str) -> Path:
+    """Return a folder of the program inside a folder of results.
+
+    Raises:
+        SceneError: it is a symbolic link, by which files would be written and deleted elsewhere.
+    """
+    found = folder / name
+    if found.is_symlink():
+        raise SceneError(
+            f"{name} in {clip(str(folder), _PATH)} is a symbolic link, and results are to be in the folder itself; "
+            "delete it, or choose another folder"
+        )
+    return found

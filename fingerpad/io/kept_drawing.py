@@ -36,14 +36,15 @@ class KeptDrawing(Drawing):
         ends, finer = dict[str, End](), dict[str, View]()
         for load, states in by_load(self.states):
             words, end = load.replace(" ", "_"), states[-1]
-            if finger := _arrays(self.folder / f"finger_{words}.npz"):
+            if finger := finger_of(self.folder / f"finger_{words}.npz"):
                 ends[load] = End(end, *_finger(finger))
-            if skin := _part(_arrays(self.folder / f"surface_{words}.npz"), "end"):
-                profiles[end.step] = skin
-        kept, names = _arrays(self.folder / "surface.npz"), {prefix: name for name, prefix in PREFIXES.items()}
+            if along := skin_of(self.folder / f"surface_{words}.npz", "end"):
+                profiles[end.step] = along
+        names = {prefix: name for name, prefix in PREFIXES.items()}
         for prefix, (_, state, _) in self._shown().items():
-            skin, name = _part(kept, prefix), names.get(prefix, "")
-            finger = _arrays(self.folder / f"finger_{WORDS.get(name, '').replace(' ', '_')}.npz")
+            skin: Any = skin_of(self.folder / "surface.npz", prefix)
+            name = names.get(prefix, "")
+            finger = finger_of(self.folder / f"finger_{WORDS.get(name, '').replace(' ', '_')}.npz")
             if skin and finger and self.final_size is not None:
                 mesh: Any = SimpleNamespace(contact=self.final_size)
                 there = replace(self.named[name], bone_x=float(finger.get("bone_x", state.bone_x)))
@@ -53,18 +54,41 @@ class KeptDrawing(Drawing):
         return Drawing(self.mu_0, self.states, profiles, ends, finer, self.starting_size, self.named)
 
 
-def _arrays(file: Path) -> dict[str, Any]:
+def finger_of(file: Path) -> dict[str, Any]:
+    """Return the arrays of a finger by name, see :class:`variational.output.Snapshot`; none that are not whole."""
+    found = arrays_of(file)
+    try:
+        points, triangles = len(found["x"]), found["triangles"]
+        whole = found["x"].shape == found["u"].shape == (points, 2) and triangles.shape[1:] == (3,)
+        whole &= found["sed"].shape == found["tag"].shape == (len(triangles),)
+        whole &= triangles.dtype.kind in "iu" and bool(np.all((triangles >= 0) & (triangles < points)))
+        whole &= all(found[name].dtype.kind in "iuf" for name in ("x", "u", "sed", "tag"))
+    except (KeyError, TypeError):
+        whole = False
+    return found if whole else {}
+
+
+def skin_of(file: Path, prefix: str) -> dict[str, Any]:
+    """Return the skin of a state, by the names of :class:`fingerpad.io.skin_picture.SurfaceProfile`; none likewise.
+
+    Args:
+        file: of one state or several.
+        prefix: of the state.
+    """
+    found = arrays_of(file)
+    names = ("x", "y", "p", "t", "p_el", "d_eq", "ridge")
+    skin = {name: found[f"{prefix}_{name}"] for name in names if f"{prefix}_{name}" in found}
+    whole = all(value.ndim == 1 and value.dtype.kind == "f" for value in skin.values())
+    return skin if whole and len(skin) == len(names) and len({len(value) for value in skin.values()}) == 1 else {}
+
+
+def arrays_of(file: Path) -> dict[str, Any]:
     """Return the arrays of a file by name; none without a file that can be read."""
     try:
         with file.open("rb") as stream, np.load(stream, allow_pickle=False) as found:
             return dict(found)
-    except (OSError, ValueError, EOFError, TypeError, zipfile.BadZipFile, zlib.error):
+    except (OSError, ValueError, EOFError, TypeError, RuntimeError, MemoryError, zipfile.BadZipFile, zlib.error):
         return {}
-
-
-def _part(arrays: dict[str, Any], prefix: str) -> Any:
-    """Return the skin of a state, by the names of :class:`fingerpad.io.skin_picture.SurfaceProfile`."""
-    return {name.removeprefix(f"{prefix}_"): value for name, value in arrays.items() if name.startswith(f"{prefix}_")}
 
 
 def _finger(arrays: dict[str, Any]) -> tuple[Any, Any]:

@@ -5,12 +5,15 @@ import ctypes
 import difflib
 import io
 import os
+import re
 import tempfile
 from collections.abc import Iterator
 
+from mpi4py import MPI
 from petsc4py import PETSc
 
 from fingerpad.scene import SceneError
+from variational.element import ELEMENTS
 from variational.solvers.iteration import DEFAULTS, PREFIX
 
 _DIRECT = ("lu", "cholesky")
@@ -39,34 +42,42 @@ def in_use() -> dict[str, str]:
     return {f"-{name}": "" if value is None else str(value) for name, value in sorted(given.items())}
 
 
-def check() -> None:
-    """Try the options out on one equation.
+def check(comm: MPI.Comm = MPI.COMM_SELF, element: str = "P2") -> None:
+    """Try the options out on two equations a rank; collective.
+
+    Args:
+        comm: communicator of the run.
+        element: of the run, on which the kind of its matrix depends; no package factorises every kind.
 
     Raises:
-        OptionError: PETSc refuses a value, or does not read an option.
+        OptionError: PETSc refuses a value, has no such package, or does not read an option.
     """
     options = PETSc.Options(PREFIX)
     for name, value in DEFAULTS.items():
         if not options.hasName(name):
             options.setValue(name, value)
-    snes = PETSc.SNES().create(PETSc.COMM_SELF)
+    snes = PETSc.SNES().create(comm)
     try:
         with _silent():
-            _solve(snes)
+            _solve(snes, blocks=not ELEMENTS[element].mixed)
     except PETSc.Error as error:
         raise OptionError(_refusal(error)) from None
-    if snes.getKSP().getPC().getType() in _DIRECT:  # others may have options for what one equation does not have
+    if snes.getKSP().getPC().getType() in _DIRECT:  # others may have options for what two equations do not have
         refuse_unread()
 
 
-def _solve(snes: PETSc.SNES) -> None:
-    matrix = PETSc.Mat().createAIJ([1, 1], nnz=1, comm=PETSc.COMM_SELF)
+def _solve(snes: PETSc.SNES, blocks: bool) -> None:
+    matrix = PETSc.Mat().create(snes.comm)
+    matrix.setSizes(((2, None), (2, None)), bsize=2 if blocks else 1)
+    matrix.setType(PETSc.Mat.Type.BAIJ if blocks else PETSc.Mat.Type.AIJ)  # as variational.solvers.layout has it
+    matrix.setUp()
 
     def residual(snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
         f.array_w[:] = x.array_r - 1.0
 
     def jacobian(snes: PETSc.SNES, x: PETSc.Vec, A: PETSc.Mat, P: PETSc.Mat) -> None:
-        P.setValue(0, 0, 1.0)
+        for row in range(*P.getOwnershipRange()):
+            P.setValue(row, row, 1.0)
         P.assemble()
 
     x = matrix.createVecRight()
@@ -99,7 +110,8 @@ def _refusal(error: PETSc.Error) -> str:
     """Return what PETSc says last, and of which option as far as its words tell."""
     said = str(error).splitlines()[-1].split("] ", 1)[-1]
     options = {option: value for option, value in in_use().items() if option.startswith(f"-{PREFIX}")}
-    blamed = [o for o, v in options.items() if v and v in said.split()] or list(options)
+    words = re.findall(r"[\w.-]+", said.lower())
+    blamed = [o for o, v in options.items() if v and v.lower() in words] or list(options)
     named = [f"{o} {options[o]}".strip() for o in blamed if DEFAULTS.get(o.removeprefix(f"-{PREFIX}")) != options[o]]
     return f"PETSc refuses {', '.join(named)[:150] or 'its options'}: {said.strip()[:120]}"
 

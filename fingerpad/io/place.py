@@ -11,12 +11,12 @@ import contextlib
 import errno
 import fcntl
 import json
-import shutil
 from collections.abc import Callable, Mapping
+from fnmatch import fnmatch
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO, TypeVar
+from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
-from fingerpad.io.files import replace_json
+from fingerpad.io.files import lock_file, read_object, remove, replace_json
 from fingerpad.scene import Scene, SceneError, from_kept
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ class Place:
             self._parameters["model"] = model
         if asked is not None:
             self._parameters[TRACE] = json.loads(json.dumps(asked))
-        self._lock: TextIO | None = None
+        self._lock: BinaryIO | None = None
 
     def __enter__(self) -> "Place":
         """Lock the folder; collective.
@@ -141,7 +141,7 @@ class Place:
 
     def _open(self) -> None:
         self.folder.mkdir(parents=True, exist_ok=True)
-        self._lock = (self.folder / ".lock").open("w")
+        self._lock = lock_file(self.folder / ".lock")
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -151,6 +151,12 @@ class Place:
                 raise
         if (self.folder / "sweep.json").exists():
             raise PlaceError(f"{_short(self.folder)} holds the results of a sweep; choose another folder")
+        for file in (*self._left(), *(self.folder / name for name in ("scene.json", "checkpoint"))):
+            if file.is_symlink():
+                raise PlaceError(
+                    f"{file.name} in {_short(self.folder)} is a symbolic link, through which no results are written; "
+                    "delete it, or choose another folder"
+                )
         kept = self._kept()
         same = kept is not None and kept.get(TRACE, "") == self._parameters.get(TRACE)
         if kept is not None and identity(kept) != identity(self._parameters) and not same:
@@ -162,22 +168,26 @@ class Place:
 
     def _kept(self) -> dict[str, Any] | None:
         """Return the parameters of the scene whose results are in the folder; None if there are none."""
-        for name in ("scene.json", "summary.json"):
-            with contextlib.suppress(FileNotFoundError, json.JSONDecodeError, UnicodeDecodeError):
-                found = json.loads((self.folder / name).read_text(encoding="utf-8"))
-                if isinstance(found, dict):
-                    return dict(found if name == "scene.json" else found.get("parameters", {}))
-        if (self.folder / "steps.csv").exists():
-            raise PlaceError(f"{_short(self.folder)} holds results of an unknown scene; choose another folder")
+        with contextlib.suppress(FileNotFoundError, ValueError):
+            return _whole(read_object(self.folder / "scene.json"))
+        with contextlib.suppress(FileNotFoundError, ValueError):
+            return _whole(read_object(self.folder / "summary.json").get("parameters", {}))
+        for file in (self.folder / "scene.json", *self._left()):
+            if file.exists():
+                raise PlaceError(f"{_short(self.folder)} holds {file.name} of an unknown scene; choose another folder")
         return None
+
+    def _left(self) -> list[Path]:
+        """Return what an earlier run has left."""
+        return sorted(file for file in self.folder.iterdir() if any(fnmatch(file.name, name) for name in LEFT))
 
     def take(self) -> None:
         """Make way for the run's files: an earlier run's go; collective."""
         on_rank_0(self._comm, self._clear)
 
     def _clear(self) -> None:
-        for file in [file for pattern in LEFT for file in self.folder.glob(pattern)]:
-            shutil.rmtree(file) if file.is_dir() else file.unlink()
+        for file in self._left():
+            remove(file)
         replace_json(self.folder / "scene.json", self._parameters)
 
 
@@ -189,9 +199,9 @@ def full_scene(folder: Path) -> Scene:
         SceneError: its mesh is gone or was changed.
     """
     try:
-        kept = dict(json.loads((folder / "scene.json").read_text(encoding="utf-8")))
+        kept = _whole(read_object(folder / "scene.json"))
     except (OSError, ValueError):
-        raise PlaceError(f"{_short(folder)} has no scene.json, and so no run to go on with") from None
+        raise PlaceError(f"{_short(folder)} has no scene.json of a run, and so no run to go on with") from None
     if TRACE in kept:
         raise PlaceError(
             f"{_short(folder)} has a trace of {kept[TRACE]['force']:g} N on the whole finger, which is one part of the "
@@ -205,6 +215,22 @@ def full_scene(folder: Path) -> Scene:
             "and resume=True"
         )
     return from_kept(kept)
+
+
+def _whole(parameters: Any) -> dict[str, Any]:
+    """Return parameters of a scene that a file holds, whose laws and trace are as a run writes them.
+
+    Raises:
+        ValueError: they are something else.
+    """
+    found = parameters if isinstance(parameters, dict) else {"laws": None}
+    laws, trace = found.get("laws", {}), found.get(TRACE, {"force": 0.0, "parameters": {}})
+    mesh = laws.get("mesh", {"path": "", "sha256": ""}) if isinstance(laws, dict) else None
+    sound = isinstance(mesh, dict) and all(isinstance(mesh.get(key), str) for key in ("path", "sha256"))
+    sound &= isinstance(trace, dict) and isinstance(trace.get("force"), int | float)
+    if not (sound and isinstance(trace.get("parameters"), dict)):
+        raise ValueError("no parameters of a scene")
+    return found
 
 
 def _given(parameters: dict[str, Any]) -> dict[str, Any]:

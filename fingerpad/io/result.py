@@ -1,7 +1,6 @@
 """Result of a model: the states of a run by name and in order, their errors and costs, as values, files and text."""
 
 import csv
-import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
@@ -9,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.io import terminal
+from fingerpad.io.files import read_object
 from fingerpad.io.states import PREFIXES, STATES, LoadResult, load_results
 from fingerpad.scene import Scene, SceneError, as_kept
 from fingerpad.scene.laws import coefficient
@@ -223,7 +223,7 @@ class Result:
 
         folder, name = Path(folder), clip(str(folder), 80)
         try:
-            summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+            summary = read_object(folder / "summary.json")
             if set(summary) == {"failure"}:
                 raise SceneError(f"the run in {name} was refused and has no results: {summary['failure']}")
             found = cls.from_dict(summary, folder)
@@ -241,7 +241,7 @@ class Result:
             drawing = KeptDrawing(mu_0, steps, {}, {}, {}, path, found.named, folder.absolute(), final)
             return replace(found, steps=steps, loads=tuple(_loads(steps, found.scene, summary)), drawing=drawing)
         except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:  # JSON of other things
-            if isinstance(error, SceneError):
+            if isinstance(error, SceneError) and name in str(error):
                 raise
             if isinstance(error, FileNotFoundError | NotADirectoryError) and not (folder / "summary.json").exists():
                 raise SceneError(f"{name} is not a folder of a finished run") from None
@@ -278,6 +278,8 @@ def _state(summary: Mapping[str, Any], prefix: str) -> ContactState | None:
         return None
     values = {key: summary.get(f"{prefix}_{key}") for key in (*CONDITIONS, *RESULTS, *_STABILITY)}
     given = {"mu_app": math.nan} | {key: value for key, value in values.items() if value is not None}
+    if wrong := [key for key, value in given.items() if not isinstance(value, int | float) and key != "load"]:
+        raise TypeError(f"{prefix}_{wrong[0]} is no number")
     for key in ("f_ext", "voltage"):  # of the scene itself, in results of models without a loading path
         given.setdefault(key, summary[key] if summary.get("model", "full") != "full" else math.nan)
     if prefix == PREFIXES["full_slip"]:

@@ -5,12 +5,15 @@ Categories have Okabe and Ito's colours, magnitudes viridis, voltages a ramp of 
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from io import BytesIO
 from pathlib import Path
 
 import matplotlib
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+
+from fingerpad.io.files import replace
 
 BLACK, ORANGE, SKY, GREEN, YELLOW = "#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442"
 BLUE, VERMILION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#999999"
@@ -54,7 +57,10 @@ def count(axis: Axis) -> None:
 
 
 def save(drawn: Figure, path: Path | str | None) -> Figure:
-    """Write a figure as PNG where a path is given, and return it."""
+    """Write a figure where a path is given, as PNG unless its name ends otherwise; and return it."""
     if path is not None:
-        drawn.savefig(path)
+        file, data = Path(path), BytesIO()
+        file = file if file.suffix else file.with_name(f"{file.name}.png")
+        drawn.savefig(data, format=file.suffix[1:])
+        replace(file, data.getvalue())
     return drawn

@@ -45,7 +45,7 @@ class Writer:
             self._taken = True
             self._place.take()
             if self._comm.rank == 0:
-                _send(self.log, _LogFile(self._place.folder / "run.log", mode="w", encoding="utf-8"))
+                _send(self.log, _LogFile(self._place.folder / "run.log", mode="x", encoding="utf-8"))
         if self._fields is None:
             self._fields = Fields(problem, self._place.folder)
 

@@ -24,6 +24,7 @@ from typing import Any
 
 import numpy as np
 
+from fingerpad.io.files import read_object
 from fingerpad.io.place import difference
 from fingerpad.io.result import Cost, Result
 from fingerpad.io.states import PREFIXES, WORDS
@@ -132,11 +133,16 @@ def from_run(scene: Scene, folder: Path) -> Footprint:
         SceneError: there is no run, it did not reach full slip, or it is one of another finger, force or voltage.
     """
     try:
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        return _of_summary(scene, folder, read_object(folder / "summary.json"))
+    except SceneError:
+        raise
     except (FileNotFoundError, NotADirectoryError):
         raise SceneError(f"{folder} is not a folder of a finished run") from None
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:  # JSON of other things
         raise SceneError(f"run {folder} cannot be read: {error}") from None
+
+
+def _of_summary(scene: Scene, folder: Path, summary: Mapping[str, Any]) -> Footprint:
     if "parameters" not in summary:  # a point of a sweep that was refused
         raise SceneError(f"run {folder} has no results: {summary.get('failure', 'summary.json is of another kind')}")
     if (model := summary.get("model", "full")) != "full":

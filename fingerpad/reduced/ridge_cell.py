@@ -14,6 +14,7 @@ import hashlib
 import json
 import signal
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -28,7 +29,7 @@ from scipy.optimize import brentq
 from ufl.algorithms.apply_algebra_lowering import apply_algebra_lowering
 from ufl.algorithms.apply_derivatives import apply_derivatives
 
-from fingerpad.io.files import replace_json
+from fingerpad.io.files import read_object, replace_json
 from fingerpad.io.interrupt import Interrupted
 from fingerpad.reduced.answer import Stopwatch
 from fingerpad.scene import Scene
@@ -95,9 +96,12 @@ def tables(
         Interrupted: ``pause`` raised it on a rank.
     """
     made_of, file = _place(scene, folder, comm, deeper)
-    data = json.loads(file.read_text(encoding="utf-8")) if comm.rank == 0 and file.exists() else None
+    data: dict[str, Any] = {}
+    if comm.rank == 0:
+        with suppress(OSError, ValueError):  # no file, or one that was damaged
+            data = read_object(file)
     data = comm.bcast(data)
-    if data is None:
+    if data.get("made_of") != json.loads(json.dumps(made_of)):
         # Every rank makes it by itself; what differs, if only the time it took, is rank 0's.
         number = 0
         try:

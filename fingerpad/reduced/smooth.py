@@ -25,6 +25,7 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
+from fingerpad.io import petsc_options
 from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt, Interrupted
 from fingerpad.io.result import Cost, Result
@@ -73,7 +74,7 @@ def smoothed(finger: Fingertip) -> Fingertip:
         "bone_centre": finger.bone_centre - depth + Profiles(finger).lowered,
         "ridge_amplitude": 1e-9,
     }
-    return Fingertip.model_validate(finger.model_dump() | changes)
+    return finger.model_copy(update=changes)  # computed, and so not in the ranges of what is typed
 
 
 def sizes(scene: Scene) -> MeshSize:
@@ -104,6 +105,7 @@ def solve(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, console: 
     clock = Stopwatch()
     refuse_others(scene, "smooth")
     _refuse_friction(scene)
+    petsc_options.check(comm, scene.numerics.element)
     half = scene.model_copy(update={"mesh": scene.mesh.model_copy(update={"contact": scene.mesh.contact / 2})})
     stages = Stages((scene, half), folder, comm, console)
     with Interrupt(comm) as interrupt, interrupt.ends_the_program():

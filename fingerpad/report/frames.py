@@ -13,10 +13,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.tri import Triangulation
-from numpy.lib.npyio import NpzFile
 from numpy.typing import NDArray
 
 from fingerpad.io.finger_picture import interfaces
+from fingerpad.io.kept_drawing import finger_of, skin_of
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS, called, partial_slip
 from variational.state import ContactState
@@ -103,14 +103,6 @@ def _about(state: ContactState | None) -> str:
     return f"{words}{slip}, L_R = {_MM * state.contact_length:.3f} mm, {state.ridges_in_contact} ridges in contact"
 
 
-def _open(file: Path) -> NpzFile | None:
-    try:
-        found = np.load(file, allow_pickle=False)
-    except (OSError, ValueError, EOFError):
-        return None
-    return found if isinstance(found, NpzFile) else None
-
-
 def _ridges(file: Path) -> dict[tuple[str, int], tuple[float, float]]:
     """Return length in contact (mm) and mean pressure (kPa) by state, a step or a name, and number of the ridge."""
     try:
@@ -128,17 +120,10 @@ def _ridges(file: Path) -> dict[tuple[str, int], tuple[float, float]]:
 
 def _skin(folder: Path, frame: _Frame, tables: _Tables) -> list[dict[str, Any]]:
     """Return the ridges of a state, each with its places (mm, height in µm), stresses (kPa) and gap (µm)."""
-    kept = _open(folder / f"{frame.skin}.npz")
-    if kept is None:
+    skin = skin_of(folder / f"{frame.skin}.npz", frame.prefix)
+    if not skin:
         return []
-    try:
-        with kept:
-            x, y, p, t, p_el, d_eq, ridge = (
-                np.asarray(kept[f"{frame.prefix}_{name}"], dtype=float)
-                for name in ("x", "y", "p", "t", "p_el", "d_eq", "ridge")
-            )
-    except (KeyError, OSError, ValueError, EOFError):
-        return []
+    x, y, p, t, p_el, d_eq, ridge = skin.values()
     found = []
     for number in np.unique(ridge[np.isfinite(ridge)]):
         mine = ridge == number
@@ -180,16 +165,12 @@ def _chosen(stems: list[str]) -> set[str]:
 
 def _finger(file: Path, view: list[float]) -> dict[str, Any] | None:
     """Return the energy density on a grid and the lines between layers; None where the file cannot be read."""
-    kept = _open(file)
-    if kept is None:
+    kept = finger_of(file)
+    if not kept:
         return None
-    try:
-        with kept:
-            xy = np.asarray(_MM * (kept["x"] + kept["u"]), dtype=float)
-            triangles = kept["triangles"]
-            density, tag = _KPA * kept["sed"], kept["tag"]
-    except (KeyError, OSError, ValueError, EOFError):
-        return None
+    xy = np.asarray(_MM * (kept["x"] + kept["u"]), dtype=float)
+    triangles, tag = kept["triangles"], kept["tag"]
+    density = _KPA * kept["sed"]
     left, right, bottom, top = view
     corners = xy[triangles]
     near = (corners[:, :, 0].max(axis=1) > left) & (corners[:, :, 0].min(axis=1) < right)

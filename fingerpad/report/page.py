@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 _COLOURS = 128  # of a picture's palette; the pictures have fewer hues, and a third of the bytes is left
+_MOST_PIXELS = 50_000_000  # of a picture; those of a run have two millions
 
 
 def text(words: object) -> str:
@@ -55,16 +56,20 @@ def chart(name: str, words: str) -> str:
 
 
 def picture(file: Path, words: str) -> str:
-    """Return a PNG file as a part of the page; nothing where it cannot be read."""
-    from PIL import Image, UnidentifiedImageError  # comes with Matplotlib
+    """Return a PNG file as a part of the page; a sentence where it cannot be read, and nothing without a file."""
+    from PIL import Image  # comes with Matplotlib
 
+    if not file.exists():
+        return ""
     try:
-        with Image.open(file) as drawn:
+        with Image.open(file, formats=("PNG",)) as drawn:
+            if drawn.width * drawn.height > _MOST_PIXELS:
+                raise ValueError
             out = BytesIO()
             drawn.convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE).save(out, "PNG", optimize=True)
             size = f'width="{drawn.width}" height="{drawn.height}"'
-    except (OSError, UnidentifiedImageError, ValueError):
-        return ""
+    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError):
+        return paragraph(f"{file.name} is left out: it is no picture of a run, or not a whole one.", "note")
     data = base64.b64encode(out.getvalue()).decode()
     caption = f"<figcaption>{text(words)}</figcaption>"
     shown = f'<img {size} alt="{html.escape(words)}" src="data:image/png;base64,{data}">'

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from fingerpad.io.kept_drawing import arrays_of
 from fingerpad.io.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import before_sliding, called
@@ -219,6 +220,8 @@ def _pictures(folder: Path | None) -> str:
     files += [(file, f"Deformed finger: {file.stem.removeprefix('finger_').replace('_', ' ')}") for file in fingers[:4]]
     more = f"{len(fingers) - 4} more pictures of the finger are in the folder." if len(fingers) > 4 else ""
     drawn = [html.picture(file, words) for file, words in files]
+    damaged = [file.name for file in sorted(folder.glob("*.npz")) if not arrays_of(file)]
+    drawn += [html.paragraph(f"{name} is left out: it has no arrays of a run.", "note") for name in damaged]
     return html.section("pictures", "Pictures", *drawn, html.paragraph(more, "note") if more else "")
 
 

@@ -1,11 +1,11 @@
 """What a folder holds: a run, an unfinished run, or a sweep; no dolfinx."""
 
 import csv
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from fingerpad.io.files import read_object
 from fingerpad.io.place import TRACE
 from fingerpad.io.result import Result
 from fingerpad.io.states import load_results, named
@@ -62,7 +62,7 @@ def read(folder: Path) -> Result | Table:
 def _unfinished(folder: Path) -> Result:
     """Return the steps that a run has written so far."""
     try:
-        parameters = json.loads((folder / "scene.json").read_text(encoding="utf-8"))
+        parameters = read_object(folder / "scene.json")
         scene = as_kept({key: value for key, value in parameters.items() if key != TRACE})
         with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
             rows = [row for row in csv.DictReader(file) if None not in row.values()]  # the last may be cut short
@@ -102,7 +102,7 @@ def _sweep(folder: Path) -> Table:
     if len(whole) < len(rows):
         raise SceneError(f"table.csv in {name} is cut short; give the command of the sweep again to write it anew")
     try:
-        asked = dict(json.loads((folder / "sweep.json").read_text(encoding="utf-8")))
+        asked = read_object(folder / "sweep.json")
         more = str(asked["model"]), str(asked.get("version", ""))
         said = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
         return Table(folder, axes, rows, dict(asked["parameters"]), *more, *said)

@@ -21,12 +21,17 @@ def write(folder: Path) -> Path:
         The file.
 
     Raises:
-        SceneError: the folder holds nothing that a report can be made of, or cannot be written to.
+        SceneError: the folder holds nothing that a report can be made of, or files that are not of a run, or it cannot
+            be written to.
     """
     from fingerpad.report import run_page, source, sweep_page
 
     found = source.read(folder)
-    page = run_page.page(found) if isinstance(found, Result) else sweep_page.page(found)
+    try:
+        page = run_page.page(found) if isinstance(found, Result) else sweep_page.page(found)
+    except (LookupError, ValueError, TypeError, AttributeError) as error:  # of files that somebody else has written
+        where, kind = clip(str(folder), 80), type(error).__name__
+        raise SceneError(f"no report of {where} can be made of its files ({kind}: {clip(str(error))})") from error
     try:
         replace(folder / NAME, page)
     except OSError as error:

@@ -20,7 +20,8 @@ from typing import Any
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from fingerpad.io.files import replace_json
+from fingerpad.io.files import lock_file, read_object, replace_json
+from fingerpad.io.folder import below
 from fingerpad.io.left import between
 from fingerpad.io.place import identity
 from fingerpad.io.terminal import watched
@@ -58,8 +59,8 @@ def result(scene: Scene, folder: Path, force: float | None = None) -> Summary | 
 
 def _summary(place: Path) -> Summary | None:
     try:
-        return dict(json.loads((place / "summary.json").read_text(encoding="utf-8")))
-    except (OSError, ValueError, TypeError):  # no file, or one that was damaged
+        return read_object(place / "summary.json")
+    except (OSError, ValueError):  # no file, or one that was damaged
         return None
 
 
@@ -125,14 +126,14 @@ def sweep(
 
     def job(name: str) -> End:
         force = forces.get(name)
-        place = folder / key(scenes[name], force)
+        place = below(folder, key(scenes[name], force))
         place.mkdir(parents=True, exist_ok=True)
-        with (place / "lock").open("w") as lock:
+        with lock_file(place / "lock") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)  # another sweep may be at it
             if kept(name) is not None:
                 return End(0, "", "", "")
             (place / "summary.json").unlink(missing_ok=True)  # of a run that says nothing of this one
-            (place / "asked.json").write_text(json.dumps(scenes[name].parameters(), indent=1), encoding="utf-8")
+            replace_json(place / "asked.json", scenes[name].parameters())
             start = time.monotonic()
             given = [str(place / "asked.json"), str(place), str(limit), model]
             given += [] if force is None else [repr(force)]

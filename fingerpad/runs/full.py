@@ -69,7 +69,7 @@ def run(
         DiskFull: there is no more room for results; on the ranks that found out, which end the others.
     """
     all_together(comm)
-    petsc_options.check()
+    petsc_options.check(comm, scene.numerics.element)
     console = Console(comm, lines, bar)
     try:
         with nullcontext() if folder is None else Place(folder, scene.parameters(), comm, asked=asked) as place:

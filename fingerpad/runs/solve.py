@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Any
 from fingerpad.installed import needed_by, source, version
 from fingerpad.io import dataset, terminal
 from fingerpad.io.files import replace_json
+from fingerpad.io.folder import below
 from fingerpad.io.place import Place, Serial, on_rank_0
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS
 from fingerpad.model.check import check
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import show
+from fingerpad.scene.reading import flat
 from variational.coefficients import LawError
 
 if TYPE_CHECKING:
@@ -188,8 +190,9 @@ def _solved(
         import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
         from fingerpad.startup import MPI
 
-        check(scene)
         comm = comm or MPI.COMM_WORLD
+        _refuse_different(scene, comm)
+        check(scene)
         if model == "full":
             from fingerpad.runs import full
 
@@ -205,6 +208,24 @@ def _solved(
             return kept(found, out, comm)
         finally:
             console.close()
+
+
+def _refuse_different(scene: Scene, comm: "MPI.Comm") -> None:
+    """Refuse scenes that differ from rank to rank, whose solves would wait for each other for ever; collective.
+
+    Laws of one's own are left out: those without a source are another one in each process.
+
+    Raises:
+        SceneError: the first key that differs, on every rank.
+    """
+    first, *others = comm.allgather({k: v for k, v in flat(scene.parameters()).items() if not k.startswith("laws.")})
+    for rank, other in enumerate(others, start=1):
+        for key in sorted(first.keys() | other.keys()):
+            if (one := first.get(key)) != (two := other.get(key)):
+                raise SceneError(
+                    f"{key} is {show(one)} on rank 0 of MPI and {show(two)} on rank {rank}; all ranks must be given "
+                    "the same scene"
+                )
 
 
 def _whole(
@@ -312,7 +333,7 @@ def _written(result: Result, comm: "MPI.Comm | Serial") -> Result:
 def tables_in(out: Path | None) -> Path:
     """Return the folder of the tables of ridges: inside that of the results, or else in the user's cache."""
     if out is not None:
-        folder = out / "ridge_tables"
+        folder = below(out, "ridge_tables")
     else:
         folder = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "fingerpad" / "ridge_tables"
     try:

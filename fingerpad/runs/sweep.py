@@ -14,7 +14,7 @@ import numpy as np
 from fingerpad.installed import source, version
 from fingerpad.io import terminal
 from fingerpad.io.files import replace_json
-from fingerpad.io.folder import check_folder
+from fingerpad.io.folder import below, check_folder
 from fingerpad.io.result import Result
 from fingerpad.model.check import check
 from fingerpad.report.write import attempt
@@ -84,7 +84,7 @@ def sweep(
     else:
         found = _in_processes(points, folder, jobs, model, quiet)
     done = Sweep(values, tuple(found), folder)
-    for name in FILES[1:]:  # else that of an earlier sweep may stay beside this one's table
+    for name in FILES[:-1]:  # else that of an earlier sweep may stay beside this one's
         (folder / name).unlink(missing_ok=True)
     asked = {"version": version(), "model": model, "parameters": scene.parameters()}
     leaks = next((note for each in done for note in leakage(each.scene)), "")
@@ -111,6 +111,9 @@ def _claim(folder: Path) -> None:
     run = next((name for name in ("scene.json", "summary.json", "steps.csv") if (folder / name).exists()), None)
     if run is not None:
         raise SceneError(f"out {clip(str(folder), 80)} holds the results of a run ({run}); choose another folder")
+    theirs = next((name for name in FILES if (folder / name).exists()), None)
+    if theirs is not None and not any((folder / name).exists() for name in (FILES[-1], *MODELS)):
+        raise SceneError(f"out {clip(str(folder), 80)} holds {theirs} of no sweep; choose another folder")
     folder.mkdir(parents=True, exist_ok=True)
 
 
@@ -209,7 +212,7 @@ def _in_processes(points: Sequence[_Point], folder: Path, jobs: int, model: str,
     """Return the results of points, those that can be run in processes of their own, kept by their parameters."""
     from fingerpad.runs import batch
 
-    place = folder / model
+    place = below(folder, model)
     results, keys, named = dict[str, Result](), list[str](), dict[str, _Point]()
     for point in points:
         keys.append(batch.key(point.scene, point.force))

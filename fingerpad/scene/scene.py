@@ -22,7 +22,7 @@ from fingerpad.scene.reading import plain, put, read_scene
 from fingerpad.scene.slices import Slices
 from fingerpad.scene.table import Finite, Part
 from fingerpad.scene.waveform import Volts
-from geometry.bounds import within
+from geometry.bounds import computed, within
 from geometry.parameters import MeshSize
 from variational.contact.friction import Friction, law_of
 from variational.roughness.closure import Closure
@@ -208,11 +208,12 @@ class Scene(Part):
         """Return the loads to reach one after the other."""
         if self.history is not None:
             return self.history
-        return (
-            Load(name="press", f_ext=self.f_ext),
-            Load(name="charge", voltage=self.voltage),
-            Load(name="slide", bone_x=self.slide_length, until_full_slip=True),
-        )
+        with computed():  # of a copy, which may have a force that a run has reached
+            return (
+                Load(name="press", f_ext=self.f_ext),
+                Load(name="charge", voltage=self.voltage),
+                Load(name="slide", bone_x=self.slide_length, until_full_slip=True),
+            )
 
     def parameters(self) -> dict[str, Any]:
         """Return every parameter in use, ready for JSON; as a scene it gives the same run again."""
@@ -269,7 +270,8 @@ def as_kept(parameters: Mapping[str, Any]) -> Scene:
     Raises:
         SceneError: the first key at fault.
     """
-    scene = from_data({key: value for key, value in parameters.items() if key not in ("laws", "model")})
+    with computed():  # as the loads of a trace are
+        scene = from_data({key: value for key, value in parameters.items() if key not in ("laws", "model")})
     laws = parameters.get("laws")
     if not isinstance(laws, Mapping) or not laws:
         return scene

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fingerpad.io.folder import below
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
@@ -22,6 +23,7 @@ from fingerpad.slices.finger import WholeFinger, errors, in_order
 from fingerpad.slices.profile import Profile, profile
 from fingerpad.slices.total import BeyondTrace, at_force
 from fingerpad.slices.trace import Trace, TraceError, trace
+from geometry.bounds import computed
 from variational.state import ContactState
 
 if TYPE_CHECKING:
@@ -214,7 +216,8 @@ def history(scene: Scene, name: str, top: float) -> Scene:
             {"name": "raise", "f_ext": top, "bone_x": far},
             {"name": "hold", "bone_x": 2 * far, "until_full_slip": True},
         ]
-    return scene.replace(history=loads)
+    with computed():
+        return scene.replace(history=loads)
 
 
 def points(result: Result, name: str) -> list[ContactState]:
@@ -229,4 +232,4 @@ def points(result: Result, name: str) -> list[ContactState]:
 
 def folder_of(out: Path | None, name: str) -> Path | None:
     """Return the folder of a trace's files."""
-    return None if out is None else out / name if name else out
+    return None if out is None else below(out, name) if name else out
