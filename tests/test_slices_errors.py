@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
+from benchmarks import newtons
 from fingerpad.io.dataset import finger
 from fingerpad.io.states import STATES
 from fingerpad.report.run_page import page
 from fingerpad.runs.sweep_columns import row
 from fingerpad.scene.slices import Slices
 from fingerpad.slices import errors, solid
+from fingerpad.slices.estimate import estimate
 from fingerpad.slices.finger import WholeFinger
 from fingerpad.slices.profile import cylinder, profile
 from fingerpad.slices.total import at_force
@@ -159,6 +161,23 @@ def test_estimate_of_a_run_covers_the_traces_of_the_full_model():
         borne = each["f_ext_full"] + each["f_electrostatic_full"]
         friction = known["f_electrostatic"] * each["f_electrostatic_full"] / borne
         assert each["state"] == "charged" or abs(each["f_t"]) <= friction + 1e-6, each
+
+
+@pytest.mark.parametrize("share", [0.5, 0.2])
+def test_estimate_under_a_smaller_force_covers_the_traces_of_the_full_model(share):
+    """Read twice from a kept run at 100 N/m and 200 V, as in one go; errors grow away from its own force."""
+    scenes = json.loads((KEPT / "models.json").read_text())["numbers"]["scenes"]
+    press = newtons.states(scenes, "full", 0.0, "charged")[:6]
+    named = {state: newtons.states(scenes, "full", 200.0, state)[5] for state in ("charged", "full_slip")}
+    of = estimate(fp.Scene(f_ext=100.0), press, {"uncharged": press[-1]} | named)
+    less = of.under(0.8 * of.f_ext).under(share * of.f_ext)
+    assert less.error["full_slip"]["f_t"] == pytest.approx(of.under(less.f_ext).error["full_slip"]["f_t"], rel=1e-6)
+    for state in named:
+        values, error = less.values(state), less.error[state]
+        full = at_force(FINGER, newtons.kept(scenes, "full", 200.0, state), less.f_ext, 48).values
+        for key in ("f_electrostatic", "contact_area", "gross_area", "indentation"):
+            assert abs(values[key] - full[key]) <= error[key], (state, key)
+            assert error[key] / values[key] > of.error[state][key] / of.values(state)[key]
 
 
 def test_everything_that_is_printed_and_kept_has_the_whole_error():

@@ -42,8 +42,8 @@ class WholeFinger:
     source: str
     """Where the traces of the cross-section come from, for a reader."""
     carried: dict[str, dict[str, dict[str, float]]] = field(default_factory=dict)
-    """Relative errors by state, part and quantity that are the same under every force: of the cross-section's mesh, and
-    of a run's estimate (:mod:`fingerpad.slices.errors`)."""
+    """Relative errors by state, part and quantity that no trace gives: of the cross-section's mesh, and of a run's
+    estimate (:mod:`fingerpad.slices.errors`)."""
     traces: Mapping[str, Trace] = field(default_factory=dict)
     """Of the cross-section by state, from which :meth:`under` reads other forces; none of an earlier version's file."""
     shape: Slices = Slices()
@@ -88,7 +88,11 @@ class WholeFinger:
                     f"and its trace in {WORDS[name]} begins at {first:.3g} N/m; "
                     "give a larger force, or run this one"
                 )
-        return replace(self, states=states)
+        carried = {name: dict(each) for name, each in self.carried.items()}
+        for name, each in carried.items():
+            if errors.ESTIMATED in each:
+                each[errors.ESTIMATED] = errors.lighter(each[errors.ESTIMATED], states[name], self.f_ext / value)
+        return replace(self, states=states, carried=carried)
 
     def values(self, name: str) -> dict[str, float]:
         """Return the quantities of a state: N, m², m, and the apparent friction coefficient."""
