@@ -8,6 +8,7 @@ Writes docs/newtons.json, docs/newtons.md and its picture; docs/paper.md has the
 """
 
 import argparse
+import itertools
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -16,11 +17,11 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from benchmarks import harness
+from benchmarks import harness, three_dimensions
 from benchmarks.models import SIZE, name
 from benchmarks.runs import FORCES, VOLTAGES, Run, trace
 from fingerpad.io import style
-from fingerpad.io.states import PREFIXES
+from fingerpad.io.states import PREFIXES, WORDS
 from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene
 from fingerpad.scene.slices import Slices
@@ -34,13 +35,13 @@ from variational.state import RESULTS, ContactState
 _LIMIT = 3600.0  # s of processor time of the run
 RADII = (15e-3, 28e-3, 40e-3)  # m, R_z
 NEWTONS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.75)  # N
-SUMS = ("f_ext", "f_t", "gross_area", "contact_area")
 COMPARED = 0.5  # N
 PAPER = 20e-3  # m of finger, by which the paper multiplies
-CENTRE = 75.0  # N/m, of the runs whose estimate is judged
+CENTRE = 75.0  # N/m, of the run and of the estimates in the table
+CENTRES = (25.0, 50.0, 75.0, 100.0, 120.0)  # N/m, of the runs whose estimates are judged
+ESTIMATED = ("f_t", "f_electrostatic", "contact_area", "gross_area", "indentation")
 COUNTS, FINE = (6, 12, 24, 48, 96), 1536  # slices
 HIGH = 200.0  # V
-_LEAST = 0.3  # N, of the finger in three dimensions: below it a few elements are in contact, and areas are coarse
 Found = Mapping[str, Any]
 
 
@@ -113,19 +114,20 @@ def by_model(scenes: Found) -> list[dict[str, Any]]:
     return found
 
 
-def estimates(scenes: Found) -> list[dict[str, float]]:
-    """Return what a run at :data:`CENTRE` estimates, beside the traces of the full model under the same force."""
-    found, k = [], FORCES.index(CENTRE)
-    for voltage in VOLTAGES:
-        scene = Scene(f_ext=CENTRE, voltage=voltage)
+def estimates(scenes: Found) -> list[dict[str, Any]]:
+    """Return relative errors of what runs at :data:`CENTRES` estimate, beside traces of the full model."""
+    found = []
+    for centre, voltage in itertools.product(CENTRES, VOLTAGES):
+        k, scene = FORCES.index(centre), Scene(f_ext=centre, voltage=voltage)
         press = states(scenes, "full", 0.0, "charged")[: k + 1]
         named = {state: states(scenes, "full", voltage, state)[k] for state in ("charged", "full_slip")}
-        made = estimate.estimate(scene, press, {"uncharged": press[-1]} | named).states["full_slip"]
-        full = at_force(finger(), kept(scenes, "full", voltage), made.totals["f_ext"], Slices().count)
-        both = {"estimate": made.totals, "full": full.totals}
-        found.append(
-            {"voltage": voltage} | {f"{key}_{which}": sums[key] for which, sums in both.items() for key in SUMS}
-        )
+        made = estimate.estimate(scene, press, {"uncharged": press[-1]} | named).states
+        for state in named:
+            one = made[state].values
+            full = at_force(finger(), kept(scenes, "full", voltage, state), one["f_ext"], Slices().count).values
+            errors = {key: one[key] / full[key] - 1 if full[key] else 0.0 for key in ESTIMATED}
+            sums = {f"{key}_full": full[key] for key in ("f_ext", "f_t", "f_electrostatic")}
+            found.append({"centre": centre, "voltage": voltage, "state": state} | sums | errors)
     return found
 
 
@@ -254,13 +256,23 @@ def _table_of_models(numbers: Found) -> str:
 
 def _table_of_estimates(numbers: Found) -> str:
     keys = ("f_t", "contact_area", "gross_area")
+    mine = [e for e in numbers["estimates"] if e["centre"] == CENTRE and e["state"] == "full_slip"]
     rows = [
-        [f"{e['voltage']:g}", f"{e['f_ext_full']:.3f}", f"{e['f_t_full']:.4f}",
-         *(f"{100 * (e[f'{key}_estimate'] / e[f'{key}_full'] - 1):+.1f}" for key in keys)]
-        for e in numbers["estimates"]
-    ]  # fmt: skip
+        [f"{e['voltage']:g}", f"{e['f_ext_full']:.3f}", f"{e['f_t_full']:.4f}", *(f"{100 * e[k]:+.1f}" for k in keys)]
+        for e in mine
+    ]
     errors = ("error of F_T (%)", "of ridge area (%)", "of gross area (%)")
     return harness.table(("U (V)", "F_ext (N)", "F_T (N)", *errors), rows)
+
+
+def _table_of_largest(numbers: Found) -> str:
+    rows = []
+    for state in ("charged", "full_slip"):
+        mine = [each for each in numbers["estimates"] if each["state"] == state]
+        largest = {key: max(abs(100 * each[key]) for each in mine) for key in ESTIMATED}
+        rubs = state == "full_slip"
+        rows.append([WORDS[state], *(f"{largest[key]:.1f}" if key != "f_t" or rubs else "–" for key in ESTIMATED)])
+    return harness.table(("largest error (%)", "F_T", "F_el", "ridge area", "gross area", "δ"), rows)
 
 
 def _table_of_paths(numbers: Found) -> str:
@@ -280,35 +292,13 @@ def _table_of_slices(numbers: Found) -> str:
     return harness.table(("slices", "F_ext", "F_T", "ridge contact area", "gross area"), rows)
 
 
-def solid(docs: Path) -> str:
-    """Return the comparison with a finger in three dimensions, empty without docs/solid.json."""
-    if not (docs / "solid.json").exists():
-        return ""
-    rows, shares = [], {"force": [], "area": [], "same": []}  # type: ignore[var-annotated]
-    for each in harness.kept("solid", docs).numbers:
-        ratios = (
-            each["f_ext_slices"] / each["f_ext"] - 1, each["area_slices"] / each["area"] - 1,
-            each["area_slices_at_force"] / each["area"] - 1,
-        )  # fmt: skip
-        for kind, ratio in zip(shares, ratios, strict=True):
-            if kind == "force" or each["f_ext"] > _LEAST:
-                shares[kind].append(100 * ratio)
-        width = f"{1e3 * each['f_ext'] / each['centre']:.1f}"
-        cells = (f"{each['f_ext']:.3f}", f"{each['centre']:.1f}", width, f"{1e6 * each['area']:.0f}")
-        rows.append([f"{1e3 * each['depth']:.1f}", *cells, *(f"{100 * ratio:+.1f}" for ratio in ratios)])
-    heads = ("δ (mm)", "force (N)", "centre (N/m)", "their ratio (mm)", "area (mm²)")
-    errors = ("slices: force at equal δ (%)", "area at equal δ (%)", "area at equal force (%)")
-    ends = {f"{kind}_{end}": of(each) for kind, each in shares.items() for end, of in (("low", min), ("high", max))}
-    text = harness.prose("newtons")["solid"].format(least=_LEAST, **ends)
-    return f"## A finger in three dimensions\n\n{text}\n\n{harness.table((*heads, *errors), rows)}"
-
-
 def draw(docs: Path) -> Path:
     """Draw the page from the kept numbers."""
     found, text = harness.kept("newtons", docs), harness.prose("newtons")
     numbers = found.numbers
     middle = next(e for e in at(numbers, RADII[1], HIGH) if abs(e["f_ext"] / COMPARED - 1) < 1e-6)
-    worst = max(abs(e["f_t_estimate"] / e["f_t_full"] - 1) for e in numbers["estimates"])
+    slips = [each for each in numbers["estimates"] if each["state"] == "full_slip"]
+    worst, near = (max(abs(e["f_t"]) for e in slips if e["centre"] in of) for of in (CENTRES, (CENTRE,)))
     lost = [p["f_t_raised"] / p["f_t"] - 1 for p in numbers["paths"]]
     same = [abs(p["f_t_raised"] / p["f_t"] - 1) for p in numbers["paths"] if p["ridges"] == p["ridges_raised"]]
     values = {
@@ -318,15 +308,16 @@ def draw(docs: Path) -> Path:
         "size": 1e6 * SIZE, "default": 1e6 * Scene().mesh.contact,
         "light": FORCES[0], "continued": 100 * middle["continued"],
         "most_continued": 100 * at(numbers, RADII[1], HIGH)[0]["continued"],
-        "estimate": 100 * worst, "lost": -100 * min(lost), "same": 100 * max(same),
+        "estimate": 100 * near, "estimates": 100 * worst, "lost": -100 * min(lost), "same": 100 * max(same),
     }  # fmt: skip
     body = [
         picture(numbers, docs),
         f"## Full slip over force\n\n{_table_of_friction(numbers)}",
-        f"## Errors\n\n{text['errors']}",
-        solid(docs),
+        f"## Errors\n\n{text['errors']}\n\n{three_dimensions.comparisons()}\n\n{text['comparisons']}",
+        three_dimensions.section(docs),
         f"## Which model feeds the sum\n\n{text['models']}\n\n{_table_of_models(numbers)}",
         f"## What a run estimates\n\n{text['estimates'].format(**values)}\n\n{_table_of_estimates(numbers)}",
+        f"{text['largest'].format(**values)}\n\n{_table_of_largest(numbers)}",
         f"## Two paths to full slip\n\n{text['paths'].format(**values)}\n\n{_table_of_paths(numbers)}",
         f"## Number of slices\n\n{text['slices']}\n\n{_table_of_slices(numbers)}",
     ]

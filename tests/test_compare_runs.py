@@ -13,6 +13,7 @@ from fingerpad.io.result import Result
 from fingerpad.runs.solve import run
 from fingerpad.scene import Scene, SceneError
 from fingerpad.slices import traces
+from fingerpad.slices.errors import MESH
 from fingerpad.slices.finger import WholeFinger
 from fingerpad.slices.total import Total
 from tests.commands import refused
@@ -49,12 +50,12 @@ def test_errors_of_named_states_are_carried(table):
     """Of the cross-section and of the whole finger; a step of the press has none, but for the named state's own."""
     steps = (state(1, 10.0), state(2, 20.0), state(4, 20.0, 100.0, 1e-3, mu_app=0.4))
     uncharged, slip = replace(steps[1], error=Errors(bone_height=2e-6)), replace(steps[2], error=Errors(mu_app=0.01))
-    finger = WholeFinger({"full_slip": total(0.4, 8e-5)}, "test", {"full_slip": {"contact_area": 3e-7}})
+    finger = WholeFinger({"full_slip": total(0.4, 8e-5)}, "test", {"full_slip": {MESH: {"contact_area": 3e-3}}})
     run = Result(Scene(), "full", uncharged, None, slip, steps=steps, finger=finger)
     for text, error in (
         ("# state: uncharged\nforce (N/m), depth (mm)\n20, 0.2\n10, 0.1\n", [2e-6, np.nan]),
         ("friction (1)\n0.2\n", [0.01]),
-        ("contact area (mm^2)\n20\n", [3e-7]),
+        ("contact area (mm^2)\n20\n", [3e-3 * finger.values("full_slip")["contact_area"]]),
         ("gross area (mm^2)\n20\n", [np.nan]),
     ):
         asked = read(table(text))

@@ -11,13 +11,13 @@ from numpy.testing import assert_allclose
 from fingerpad.io.footprint_picture import footprint
 from fingerpad.scene import Scene, SceneError, override
 from fingerpad.scene.slices import Slices
-from fingerpad.slices import AREA_ERROR, AREA_ERROR_AT_FORCE, FORCE_ERROR
-from fingerpad.slices.finger import MODEL_ERROR, WholeFinger, errors
+from fingerpad.slices.errors import MESH
+from fingerpad.slices.finger import WholeFinger
 from fingerpad.slices.force import newtons
 from fingerpad.slices.profile import cylinder, profile
 from fingerpad.slices.total import BeyondTrace, at_force, at_indentation
 from fingerpad.slices.trace import Trace, TraceError, gross_width, trace
-from variational.state import ContactState, Errors, RidgeStates
+from variational.state import ContactState, RidgeStates
 
 R_X, R_Z = 14e-3, 28e-3  # m
 FOUNDATION = 1e9  # Pa/m
@@ -167,15 +167,8 @@ def kept_state(**values) -> ContactState:
 def whole() -> WholeFinger:
     shape, trace = Slices(count=8), kept(200.0)
     total = at_force(profile(shape), trace, 0.5, shape.count)
-    errors = {"full_slip": {"f_t": 0.01, "mu_app": 0.02}}
-    return WholeFinger({"full_slip": total}, "kept runs", errors, {"full_slip": trace}, shape)
-
-
-def test_errors_are_carried_over_in_proportion():
-    total = whole().states["full_slip"]
-    state = kept_state(f_t=40.0, error=Errors(f_t=0.4), ridges_in_contact=1, contact_length=1e-3)
-    assert errors(total, state) == {"f_t": pytest.approx(0.01 * total.totals["f_t"])}
-    assert errors(total, None) == {}
+    carried = {"full_slip": {MESH: {"f_t": 0.02, "mu_app": 0.03}}}
+    return WholeFinger({"full_slip": total}, "kept runs", carried, {"full_slip": trace}, shape)
 
 
 def test_result_from_its_file():
@@ -187,14 +180,12 @@ def test_result_from_its_file():
 
 
 def test_finger_under_another_force_is_read_from_its_traces():
-    """The same as if the traces had been made for that force; errors stay in proportion."""
+    """The same as if the traces had been made for that force."""
     finger = whole()
     less = finger.under("200 mN")
     direct = at_force(profile(Slices()), kept(200.0), 0.2, 8)
     assert less.values("full_slip") == WholeFinger({"full_slip": direct}, "").values("full_slip")
     assert less.f_ext == pytest.approx(0.2, rel=1e-12)
-    ratio = less.values("full_slip")["f_t"] / finger.values("full_slip")["f_t"]
-    assert less.error["full_slip"]["f_t"] == pytest.approx(0.01 * ratio) and ratio < 0.6
     assert finger.under(0.5).values("full_slip") == finger.values("full_slip")
     with pytest.raises(SceneError, match="give a trace to a larger force"):
         finger.under(50.0)
@@ -204,12 +195,6 @@ def test_finger_under_another_force_is_read_from_its_traces():
         finger.under(1e-4)
     with pytest.raises(SceneError, match="read from a file without traces; run the scene again"):
         WholeFinger(finger.states, "kept runs").under(0.2)
-
-
-def test_text_has_both_errors():
-    text = str(whole())
-    assert "±: estimated discretisation error" in text and MODEL_ERROR in text
-    assert "0.300 ± 0.010" in text or "0.301 ± 0.010" in text
 
 
 def test_footprint_has_a_panel_for_each_state(tmp_path):
@@ -223,24 +208,6 @@ def test_footprint_has_a_panel_for_each_state(tmp_path):
     assert along.get_ylabel() == state.get_ylabel() and along.get_ylim() == state.get_ylim()
     bands = [text.get_text() for text in drawn.legends[0].get_texts()]
     assert [words.partition(" ")[0] for words in bands] == ["light:", "dark:"] and "ridges lie apart" in bands[1]
-
-
-# -- in three dimensions ---------------------------------------------------------------------------------
-SOLID = json.loads((MODELS.parent / "solid.json").read_text())["numbers"]
-
-
-def test_stated_errors_cover_the_finger_in_three_dimensions():
-    """Areas from 0.3 N, below which the kept finger has a few elements in contact."""
-
-    def errors(key, of):
-        return [each[key] / each[of] - 1 for each in SOLID if of == "f_ext" or each["f_ext"] > 0.3]
-
-    for (low, high), key, of in (
-        (FORCE_ERROR, "f_ext_slices", "f_ext"), (AREA_ERROR, "area_slices", "area"),
-        (AREA_ERROR_AT_FORCE, "area_slices_at_force", "area"),
-    ):  # fmt: skip
-        found = errors(key, of)
-        assert len(found) > 4 and low <= min(found) and max(found) <= high
 
 
 # -- refusals ------------------------------------------------------------------------------------------

@@ -261,16 +261,20 @@ def finger(whole: "WholeFinger | None") -> Variables:
     if whole is None:
         return {}
     count = max(len(total.z) for total in whole.states.values())
-    sums = {name: np.full(len(STATES), np.nan) for name in columns.FINGER}
+    sums = {name: np.full(len(STATES), np.nan) for key in columns.FINGER for name in (key, f"{key}_error")}
     slices = {name: np.full((len(STATES), count), np.nan) for name in columns.SLICES}
     for state, total in whole.states.items():
         for name, value in whole.values(state).items():
             sums[name][STATES.index(state)] = value
+        for name, value in whole.error[state].items():
+            sums[f"{name}_error"][STATES.index(state)] = value
         for name, along in total.slices().items():
             slices[name][STATES.index(state), : len(along)] = along
     found: Variables = {}
     for name, column in columns.FINGER.items():
         found[f"finger_{name}"] = ("state",), sums[name], described(column)
+        about = described(Column(column.unit, f"estimated error of the {column.meaning}"))
+        found[f"finger_{name}_error"] = ("state",), sums[f"{name}_error"], about
     for name, column in columns.SLICES.items():
         found[f"slice_{name}"] = ("state", "slice"), slices[name], described(column)
     return found

@@ -12,7 +12,7 @@ from fingerpad.report import parameters
 from fingerpad.report.source import Table
 from fingerpad.runs.sweep_columns import FORCE, LOAD, in_time, loads, shown, text
 from fingerpad.runs.sweep_dataset import described
-from fingerpad.slices.finger import MODEL_ERROR
+from fingerpad.slices import solid
 
 _CHARTS = ("mu_app", "f_t", "contact_length", "contact_area")
 _TOLD = 3  # cautions in the headline
@@ -162,12 +162,14 @@ def _points(table: Table) -> str:
         said = "failed" if row["failure"] else "" if _reached(row, columns) else f"no {state}"
         first, *rest = (_plain(row[key]) for key in table.axes)
         rows.append((first, *rest, *cells, said))
+    forces = dict.fromkeys(float(row[FORCE]) for row in table.rows) if FORCE in table.axes else {}
+    notes = solid.remarks(forces) or [PER_LENGTH]
     heads = [*(_head_of(key) for key in table.axes), *(quantity.title for quantity in columns.values())]
     return html.section(
         "points",
         "Every point",
         html.table((*heads, ""), rows, "numbers"),
-        html.paragraph(MODEL_ERROR if FORCE in table.axes else PER_LENGTH, "note"),
+        *(html.paragraph(note, "note") for note in notes),
         html.items((*table.notes, *table.cautions)),
     )
 

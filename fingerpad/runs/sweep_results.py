@@ -19,7 +19,7 @@ from fingerpad.io.result import Result
 from fingerpad.io.states import STATES, WORDS
 from fingerpad.runs import sweep_dataset
 from fingerpad.runs.sweep_columns import FORCE, head, newtons_of, printed, row, shown, tables
-from fingerpad.slices.finger import MODEL_ERROR
+from fingerpad.slices import solid
 from fingerpad.slices.finger import QUANTITIES as OF_FINGER
 from variational.state import CONDITIONS, RESULTS
 
@@ -149,8 +149,8 @@ class Sweep:
         lines = [f"{'Whole finger, at' if self.whole else 'At'} {WORDS[state]}", *_aligned(table)]
         for name, over_time in tables(rows, axes):
             lines += [f"Over time, in the load {name}", *_aligned(over_time)]
-        unit = MODEL_ERROR if self.whole else PER_LENGTH
-        return "\n".join([*lines, unit, *(f"! {caution}" for caution in self.cautions()), *self.notes])
+        notes = solid.remarks(self.axes[FORCE]) if self.whole else [PER_LENGTH]
+        return "\n".join([*lines, *notes, *(f"! {caution}" for caution in self.cautions()), *self.notes])
 
     __repr__ = __str__
 

@@ -21,19 +21,9 @@ taken from one trace of sliding. A ridge that came down in the press may stay do
 it comes in sliding, has less friction (``docs/newtons.md``).
 
 What is left out: shear between slices, the end cap of the finger, and the flow of soft tissue along the axis, which in
-a slice goes sideways alone. Smooth layered fingers in three dimensions (half ellipsoids with semi-axes of 10, 7 and
-14 mm, neo-Hookean, frictionless, uncharged) are the measure of that. Beside them the sum of slices has
-:data:`FORCE_ERROR` in force and :data:`AREA_ERROR` in area at equal indentation, and :data:`AREA_ERROR_AT_FORCE` in
-area at equal force. Each is the span of two comparisons: one made once, without a program in this repository, and that
-of ``benchmarks/solid.py`` (``docs/newtons.md``). This is the error of the model; the discretisation error of the
-cross-section is another one and is stated apart.
+a slice goes sideways alone. Fingers in three dimensions are the measure of that: :mod:`fingerpad.slices.solid` has what
+is known at a force. This is the error of the model. The errors of the cross-section's mesh and of the points of its
+trace are other ones (:mod:`fingerpad.slices.errors`), and are stated apart.
 
 Everything here is NumPy and SciPy; only :mod:`fingerpad.slices.traces` orders runs of finite elements.
 """
-
-FORCE_ERROR = (-0.10, 0.15)
-"""Least and largest error of the sum's force at equal indentation, over that of the finger in three dimensions."""
-AREA_ERROR = (0.05, 0.14)
-"""Likewise of the gross area at equal indentation, from 0.3 N."""
-AREA_ERROR_AT_FORCE = (0.0, 0.07)
-"""Likewise of the gross area at equal force, from 0.3 N."""

@@ -16,10 +16,11 @@ from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import coefficient
-from fingerpad.slices.finger import WholeFinger, errors, in_order
+from fingerpad.slices import errors
+from fingerpad.slices.finger import WholeFinger, in_order
 from fingerpad.slices.profile import profile
 from fingerpad.slices.total import at_force, at_indentation, deepest
-from fingerpad.slices.trace import Trace, TraceError, columns, trace
+from fingerpad.slices.trace import LEAST, Trace, TraceError, columns, trace
 from variational.state import ContactState
 
 SOURCE = "estimated from the run's press and its centre by charged cylinders; a force in newtons computes traces"
@@ -61,15 +62,19 @@ def estimate(scene: Scene, press: Sequence[ContactState], named: Mapping[str, Co
     # At one indentation the states bear other forces: the least is one that every trace reaches.
     force = min(at_indentation(finger, each, deepest(finger, each), count).totals["f_ext"] for each in traces.values())
     found = {name: at_force(finger, each, force * (1 - 1e-9), count) for name, each in traces.items()}
-    known = {name: errors(found[name], named[name]) for name in found}
-    return WholeFinger(in_order(found), SOURCE, known, traces, scene.slices)
+    carried = {}
+    for name, total in found.items():
+        estimated = name != "uncharged" and traces[name] is not traces.get("uncharged")
+        carried[name] = {errors.MESH: errors.discretisation(named[name])}
+        carried[name] |= {errors.ESTIMATED: errors.estimate(name, total)} if estimated else {}
+    return WholeFinger(in_order(found), SOURCE, carried, traces, scene.slices)
 
 
 def _thinned(press: Sequence[ContactState]) -> list[ContactState]:
     """Return at most :data:`_MOST` states, the last one among them, about evenly in the logarithm of the force."""
     states = [state for state in press if state.f_ext > 0 and state.contact_length > 0]
-    if len(states) < 2:
-        raise TraceError(f"the press has {len(states)} states with a force; a trace must have two at least")
+    if len(states) < LEAST:
+        raise TraceError(f"the press has {len(states)} states with a force; a trace must have {LEAST} at least")
     forces = np.log([state.f_ext for state in states])
     wanted = np.linspace(forces[0], forces[-1], _MOST)
     return [states[k] for k in sorted({int(np.abs(forces - each).argmin()) for each in wanted})]

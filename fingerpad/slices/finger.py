@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -11,12 +12,11 @@ from fingerpad.io.quantities import Quantity
 from fingerpad.io.states import STATES, WORDS, called
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.slices import Slices
-from fingerpad.slices import AREA_ERROR_AT_FORCE, FORCE_ERROR
+from fingerpad.slices import errors, solid
 from fingerpad.slices.force import newtons
 from fingerpad.slices.profile import profile
 from fingerpad.slices.total import Total, at_force
 from fingerpad.slices.trace import NAMES, Trace
-from variational.state import ContactState
 
 QUANTITIES = {
     "f_ext": Quantity("external force F_ext", "N", 1.0, 4),
@@ -31,24 +31,6 @@ QUANTITIES = {
 """The quantities of a whole finger, as they are printed."""
 _ROUNDOFF = 1e-9
 _FRICTION = "mu_app", "f_t"  # shown at full slip alone
-_OF_SECTION = {  # whose relative error each has; the external force is prescribed
-    "mu_app": "mu_app",
-    "f_t": "f_t",
-    "f_electrostatic": "f_electrostatic",
-    "contact_area": "contact_length",
-    "indentation": "bone_height",
-}
-
-
-def _percent(ends: tuple[float, float]) -> str:
-    low, high = (f"{100 * end:+.0f}".replace("-", "−") for end in ends)
-    return f"{low} to {high} %"
-
-
-MODEL_ERROR = (
-    f"Slices have an error of their own: {_percent(FORCE_ERROR)} in force at equal indentation, "
-    f"{_percent(AREA_ERROR_AT_FORCE)} in gross area at equal force."
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,8 +41,9 @@ class WholeFinger:
     """By the names of :data:`fingerpad.io.states.STATES`; those that are known."""
     source: str
     """Where the traces of the cross-section come from, for a reader."""
-    error: dict[str, dict[str, float]] = field(default_factory=dict)
-    """Estimated discretisation errors of the cross-section by state and quantity, carried over in proportion."""
+    carried: dict[str, dict[str, dict[str, float]]] = field(default_factory=dict)
+    """Relative errors by state, part and quantity that no trace gives: of the cross-section's mesh, and of a run's
+    estimate (:mod:`fingerpad.slices.errors`)."""
     traces: Mapping[str, Trace] = field(default_factory=dict)
     """Of the cross-section by state, from which :meth:`under` reads other forces; none of an earlier version's file."""
     shape: Slices = Slices()
@@ -70,6 +53,18 @@ class WholeFinger:
     def f_ext(self) -> float:
         """External force (N)."""
         return next(iter(self.states.values())).totals["f_ext"]
+
+    @cached_property
+    def error(self) -> dict[str, dict[str, float]]:
+        """Estimated errors by state and quantity: those carried over, and that of the interpolation of the traces."""
+        finger, found = profile(self.shape), {}
+        for name, total in self.states.items():
+            between = {}
+            if name in self.traces:
+                between = errors.interpolation(finger, self.traces[name], total, self.shape.count)
+            shares = errors.add(*self.carried.get(name, {}).values(), between)
+            found[name] = {key: abs(share * total.values[key]) for key, share in shares.items()}
+        return found
 
     def under(self, force: float | str) -> "WholeFinger":
         """Return the same finger under another force, from the same traces: at once, without a run.
@@ -93,25 +88,24 @@ class WholeFinger:
                     f"and its trace in {WORDS[name]} begins at {first:.3g} N/m; "
                     "give a larger force, or run this one"
                 )
-        found = replace(self, states=states)
-        scaled = {
-            name: {key: error * found.values(name)[key] / self.values(name)[key] for key, error in each.items()}
-            for name, each in self.error.items()
-        }
-        return replace(found, error=scaled)
+        carried = {name: dict(each) for name, each in self.carried.items()}
+        for name, each in carried.items():
+            if errors.ESTIMATED in each:
+                each[errors.ESTIMATED] = errors.lighter(each[errors.ESTIMATED], states[name], self.f_ext / value)
+        return replace(self, states=states, carried=carried)
 
     def values(self, name: str) -> dict[str, float]:
         """Return the quantities of a state: N, m², m, and the apparent friction coefficient."""
-        total = self.states[name]
-        more = {"mu_app": total.mu_app, "indentation": total.delta, "effective_width": self.f_ext / total.centre}
-        return total.totals | more
+        return self.states[name].values
 
     def to_dict(self) -> dict[str, Any]:
         """Return all values, ready for JSON; SI units."""
-        found: dict[str, Any] = {"f_ext": self.f_ext, "source": self.source, "model_error": MODEL_ERROR, "states": {}}
+        about = {"source": self.source, "model_error": " ".join(solid.remarks([self.f_ext]))}
+        found: dict[str, Any] = {"f_ext": self.f_ext, **about, "states": {}}
         for name, total in self.states.items():
             arrays = {key: values.tolist() for key, values in total.slices().items()}
-            found["states"][name] = self.values(name) | {"error": self.error.get(name, {}), "slices": arrays}
+            known = {"error": self.error[name], "carried": self.carried.get(name, {})}
+            found["states"][name] = self.values(name) | known | {"slices": arrays}
             if name in self.traces:
                 made = self.traces[name]
                 points = {key: values.tolist() for key, values in made.columns.items()}
@@ -136,11 +130,14 @@ class WholeFinger:
             if "trace" in state:
                 points = {key: np.array(values) for key, values in state["trace"].items()}
                 traces[name] = Trace(points.pop("indentation"), points)
-        known = {name: state["error"] for name, state in data["states"].items()}
-        return cls(states, data["source"], known, traces, shape)
+        carried = {}
+        for name, state in data["states"].items():  # files of earlier versions have absolute errors alone
+            old = {key: value / states[name].values[key] for key, value in state["error"].items() if value}
+            carried[name] = state.get("carried", {errors.MESH: old})
+        return cls(states, data["source"], carried, traces, shape)
 
     def rows(self) -> Iterator[list[str]]:
-        """Yield the quantities with unit, and their values in each state with the discretisation error."""
+        """Yield the quantities with unit, and their values in each state with the error."""
         for key, quantity in QUANTITIES.items():
             known = [name for name in self.states if key not in _FRICTION or name == "full_slip"]
             cells = [self.shown(name, key) if name in known else "–" for name in self.states]
@@ -157,8 +154,10 @@ class WholeFinger:
 
     def remarks(self) -> list[str]:
         """Return what a reader of the numbers must be told."""
-        known = ["±: estimated discretisation error of the cross-section."] if any(self.error.values()) else []
-        return [*known, MODEL_ERROR, f"Slices: {self.source}."]
+        parts = dict.fromkeys(part for each in self.carried.values() for part, known in each.items() if known)
+        known = [f"±: estimated error, by {', '.join([*parts, *[errors.POINTS] * bool(self.traces)])}."]
+        known *= any(map(any, (each.values() for each in self.error.values())))
+        return [*known, *solid.remarks([self.f_ext]), f"Slices: {self.source}."]
 
     def __str__(self) -> str:
         """Return the text *Whole finger* at the end of a run: the states side by side."""
@@ -171,24 +170,6 @@ class WholeFinger:
             cells = (cell.rjust(width) for cell, width in zip(rest, widths[1:], strict=True))
             lines.append("   ".join(["  " + first.ljust(widths[0]), *cells]).rstrip())
         return "\n".join([*lines, *(f"  {remark}" for remark in self.remarks())])
-
-
-def errors(total: Total, state: ContactState | None) -> dict[str, float]:
-    """Return the discretisation errors of a sum: the relative ones of the cross-section, times the values.
-
-    Args:
-        total: the sum.
-        state: of the cross-section, with estimated errors; None where there is none.
-    """
-    if state is None:
-        return {}
-    values = total.totals | {"mu_app": total.mu_app, "indentation": total.delta}
-    found = {}
-    for name, of in _OF_SECTION.items():
-        value, error = getattr(state, of), getattr(state.error, of)
-        if value and not math.isnan(error):
-            found[name] = abs(error / value * values[name])
-    return found
 
 
 def in_order(states: Mapping[str, Total]) -> dict[str, Total]:

@@ -56,6 +56,12 @@ class Total:
         return self.totals["f_t"] / self.totals["f_ext"]
 
     @property
+    def values(self) -> dict[str, float]:
+        """The sums with what follows from them: N, m², m, and the apparent friction coefficient."""
+        width = self.totals["f_ext"] / self.centre
+        return self.totals | {"mu_app": self.mu_app, "indentation": self.delta, "effective_width": width}
+
+    @property
     def pressure(self) -> Array:
         """Mean contact pressure of each slice over its contact length (Pa), shape (slices,)."""
         borne = self.columns["f_ext"] + self.columns["f_electrostatic"]

@@ -12,7 +12,10 @@ from variational.state import ContactState
 Array = NDArray[np.float64]
 NAMES = ("f_ext", "f_t", "f_electrostatic", "contact_length", "gross_width")
 """Columns: N/m the forces, m the lengths."""
+LEAST = 3
+"""Points of a trace of states: without one of them there is still a power law, and so an error of the interpolation."""
 _NOTHING = 1e-12  # of the largest external force: values below it are roundoff
+_APART = 1e-4  # relative distance of two points: of closer ones, slopes are made by the tolerances of solvers (1e-6)
 
 
 class TraceError(ValueError):
@@ -53,6 +56,19 @@ class Trace:
         """The last indentation (m) and its external force (N/m)."""
         return float(self.depth[-1]), float(self.columns["f_ext"][-1])
 
+    def halves(self) -> tuple["Trace", "Trace"]:
+        """Return the trace on every second point, the even and the odd ones, each with both ends."""
+        every, last = np.arange(len(self.depth)), len(self.depth) - 1
+        ends = (every == 0) | (every == last)
+        return self._on(ends | (every % 2 == 0)), self._on(ends | (every % 2 == 1))
+
+    def later(self) -> "Trace":
+        """Return the trace from twice its first indentation, or on its last two points."""
+        return self._on((self.depth >= 2 * self.depth[0]) | (np.arange(len(self.depth)) >= len(self.depth) - 2))
+
+    def _on(self, kept: NDArray[np.bool_]) -> "Trace":
+        return Trace(self.depth[kept], {name: values[kept] for name, values in self.columns.items()})
+
     def at(self, depth: Array) -> dict[str, Array]:
         """Return the columns at indentations (m); nothing where a slice does not touch, at 0 and less.
 
@@ -67,9 +83,10 @@ class Trace:
             )
         borne = self.columns["f_ext"] + self.columns["f_electrostatic"]
         slopes = {name: self._slope(self.columns[name]) for name in NAMES}
-        # No shorter contact than one in which the mean pressure falls with the forces.
+        # No shorter contact than one in which the mean pressure falls with the forces, and no gross one within it.
         forces = [slopes[name] for name in ("f_ext", "f_electrostatic") if self.columns[name].any()]
         slopes["contact_length"] = min(slopes["contact_length"], *forces)
+        slopes["gross_width"] = min(slopes["gross_width"], slopes["contact_length"])
         found = {name: self._power(self.columns[name], depth, slopes[name]) for name in NAMES if name != "f_t"}
         grip = self._power(self.columns["f_t"] / borne, depth, 0.0)
         return found | {"f_t": grip * (found["f_ext"] + found["f_electrostatic"])}
@@ -103,19 +120,23 @@ def trace(states: Iterable[ContactState], wavelength: float) -> Trace:
 
     Args:
         states: at growing forces, all of one kind: uncharged, charged, or at full slip. States without contact and
-            those that go back, as behind a jump, are left out.
+            those that go back, as behind a jump, are left out; so are repetitions of one state up to the tolerances of
+            solvers, of which full slip under a constant force has several.
         wavelength: of a ridge (m).
 
     Raises:
-        TraceError: less than two states are left.
+        TraceError: less than :data:`LEAST` states are left.
     """
     kept: list[ContactState] = []
     for state in sorted(states, key=lambda state: state.f_ext):
-        before = kept[-1] if kept else None
-        deeper = state.bone_height < 0 and (before is None or -state.bone_height > -before.bone_height)
-        more = state.f_ext > (0.0 if before is None else before.f_ext)
+        depth, force = (-kept[-1].bone_height, kept[-1].f_ext) if kept else (0.0, 0.0)
+        deeper, more = -state.bone_height > depth * (1 + _APART), state.f_ext > force * (1 + _APART)
         if state.contact_length > 0 and deeper and more:
             kept.append(state)
+    if len(kept) < LEAST:
+        raise TraceError(
+            f"{len(kept)} states with growing indentation and force are no trace, which must have {LEAST} at least"
+        )
     return Trace(np.array([-state.bone_height for state in kept]), columns(kept, wavelength))
 
 

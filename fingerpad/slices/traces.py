@@ -19,7 +19,8 @@ from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.answer import TooLight
 from fingerpad.scene import Scene, SceneError
-from fingerpad.slices.finger import WholeFinger, errors, in_order
+from fingerpad.slices import errors
+from fingerpad.slices.finger import WholeFinger, in_order
 from fingerpad.slices.profile import Profile, profile
 from fingerpad.slices.total import BeyondTrace, at_force
 from fingerpad.slices.trace import Trace, TraceError, trace
@@ -75,7 +76,7 @@ def whole(scene: Scene, force: float, model: str, solve: "Solve") -> Result:
         return stopped.result
     totals = {name: at_force(finger, each.trace, force, scene.slices.count) for name, each in found.items()}
     ends = {name: each.result.named.get("charged" if name == "uncharged" else name) for name, each in found.items()}
-    known = {name: errors(totals[name], ends[name]) for name in totals}
+    known = {name: {errors.MESH: errors.discretisation(ends[name])} for name in totals}
     source = f"{_WORDS.get(model, 'traces of charged cylinders, indentations without voltage')} to "
     source += ", ".join(f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
     last = list(found.values())[-1].result

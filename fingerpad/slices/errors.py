@@ -1,0 +1,116 @@
+"""Relative errors of a sum of slices: of the cross-section's mesh, of the trace's points, and of a run's estimate."""
+
+import math
+
+from fingerpad.slices.profile import Profile
+from fingerpad.slices.total import TOTALS, Total, at_indentation
+from fingerpad.slices.trace import LEAST, Trace
+from variational.state import ContactState
+
+_OF_SECTION = {  # whose relative error each has; the external force is prescribed
+    "mu_app": "mu_app",
+    "f_t": "f_t",
+    "f_electrostatic": "f_electrostatic",
+    "contact_area": "contact_length",
+    "indentation": "bone_height",
+}
+_NEAR = 1e-3  # of the largest indentation: its change for the slope over the force
+MESH, ESTIMATED, POINTS = "mesh of the cross-section", "estimate beside the centre", "points of the traces"
+"""Parts of an error, as they are printed."""
+ESTIMATE = {
+    "charged": {"f_electrostatic": 0.051, "contact_area": 0.026, "gross_area": 0.086, "indentation": 0.006},
+    "full_slip": {"f_electrostatic": 0.034, "contact_area": 0.034, "gross_area": 0.075, "indentation": 0.014},
+}
+"""Largest errors of what a run estimates (:mod:`fingerpad.slices.estimate`) beside traces of the full model.
+
+Of the default finger at 25 to 120 N/m and 0 to 200 V; ``benchmarks/newtons.py`` keeps them in ``docs/newtons.json``.
+Those of the indentation are twice as large as there, because they grow the most under smaller forces (:func:`lighter`).
+"""
+
+
+def discretisation(state: ContactState | None) -> dict[str, float]:
+    """Return the relative discretisation errors that a sum takes over from its cross-section.
+
+    Args:
+        state: of the cross-section, with estimated errors; None where there is none.
+    """
+    found = dict[str, float]()
+    if state is None:
+        return found
+    for name, of in _OF_SECTION.items():
+        value, error = getattr(state, of), getattr(state.error, of)
+        if value and not math.isnan(error):
+            found[name] = abs(error / value)
+    return found
+
+
+def estimate(name: str, total: Total) -> dict[str, float]:
+    """Return the relative errors of a run's estimate in a named state; none of its own press without voltage."""
+    return _with_friction(ESTIMATE[name], total) if name in ESTIMATE else {}
+
+
+def lighter(known: dict[str, float], total: Total, ratio: float) -> dict[str, float]:
+    """Return the errors of an estimate under another force: they grow away from the run's own state at the centre.
+
+    With the root of the ratio of forces: with the error of the interpolation, that covers all but 1 in 100 of the
+    errors of the kept runs at 0.2 to 0.6 of their forces (``tests/test_slices_errors.py`` has some).
+
+    Args:
+        known: the errors of the estimate.
+        total: the sum under the other force.
+        ratio: force of the estimate over that of the sum.
+    """
+    return _with_friction({key: error * math.sqrt(ratio) for key, error in known.items()}, total)
+
+
+def _with_friction(known: dict[str, float], total: Total) -> dict[str, float]:
+    """Return errors with that of friction, which follows the contact force: the part of the attraction in that."""
+    borne = total.totals["f_ext"] + total.totals["f_electrostatic"]
+    friction = known["f_electrostatic"] * total.totals["f_electrostatic"] / borne
+    return known | {"f_t": friction, "mu_app": friction}
+
+
+def interpolation(finger: Profile, trace: Trace, total: Total, count: int) -> dict[str, float]:
+    r"""Return the relative errors of sums by the interpolation of a trace between its points, and below the first.
+
+    The slices are compared with those of coarser traces. Changes Δq of a quantity and Δf of the external force are
+    taken to equal force, by the slope dQ/dF of the whole finger, and add up without regard to their signs:
+
+    .. math:: e = \frac{1}{Q} \sum_z t(z) \left| \Delta q(z) - \frac{dQ}{dF} \Delta f(z) \right|
+
+    with the thickness t of the slices. Ridges come and go one by one, so that what a slice bears jumps between points,
+    and the interpolation is of the first order in their distance. On half of the points its error is 2 e, and the
+    change 2 e − e is the error itself: the larger one of the even and the odd points. The slices below the first point
+    are a part of the finger that grows with the first indentation. A trace from twice this indentation has at least
+    twice their error, and the change is added.
+
+    Args:
+        finger: along its axis.
+        trace: of a slice on the scale 1.
+        total: the sum over the trace.
+        count: slices in each stretch of contact.
+
+    Returns:
+        Of friction, attraction, areas and indentation; empty for a trace of two points, of which none can be left out.
+    """
+    if len(trace.depth) < LEAST:
+        return {}
+    values = total.values
+    less = at_indentation(finger, trace, total.delta - _NEAR * float(total.depth.max()), count).values
+    slope = {name: (values[name] - less[name]) / (values["f_ext"] - less["f_ext"]) for name in values}
+
+    def change(coarse: Trace) -> dict[str, float]:
+        other = at_indentation(finger, coarse, total.delta, count)
+        moved = {name: other.columns[column] - total.columns[column] for name, column in TOTALS.items()}
+        moved["indentation"] = 0 * total.z
+        sums = {name: total.thickness @ abs(each - slope[name] * moved["f_ext"]) for name, each in moved.items()}
+        return {name: float(each / values[name]) if values[name] else 0.0 for name, each in sums.items()}
+
+    one, other, below = (change(coarse) for coarse in (*trace.halves(), trace.later()))
+    found = {name: max(one[name], other[name]) + below[name] for name in one if name != "f_ext"}
+    return found | {"mu_app": found["f_t"]}
+
+
+def add(*parts: dict[str, float]) -> dict[str, float]:
+    """Return the sums of errors by name."""
+    return {name: sum(part.get(name, 0.0) for part in parts) for part in parts for name in part}

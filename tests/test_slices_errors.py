@@ -1,0 +1,223 @@
+"""Errors of a whole finger: of the mesh, of the points of a trace, of a run's estimate, and of slices themselves."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fingerpad as fp
+from benchmarks import newtons
+from fingerpad.io.dataset import finger
+from fingerpad.io.states import STATES
+from fingerpad.report.run_page import page
+from fingerpad.runs.sweep_columns import row
+from fingerpad.scene.slices import Slices
+from fingerpad.slices import errors, solid
+from fingerpad.slices.estimate import estimate
+from fingerpad.slices.finger import WholeFinger
+from fingerpad.slices.profile import cylinder, profile
+from fingerpad.slices.total import at_force
+from fingerpad.slices.trace import NAMES, Trace, TraceError, trace
+from tests.test_slices import foundation, kept, kept_state, whole
+from variational.state import Errors
+
+KEPT = Path(__file__).parents[1] / "docs"
+FINGER = profile(Slices())
+
+
+# -- below the first point, and points that are one ------------------------------------------------------
+def begun(**columns) -> Trace:
+    """Return a trace from 0.1 mm whose columns grow as powers of the depth between its first two points."""
+    depth = 1e-4 * np.array([1.0, 2.0, 4.0])
+    return Trace(depth, {name: 1e-4 * (depth / depth[0]) ** columns.get(name, 1.0) for name in NAMES})
+
+
+@pytest.mark.parametrize("attraction", [0.5, 2.0])
+def test_pressure_does_not_grow_without_bound_below_the_first_point(attraction):
+    """A contact that shortens faster than the forces fall would bear any pressure: it falls as they do."""
+    of = begun(contact_length=3.0, f_ext=1.5, f_electrostatic=attraction)
+    first, below = (of.at(np.array([depth])) for depth in (1e-4, 1e-6))
+    for force in ("f_ext", "f_electrostatic"):
+        pressure = [float(each[force][0] / each["contact_length"][0]) for each in (first, below)]
+        assert pressure[1] <= pressure[0] * (1 + 1e-9)
+    fall = min(1.5, attraction)
+    assert below["contact_length"][0] == pytest.approx(first["contact_length"][0] * 100**-fall, rel=1e-9)
+
+
+def test_length_without_attraction_falls_as_the_external_force():
+    of = begun(contact_length=3.0, f_ext=1.5)
+    of.columns["f_electrostatic"][:] = 0.0
+    assert of.at(np.array([1e-6]))["contact_length"][0] == pytest.approx(1e-4 * 100**-1.5, rel=1e-9)
+
+
+def test_gross_width_is_no_less_than_the_ridges_below_the_first_point():
+    below = begun(gross_width=3.0, contact_length=1.0).at(np.geomspace(1e-7, 1e-4, 7))
+    assert np.all(below["gross_width"] >= below["contact_length"] * (1 - 1e-9))
+
+
+def test_repeated_states_are_one_point():
+    """Full slip under a constant force repeats itself up to the solvers' tolerances: no slope is made from those."""
+    states = [
+        kept_state(f_ext=force, bone_height=-depth, contact_length=depth, ridges_in_contact=1)
+        for force, depth in ((1.0, 1e-4), (1 + 1e-15, 1e-4 + 1e-11), (2.0, 2e-4), (4.0, 4e-4), (4 + 1e-14, 4.00001e-4))
+    ]
+    of = trace(states, 5e-4)
+    assert of.columns["f_ext"] == pytest.approx([1.0, 2.0, 4.0])
+    assert of.at(np.array([1e-5]))["f_ext"][0] == pytest.approx(0.1, rel=1e-9), "as the force grows between 1 and 2"
+    with pytest.raises(TraceError, match="2 states with growing indentation and force are no trace"):
+        trace(states[:3], 5e-4)
+
+
+# -- discretisation, interpolation, estimate -------------------------------------------------------------
+def test_discretisation_is_that_of_the_section():
+    state = kept_state(f_t=40.0, error=Errors(f_t=0.4), ridges_in_contact=1, contact_length=1e-3)
+    assert errors.discretisation(state) == {"f_t": pytest.approx(0.01)}
+    assert errors.discretisation(None) == {}
+
+
+def test_power_law_has_no_error_of_interpolation():
+    """Hertz's law and others are interpolated to roundoff, below the first point as well."""
+    of = foundation()
+    found = errors.interpolation(FINGER, of, at_force(FINGER, of, 0.5, 24), 24)
+    assert set(found) > {"f_t", "gross_area", "indentation"} and max(found.values()) < 1e-6
+
+
+@pytest.mark.parametrize("points", [10, 30])
+def test_interpolation_covers_a_width_that_grows_by_ridges(points):
+    """A gross width that jumps by a ridge at a time, on few points beside many; on average over forces."""
+
+    def stepped(count: int) -> Trace:
+        smooth = foundation(count)
+        width = 4e-4 * (1 + np.floor(smooth.columns["gross_width"] / 4e-4))
+        return Trace(smooth.depth, smooth.columns | {"gross_width": width})
+
+    coarse, fine = stepped(points), stepped(2000)
+    change, known = [], []
+    for force in np.geomspace(0.05, 1.5, 6):
+        one, other = (at_force(FINGER, each, force, 24) for each in (coarse, fine))
+        change.append(abs(one.values["gross_area"] / other.values["gross_area"] - 1))
+        known.append(errors.interpolation(FINGER, coarse, one, 24)["gross_area"])
+    assert np.mean(change) < np.mean(known) < 10 * np.mean(change)
+
+
+def test_error_of_a_smaller_force_covers_the_trace_of_more_points():
+    """Kept runs at eight forces, and every second of them with the last: forces below and between the points."""
+    of = kept(200.0)
+    half = of.halves()[0]
+    of_half = WholeFinger({"full_slip": at_force(FINGER, half, 0.5, 48)}, "", {}, {"full_slip": half})
+    for force in (0.05, 0.1, 0.3, 0.8):
+        less, full = of_half.under(force), at_force(FINGER, of, force, 48)
+        for key in ("f_t", "contact_area", "gross_area"):
+            assert abs(less.values("full_slip")[key] - full.values[key]) <= less.error["full_slip"][key], (force, key)
+
+
+def test_errors_add_up():
+    """What is carried over stays in proportion to the values, and each force has its own error between points."""
+    carried = 0.02
+    for each in (whole(), whole().under(0.2)):
+        value = each.values("full_slip")["f_t"]
+        between = errors.interpolation(FINGER, kept(200.0), each.states["full_slip"], 8)["f_t"]
+        assert between > 1e-4
+        assert each.error["full_slip"]["f_t"] == pytest.approx(value * (carried + between), rel=1e-9)
+
+
+def test_coarser_traces_leave_points_out():
+    """Each half has both ends, and the later one has two points at least: of three points as well."""
+    depth = np.array([1.0, 1.5, 2.5, 3.0, 4.0])
+    of = Trace(depth, {name: depth for name in NAMES})
+    assert [half.depth.tolist() for half in of.halves()] == [[1.0, 2.5, 4.0], [1.0, 1.5, 3.0, 4.0]]
+    assert of.later().depth.tolist() == [2.5, 3.0, 4.0]
+    three = Trace(depth[:3], {name: depth[:3] for name in NAMES})
+    assert three.halves()[0].depth.tolist() == [1.0, 2.5] and three.later().depth.tolist() == [1.5, 2.5]
+    two = Trace(depth[:2], {name: depth[:2] for name in NAMES})
+    assert errors.interpolation(FINGER, two, at_force(cylinder(1.0), two, 1.2, 4), 4) == {}, "not known"
+
+
+def test_friction_is_exact_without_attraction():
+    """Coulomb's law over the force at hand, however few points the trace has; its areas are not."""
+    found = errors.interpolation(FINGER, kept(0.0), at_force(FINGER, kept(0.0), 0.3, 48), 48)
+    assert found["f_t"] < 1e-6 < 1e-3 < found["gross_area"] and found["indentation"] > 1e-4
+
+
+def test_file_of_an_earlier_version_has_its_discretisation():
+    """Absolute errors without their parts: those of the mesh alone."""
+    kept_file = json.loads(json.dumps(whole().to_dict()))
+    state = kept_file["states"]["full_slip"]
+    state["error"], more = {"f_t": 0.01 * state["f_t"]}, state.pop("carried")
+    again = WholeFinger.from_dict(kept_file, Slices(count=8))
+    assert more and again.carried == {"full_slip": {errors.MESH: {"f_t": pytest.approx(0.01)}}}
+
+
+def test_estimate_of_a_run_covers_the_traces_of_the_full_model():
+    """Each kept estimate, with the largest errors of all."""
+    found = json.loads((KEPT / "newtons.json").read_text())["numbers"]["estimates"]
+    assert len(found) > 40
+    for each in found:
+        known = errors.ESTIMATE[each["state"]]
+        for key in ("f_electrostatic", "contact_area", "gross_area", "indentation"):
+            assert abs(each[key]) <= known[key], (each, key)
+        borne = each["f_ext_full"] + each["f_electrostatic_full"]
+        friction = known["f_electrostatic"] * each["f_electrostatic_full"] / borne
+        assert each["state"] == "charged" or abs(each["f_t"]) <= friction + 1e-6, each
+
+
+@pytest.mark.parametrize("share", [0.5, 0.2])
+def test_estimate_under_a_smaller_force_covers_the_traces_of_the_full_model(share):
+    """Read twice from a kept run at 100 N/m and 200 V, as in one go; errors grow away from its own force."""
+    scenes = json.loads((KEPT / "models.json").read_text())["numbers"]["scenes"]
+    press = newtons.states(scenes, "full", 0.0, "charged")[:6]
+    named = {state: newtons.states(scenes, "full", 200.0, state)[5] for state in ("charged", "full_slip")}
+    of = estimate(fp.Scene(f_ext=100.0), press, {"uncharged": press[-1]} | named)
+    less = of.under(0.8 * of.f_ext).under(share * of.f_ext)
+    assert less.error["full_slip"]["f_t"] == pytest.approx(of.under(less.f_ext).error["full_slip"]["f_t"], rel=1e-6)
+    for state in named:
+        values, error = less.values(state), less.error[state]
+        full = at_force(FINGER, newtons.kept(scenes, "full", 200.0, state), less.f_ext, 48).values
+        for key in ("f_electrostatic", "contact_area", "gross_area", "indentation"):
+            assert abs(values[key] - full[key]) <= error[key], (state, key)
+            assert error[key] / values[key] > of.error[state][key] / of.values(state)[key]
+
+
+def test_everything_that_is_printed_and_kept_has_the_whole_error():
+    """Text, table of a sweep, dataset, summary and report: of the gross area it is the interpolation's alone."""
+    result = replace(fp.run(model="cylinders"), finger=whole())
+    error, shown = result.finger.error["full_slip"]["gross_area"], result.finger.shown("full_slip", "gross_area")
+    assert error > 1e-7 and "±" in shown and shown in str(result) and shown in page(result)
+    words = "±: estimated error, by mesh of the cross-section, points of the traces."
+    assert words in str(result) and words in page(result)
+    assert row(result)["slip_finger_gross_area_error"] == error
+    assert result.finger.to_dict()["states"]["full_slip"]["error"]["gross_area"] == error
+    assert float(finger(result.finger)["finger_gross_area_error"][1][STATES.index("full_slip")]) == error
+
+
+# -- slices themselves -----------------------------------------------------------------------------------
+SOLID = json.loads((KEPT / "solid.json").read_text())["numbers"]
+
+
+def test_error_of_slices_covers_the_kept_finger_in_three_dimensions():
+    """At each of its forces, and between: no narrower than both neighbours."""
+    forces = [each["f_ext"] for each in SOLID]
+    found = [each["area_slices_at_force"] / each["area"] - 1 for each in SOLID]
+    assert len(SOLID) > 4
+    for k, (force, error) in enumerate(zip(forces, found, strict=True)):
+        near = [force, *([np.sqrt(force * forces[k + 1])] if k + 1 < len(SOLID) else [])]
+        near += [np.sqrt(force * forces[k - 1])] if k else []
+        for at in near:
+            low, high = solid.known(at)["gross_area"]
+            assert low <= error <= high
+
+
+def test_error_of_slices_at_the_force_at_hand():
+    """Friction from 0.1 to 1 N; gross area at other forces, of the smooth finger alone; nothing beyond all."""
+    assert solid.known(0.5)["f_t"] == solid.known(0.1)["f_t"] == solid.known(1.0)["f_t"] == (-0.007, 0.002)
+    assert solid.known(0.5)["gross_area"] == (0.001, 0.07)
+    assert solid.known(0.05)["gross_area"][1] > 0.13
+    assert set(solid.known(0.05)) == {"gross_area"} == set(solid.known(1.2))
+    assert solid.known(0.01) == solid.known(2.0) == {}
+    low, high, none = solid.remarks([0.6, 0.05, 2.0, 0.5])
+    assert low.startswith("Error of the sum of slices at 0.6, 0.5 N, beside a finger of 20 × 14 × 28 mm in three dim")
+    assert "friction −0.7 to +0.2 %" in low and "not known" not in low
+    assert "gross area +13 to +30.1 %; friction, attraction, ridge area, indentation not known." in high
+    assert none.endswith(": friction, attraction, gross area, ridge area, indentation not known.")
