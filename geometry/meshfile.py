@@ -29,6 +29,7 @@ from scipy.spatial import cKDTree
 from geometry import tags
 from geometry.profiles import GeometryError
 from geometry.shape import shape
+from variational import files
 
 FACETS = {
     "bone rim": tags.BONE_RIM,
@@ -71,7 +72,7 @@ def file(path: str | Path, sha256: str = "") -> float:
 def _open(path: Path, sha256: str) -> None:
     """Read a file into the current gmsh session."""
     try:
-        content = path.read_bytes()
+        content = files.read(path)
     except OSError as error:
         raise GeometryError(f"{path}: the mesh file cannot be read: {error.strerror}") from error
     if sha256 and hashlib.sha256(content).hexdigest() != sha256:
@@ -80,7 +81,8 @@ def _open(path: Path, sha256: str) -> None:
         # gmsh tells kinds of files by their ends, and takes an unknown one for a script of its own, which it runs.
         raise GeometryError(f"{path} is no mesh of gmsh; it must be a .msh file of version 2.2 or 4.1")
     try:
-        gmsh.merge(str(path))
+        with files.alone(content, "mesh.msh") as copy:  # gmsh would run a script called NAME.msh.opt beside NAME.msh
+            gmsh.merge(str(copy))
     except Exception as error:  # gmsh's own are of no other kind
         raise GeometryError(f"{path}: gmsh cannot read the mesh: {error}") from error
 
