@@ -1,10 +1,11 @@
-"""Scenes and command lines as nobody should write them, each run-ready or refused in one sentence.
+"""Scenes, command lines and files as nobody should write them, each run-ready or refused in one sentence.
 
-environment/run python3 -m tests.fuzz [--count 10000] [--seed 1] [--first 0]
+environment/run python3 -m tests.fuzz [--count 10000] [--seed 1] [--first 0] [--files]
 
 A mutant is made from a scene that comes along, or from the defaults, by a few changes at random: of values, keys, bytes
 and arguments. It is fixed by the seed and its number alone, so that ``--first N --count 1`` repeats one of them. What
-is accepted has passed everything that a run does before it meshes; nothing is computed.
+is accepted has passed everything that a run does before it meshes; nothing is computed. With ``--files`` the mutants
+are files that a scene or a command names: maps, meshes, voltages, measurements (:mod:`tests.fuzz_files`).
 """
 
 import argparse
@@ -33,6 +34,7 @@ from fingerpad.model import options
 from fingerpad.model.memory import estimate
 from fingerpad.reduced.cylinders import tip_radius
 from fingerpad.scene import Scene, SceneError
+from tests import fuzz_files
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError
 
 SCENES = sorted((Path(__file__).parent.parent / "demos/scenes").glob("*.toml"))
@@ -241,7 +243,7 @@ def fault(case: Mutant, folder: Path) -> tuple[str, str]:
                 return _unready(scene), "ready"
             except SceneError as error:
                 code = refuse(str(error))
-        return _bad_refusal(code, err.getvalue()), err.getvalue()
+        return bad_refusal(code, err.getvalue()), err.getvalue()
     except SystemExit as stop:
         helped = stop.code == 0 and out.getvalue().startswith("usage: ")
         return ("", "help") if helped else (f"exit code {stop.code}", "")
@@ -252,7 +254,7 @@ def fault(case: Mutant, folder: Path) -> tuple[str, str]:
             print(f"mutant {case.number} took {time.perf_counter() - start:.0f} s", file=sys.stderr)
 
 
-def _bad_refusal(code: Any, text: str) -> str:
+def bad_refusal(code: Any, text: str) -> str:
     """Return what is wrong with a refusal, empty if nothing."""
     if code != 2:
         return f"exit code {code}"
@@ -294,12 +296,16 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name, default in (("--count", 10000), ("--seed", 1), ("--first", 0)):
         parser.add_argument(name, type=int, default=default)
+    parser.add_argument("--files", action="store_true")
     args = parser.parse_args(argv)
     kinds, wrong, start = Counter[str](), 0, time.monotonic()
     with tempfile.TemporaryDirectory() as name:
         prepare(Path(name))
         for k in range(args.first, args.first + args.count):
-            what, how = fault(mutant(args.seed, k), Path(name))
+            if args.files:
+                what, how = fuzz_files.fault(fuzz_files.mutant(args.seed, k), Path(name), bad_refusal)
+            else:
+                what, how = fault(mutant(args.seed, k), Path(name))
             kinds["ready" if how == "ready" else "refused"] += 1
             if what:
                 wrong += 1

@@ -5,6 +5,7 @@ Zygo, Bruker and others: ``pip install fingerpad[topography]``.
 """
 
 import io
+from contextlib import redirect_stderr
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -183,8 +184,8 @@ def _array(path: Path, missing: str | None) -> _Read:
     content = io.BytesIO(files.read(path))
     try:
         found = np.lib.format.read_array(content, allow_pickle=False)
-    except (ValueError, TypeError, EOFError, MemoryError) as error:
-        raise ValueError(f"{path} is no matrix of numbers: {error}") from None
+    except Exception as error:  # a header that is no Python, an array that is larger than the memory
+        raise ValueError(f"{path} is no matrix of numbers: {_words(error)}") from error
     if found.dtype.kind not in "iuf":
         raise ValueError(f"{path} is no matrix of numbers: its values are of type {found.dtype}, and heights are real")
     heights = found.astype(float)
@@ -219,7 +220,7 @@ def _instrument(path: Path) -> _Read:
         ) from None
     form = "a map"
     try:
-        with files.alone(content, f"map{path.suffix}") as copy:
+        with files.alone(content, f"map{path.suffix}") as copy, redirect_stderr(io.StringIO()):  # what they warn of
             reader = open_topography(str(copy))
             form = reader.name()
             if not reader.channels or reader.default_channel.dim != 2:
@@ -228,11 +229,15 @@ def _instrument(path: Path) -> _Read:
     except CannotDetectFileFormat:
         raise ValueError(f"{path} is no height map of a format that SurfaceTopography reads") from None
     except Exception as error:  # of a damaged file, or one of another kind, its readers raise anything
-        words = str(error) if isinstance(error, ReadFileError) else f"{type(error).__name__}: {error}"
-        words = "".join(filter(str.isprintable, words))[:120]
+        words = _words(error) if isinstance(error, ReadFileError) else f"{type(error).__name__}: {_words(error)}"
         raise ValueError(
             f"{path} cannot be read by SurfaceTopography as {form} ({words}); export the heights as text"
         ) from error
+
+
+def _words(error: Exception) -> str:
+    """Return what an error of a library has to say, on one line."""
+    return "".join(filter(str.isprintable, " ".join(str(error).split())))[:120]
 
 
 def _map(reader: Any) -> _Read:
