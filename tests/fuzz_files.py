@@ -33,8 +33,8 @@ from geometry.mesh import load
 from geometry.profiles import GeometryError
 from geometry.session import session
 
-LONGEST = 60.0  # s; most take some ms
-SIZE = (6, 8)
+SLOW = 60  # s, of a mutant that hangs; most take some ms
+SIZE = (32, 24)  # pixels of a map, which are squares
 _HEADERS = (  # of .npy, each before 400 bytes
     "{'descr': '<f8', 'fortran_order': False, 'shape': (1000000, 1000000), }",
     "{'descr': '<f8', 'fortran_order': False, 'shape': (-5, 10), }",
@@ -63,18 +63,19 @@ class Mutant:
 def whole() -> tuple[tuple[str, bytes], ...]:
     """Return files of every kind that is read, the ends of their names first; the same bytes each time."""
     x, y = np.meshgrid(*map(np.arange, SIZE), indexing="ij")
-    heights = np.sin(2.0 * x) + np.cos(3.0 * y)
-    plain = [(".npy", _npy(heights.astype(kind))) for kind in (float, complex, np.int16)]
+    walk = np.random.default_rng(1).normal(size=SIZE).cumsum(axis=0).cumsum(axis=1)
+    heights = walk / walk.std()
+    plain = [(".npy", _npy((9 * heights).astype(kind))) for kind in (float, complex, np.int16, ">f4")]
     plain += [(".npy", _npy(np.zeros(SIZE, dtype=kind))) for kind in _KINDS]
     plain += [(".npy", b"\x93NUMPY\x02\x00" + len(h).to_bytes(4, "little") + h.encode() + bytes(400)) for h in _HEADERS]
     matrix = "\n".join(";".join(f"{z:.6f}" for z in row) for row in heights)
     points = "\n".join(f"{a} {b} {z:.6f}" for a, b, z in zip(x.ravel(), y.ravel(), heights.ravel(), strict=True))
-    plain += [(".csv", matrix.encode()), (".xyz", points.encode())]
+    plain += [(".csv", matrix.encode()), (".xyz", points.encode())] * 3
     voltages = "time (s),voltage (V)\n" + "".join(f"{k / 10},{20 * k % 150}\n" for k in range(8))
     table = "# source: Surname 2020\n# people: 5\nforce (N/m), voltage (V), friction (1), spread (1)\n"
     table += "".join(f"{10 * k}, 100, 0.{k}, 0.0{k}\n" for k in range(1, 8))
     tables = [(".volts", voltages.encode()), (".measured", table.encode())]
-    return (*plain, *plain, *_instruments(heights), *_meshes(), *_meshes(), *tables, *tables, *tables)
+    return (*plain, *_instruments(heights), *_meshes() * 2, *tables * 4)
 
 
 def _npy(values: np.ndarray) -> bytes:
@@ -94,7 +95,7 @@ def _instruments(heights: np.ndarray) -> list[tuple[str, bytes]]:
     from PIL import Image
 
     found = [(f".{reader.format()}", start) for reader in readers for start in _magic(reader)]
-    topography = Topography(heights, (3.0, 4.0), unit="um")
+    topography = Topography(heights, (3.2, 2.4), unit="um")
     with tempfile.TemporaryDirectory() as name:
         for ending, write in (
             (".nc", topography.to_netcdf),
@@ -111,7 +112,7 @@ def _instruments(heights: np.ndarray) -> list[tuple[str, bytes]]:
         found += [(".h5", Path(f"{name}/map.h5").read_bytes())] * 4
     nx, ny = SIZE
     whole_numbers = (1000 * heights).astype("<i2").T.tobytes()
-    bcr = f"fileformat = bcrstm\nxpixels = {nx}\nypixels = {ny}\nxlength = 3000\nylength = 4000\n".encode()
+    bcr = f"fileformat = bcrstm\nxpixels = {nx}\nypixels = {ny}\nxlength = 3200\nylength = 2400\n".encode()
     sdf = f"aISO-1.0\nNumPoints = {nx}\nNumProfiles = {ny}\nXscale = 1e-6\nYscale = 1e-6\nZscale = 1e-6\nDataType = 7\n*\n"
     nms = bytearray(3468)
     nms[16:32] = np.array([0.0, 5.0]).tobytes()
@@ -205,7 +206,7 @@ def fault(case: Mutant, folder: Path, refusal: Callable[[int, str], str]) -> tup
     if code == 0:
         return "", "ready"
     if code < 0:
-        words = "more than a minute" if code == -signal.SIGALRM else f"signal {-code}"
+        words = f"more than {SLOW} s" if code == -signal.SIGALRM else f"signal {-code}"
         return f"{words}: {text[-300:]!r}", ""
     return (f"exit code {code}: {text[-500:]!r}" if code != 2 else refusal(code, text)), text
 
@@ -221,7 +222,7 @@ def _read(path: Path) -> int:
         elif path.suffix == ".measured":
             measured.read(path)
         else:
-            unit, size = ["--unit", "um"], ["--size", "6", "8"]
+            unit, size = ["--unit", "um"], ["--size", "32", "24"]
             given = {".npy": unit + size, ".csv": unit + size, ".xyz": unit}
             given |= {ending: unit + size for ending in (".mat", ".npz", ".h5", ".tif")}
             return command(["topography", str(path), *given.get(path.suffix, [])])
@@ -236,7 +237,7 @@ def _apart(call: Callable[[], int]) -> tuple[int, str]:
         child = os.fork()
         if child == 0:
             with contextlib.suppress(BaseException):
-                signal.alarm(int(LONGEST))
+                signal.alarm(SLOW)
                 os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
                 os.dup2(printed.fileno(), 2)
                 sys.stdout, sys.stderr = open(1, "w"), open(2, "w", buffering=1)  # noqa: SIM115 (they end with it)

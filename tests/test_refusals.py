@@ -207,7 +207,7 @@ def test_what_is_no_scene_file(tmp_path):
     for path in ("/dev/zero", tmp_path / "pipe"):
         assert refusal(path) == f"scene file {path} cannot be read: it is not an ordinary file"
     large = tmp_path / "large"
-    assert refusal(large) == f"scene file {large} has more than 1000000 bytes; a scene has a few hundred"
+    assert refusal(large) == f"scene file {large} cannot be read: it has 1000 MB, and at most 1 MB are read"
     assert refusal(tmp_path / ("n" * 300)).endswith(" cannot be read: File name too long")
 
 

@@ -35,7 +35,7 @@ def read(path: str | Path, most: float = 500e6) -> bytes:
     finally:
         os.close(descriptor)
     if size > most:
-        raise OSError(errno.EFBIG, f"it has {size / 1e6:.4g} MB, and at most {most / 1e6:g} MB are read", str(path))
+        raise OSError(errno.EFBIG, f"it has {size / 1e6:.9g} MB, and at most {most / 1e6:g} MB are read", str(path))
     return content
 
 

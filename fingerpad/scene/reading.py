@@ -2,9 +2,10 @@
 
 import hashlib
 import json
+import os
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +45,8 @@ def read(path: Path) -> dict[str, Any]:
         raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
     try:
         return _toml(raw.decode("utf-8-sig"))
+    except SceneError:
+        raise
     except UnicodeDecodeError:
         raise SceneError(f"{name} is not text in UTF-8; save it in UTF-8") from None
     except ValueError as error:  # tomllib's, or a whole number of more digits than Python reads
@@ -132,7 +135,7 @@ def _beside(value: Any, folder: Path, where: str = "") -> Any:
         names = [f"{where}[{k}]" if isinstance(inner, dict) else where for k, inner in enumerate(value)]
         return [_beside(inner, folder, name) for inner, name in zip(value, names, strict=True)]
     elif isinstance(value, str) and re.fullmatch(_FILES, where):
-        return str(folder / value)
+        return os.path.join(os.curdir, folder, value)  # ./=a.msh: a cell =a.msh would be a formula
     return value
 
 
@@ -140,13 +143,18 @@ def _toml(text: str) -> dict[str, Any]:
     """Return what a text in TOML holds.
 
     Raises:
+        SceneError: a dotted key has too many parts; tomllib's time is quadratic in them.
         ValueError: it is not TOML.
-        RecursionError: a key or a value is nested too deep; of long dotted keys tomllib's time is quadratic.
+        RecursionError: a value is nested too deep.
     """
-    bare = re.split(r"[^\w\s.-]|\n", _QUOTED.sub("_", text))  # each a key or a value, with all its dots
-    if any(part.count(".") > _MOST_DEPTH for part in bare):
-        raise RecursionError
+    for part in re.split(r"[^\w\s.-]|\n", _QUOTED.sub("_", text)):  # a key or a value, with all its dots
+        if part.count(".") > _MOST_DEPTH:
+            raise _too_deep([name.strip() for name in part.split(".")])
     return tomllib.loads(text)
+
+
+def _too_deep(place: Sequence[int | str]) -> SceneError:
+    return SceneError(f"{key_of(tuple(place[:3]))} has lists or tables that are nested too deep; {_DEPTH}")
 
 
 def plain(value: Any, place: tuple[int | str, ...] = ()) -> Any:
@@ -159,7 +167,7 @@ def plain(value: Any, place: tuple[int | str, ...] = ()) -> Any:
         SceneError: data that is nested too deep, or a whole number beyond floating point.
     """
     if len(place) > _MOST_DEPTH:
-        raise SceneError(f"{key_of(place[:3])} has lists or tables that are nested too deep; {_DEPTH}")
+        raise _too_deep(place)
     if isinstance(value, np.generic | np.ndarray):
         value = float(value) if isinstance(value, np.floating) else value.tolist()
     if isinstance(value, BaseModel):
@@ -225,7 +233,7 @@ def put(data: dict[str, Any], key: str, value: Any) -> None:
         int(part[1:-1]) if part.startswith("[") else part for part in re.split(r"\.|(?=\[[0-9]{1,6}\](?:\.|$))", key)
     ]
     if len(parts) > _MOST_DEPTH:
-        raise SceneError(f"{clip(key)} has tables that are nested too deep; {_DEPTH}")
+        raise _too_deep(parts)
     here: Any = data
     for depth, part in enumerate(parts):
         name = key_of(parts[:depth])
