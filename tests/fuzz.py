@@ -278,7 +278,8 @@ def bad_refusal(code: Any, text: str) -> str:
         return f"{len(text)} characters: {text[:500]!r}"
     if not sentence.rstrip("\n").isprintable():
         return f"not printable: {text!r}"
-    if sentence.startswith((" ", ".", "is ")) or " ." in sentence.split(";")[0] or "Invalid JSON" in sentence:
+    key = sentence.split(";")[0].replace(" ...", "")  # of a text that was cut
+    if sentence.startswith((" ", ".", "is ")) or " ." in key or "Invalid JSON" in sentence:
         return f"no key: {text!r}"
     return ""
 

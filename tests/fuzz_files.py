@@ -25,9 +25,7 @@ import scipy.io
 from mpi4py import MPI
 
 import geometry
-from fingerpad.cli import main as command
-from fingerpad.cli import measured, refuse
-from fingerpad.cli import topography as _  # noqa: F401 (once, and not in each process)
+from fingerpad.cli import measured, refuse, topography
 from fingerpad.scene import SceneError, from_data
 from geometry.mesh import load
 from geometry.profiles import GeometryError
@@ -113,7 +111,8 @@ def _instruments(heights: np.ndarray) -> list[tuple[str, bytes]]:
     nx, ny = SIZE
     whole_numbers = (1000 * heights).astype("<i2").T.tobytes()
     bcr = f"fileformat = bcrstm\nxpixels = {nx}\nypixels = {ny}\nxlength = 3200\nylength = 2400\n".encode()
-    sdf = f"aISO-1.0\nNumPoints = {nx}\nNumProfiles = {ny}\nXscale = 1e-6\nYscale = 1e-6\nZscale = 1e-6\nDataType = 7\n*\n"
+    sdf = f"aISO-1.0\nNumPoints = {nx}\nNumProfiles = {ny}\nXscale = 1e-6\nYscale = 1e-6\nZscale = 1e-6\n"
+    sdf += "DataType = 7\n*\n"
     nms = bytearray(3468)
     nms[16:32] = np.array([0.0, 5.0]).tobytes()
     nms[1368:1392] = np.array(SIZE, dtype="<u4").tobytes() + np.array([1e-3, 1e-3]).tobytes()
@@ -225,7 +224,7 @@ def _read(path: Path) -> int:
             unit, size = ["--unit", "um"], ["--size", "32", "24"]
             given = {".npy": unit + size, ".csv": unit + size, ".xyz": unit}
             given |= {ending: unit + size for ending in (".mat", ".npz", ".h5", ".tif")}
-            return command(["topography", str(path), *given.get(path.suffix, [])])
+            return topography.main([str(path), *given.get(path.suffix, [])])
     except (SceneError, GeometryError) as error:
         return refuse(str(error))
     return 0

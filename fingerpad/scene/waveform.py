@@ -17,7 +17,6 @@ import csv
 import math
 from collections.abc import Iterator
 from itertools import count
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
