@@ -4,7 +4,7 @@
 # make lint   style, layout and types: ruff and mypy, half a minute
 # make test-pip  the same digits with dolfinx from PyPI, in a Python from 3.12 on: make test-pip PYTHON=python3.13
 # make test-order  all tests with other rounding: cells numbered the other way round, other kernels of OpenBLAS
-# make fuzz   10 000 scenes and command lines, each ready to run or refused in one sentence; some minutes
+# make fuzz   10 000 scenes and command lines and as many files, each read or refused in one sentence; an hour
 # make pages  every generated page and picture of docs/ from the numbers kept there; seconds, no run
 # make stale  the pages older than the code that they rest on; needs git
 # make docs   the documentation site, in build/docs/index.html; a minute
@@ -48,7 +48,9 @@ test-order:
 	FINGERPAD_CHROMIUM=$$(environment/browser) OPENBLAS_CORETYPE=Nehalem $(run) python3 -m pytest -q --color=no -n auto --renumber tests
 
 fuzz:
+	environment/wheels
 	$(run) python3 -m tests.fuzz --count 10000
+	$(run) python3 -m tests.fuzz --count 10000 --files
 
 docs:
 	environment/docs build/docs

@@ -27,7 +27,7 @@ HARD, SOFT, MU_0, F_EXT = fp.NeoHooke(90e3, 0.45), fp.NeoHooke(20e3, 0.45), 0.25
 # %%
 def write(path: Path, size: float) -> None:
     """Write the mesh with facets of ``size`` (m) on the ridges."""
-    gmsh.initialize()
+    gmsh.initialize(readConfigFiles=False)
     gmsh.option.setNumber("General.Terminal", 0)
     geo, radius, groove = gmsh.model.geo, 150e-6, 200e-6
 

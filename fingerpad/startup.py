@@ -1,23 +1,26 @@
-"""What a program does before anything else: take the libraries' configuration from its user.
+"""What a program does before anything else: start the libraries without their configuration files.
 
 MPI (``ucx.conf``), PETSc (``.petscrc``, ``petscrc``, ``petsc.cfg``), dolfinx (``dolfinx_jit_options.json``), FFCx
 (``ffcx_options.json``) and Matplotlib (``matplotlibrc``) read files of the current folder when they start, and some
 of these files name code that is loaded. A scene in a folder of unknown origin must not run code, so that all of them
-are started elsewhere; files in the user's home and variables of the environment are obeyed as ever. Importing this
-module starts MPI, :func:`start` the rest: both come before any other import of these libraries.
+are started elsewhere. Files in the user's home were written for other programs and would change results without a
+trace in the scene: PETSc, dolfinx and FFCx read none, pictures have :mod:`fingerpad.io.style`, meshes
+:mod:`geometry.session`. PETSc's options come from the command line and from ``PETSC_OPTIONS``. Importing this module
+starts MPI, :func:`start` the rest: both come before any other import of these libraries.
 """
 
 import contextlib
+import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from fingerpad.installed import need_compiler
 
 _ELSEWHERE = "/"  # belongs to the system; nothing is configured there
 
 # What PETSc did not read is found by fingerpad.io.petsc_options, not listed when everything is over; its handlers of
-# signals would end a run that the caller has ignore SIGHUP.
-_QUIET = ("-options_left", "no", "-no_signal_handler")
+# signals would end a run that the caller has ignore SIGHUP. Its files are those of the home.
+_QUIET = ("-options_left", "no", "-no_signal_handler", "-skip_petscrc")
 
 with contextlib.chdir(_ELSEWHERE):
     with contextlib.suppress(ModuleNotFoundError):
@@ -48,5 +51,20 @@ def start(options: Sequence[str] = ()) -> None:
         import ffcx.options
         import matplotlib  # noqa: F401
 
-        dolfinx.jit.get_options()  # both keep what they have read
-        ffcx.options.get_options()
+        with _no_home():
+            dolfinx.jit.get_options()  # both keep what they have read
+            ffcx.options.get_options()
+
+
+@contextlib.contextmanager
+def _no_home() -> Iterator[None]:
+    """Have libraries look for the user's configuration where there is none."""
+    name = "XDG_CONFIG_HOME"
+    before = os.environ.get(name)
+    os.environ[name] = _ELSEWHERE
+    try:
+        yield
+    finally:
+        del os.environ[name]
+        if before is not None:
+            os.environ[name] = before

@@ -16,6 +16,8 @@ The rest of the outline is free. ``docs/mesh.md`` has an example.
 
 import hashlib
 import re
+import subprocess
+import sys
 from difflib import get_close_matches
 from pathlib import Path
 
@@ -29,6 +31,7 @@ from scipy.spatial import cKDTree
 from geometry import tags
 from geometry.profiles import GeometryError
 from geometry.shape import shape
+from variational import files
 
 FACETS = {
     "bone rim": tags.BONE_RIM,
@@ -42,6 +45,13 @@ _FLAT = 1e-9  # out of the plane or below the screen, over the body's size
 _THIN = 1e-6  # double area of a triangle, over the square of its longest side
 _TRIANGLE, _LINE = 2, 1  # gmsh's numbers of linear elements
 _START = b"$MeshFormat"
+# Numbers that are wrong can end the process in which gmsh reads them.
+_TRY = """
+import gmsh, sys
+gmsh.initialize(readConfigFiles=False)
+gmsh.option.setNumber("General.Terminal", 0)
+gmsh.merge(sys.argv[1])
+"""
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -71,7 +81,7 @@ def file(path: str | Path, sha256: str = "") -> float:
 def _open(path: Path, sha256: str) -> None:
     """Read a file into the current gmsh session."""
     try:
-        content = path.read_bytes()
+        content = files.read(path)
     except OSError as error:
         raise GeometryError(f"{path}: the mesh file cannot be read: {error.strerror}") from error
     if sha256 and hashlib.sha256(content).hexdigest() != sha256:
@@ -79,10 +89,13 @@ def _open(path: Path, sha256: str) -> None:
     if not content.startswith(_START) or path.suffix != ".msh":
         # gmsh tells kinds of files by their ends, and takes an unknown one for a script of its own, which it runs.
         raise GeometryError(f"{path} is no mesh of gmsh; it must be a .msh file of version 2.2 or 4.1")
-    try:
-        gmsh.merge(str(path))
-    except Exception as error:  # gmsh's own are of no other kind
-        raise GeometryError(f"{path}: gmsh cannot read the mesh: {error}") from error
+    with files.alone(content, "mesh.msh") as copy:  # gmsh would run a script called NAME.msh.opt beside NAME.msh
+        if subprocess.run([sys.executable, "-P", "-c", _TRY, copy], capture_output=True).returncode < 0:
+            raise GeometryError(f"{path}: gmsh cannot read the mesh, which is damaged; write it again")
+        try:
+            gmsh.merge(str(copy))
+        except Exception as error:  # gmsh's own are of no other kind
+            raise GeometryError(f"{path}: gmsh cannot read the mesh: {error}") from error
 
 
 def _rename() -> None:
@@ -162,6 +175,8 @@ def _check_mesh() -> None:
 
 def _check_places(xyz: Array) -> None:
     """Refuse a body of the wrong size or in the wrong place; ``xyz`` (m) are its nodes."""
+    if not np.isfinite(xyz).all():
+        raise GeometryError("a node has a coordinate that is not finite")
     size = float(np.ptp(xyz[:, :2], axis=0).max())
     if size > _LARGEST:
         raise GeometryError(f"the body is {size:g} m large, which is no finger; lengths are in m: did you mean mm?")
@@ -273,6 +288,8 @@ def _elements(dim: int, kind: int, what: str) -> Numbers:
     others = [gmsh.model.mesh.getElementProperties(k)[0] for k in kinds if k != kind]
     if others:
         raise GeometryError(f"the mesh has elements {others[0]!r}; cells must be {what}, straight and linear")
+    if not len(kinds):
+        raise GeometryError(f"the mesh has no {what}")
     return np.asarray(nodes[0], dtype=np.int64).reshape(-1, dim + 1)
 
 

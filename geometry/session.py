@@ -12,6 +12,8 @@ import gmsh
 def session(name: str) -> Iterator[None]:
     """Work in an empty model with gmsh's default options; a caller's models and options are there again afterwards.
 
+    No configuration of gmsh is read: the options that its window saves in the user's home would change the mesh.
+
     Args:
         name: name of the model.
     """
@@ -28,7 +30,7 @@ def session(name: str) -> Iterator[None]:
                 gmsh.model.remove()
                 gmsh.model.setCurrent(current)
     else:
-        gmsh.initialize(interruptible=False)
+        gmsh.initialize(readConfigFiles=False, interruptible=False)
         try:
             _begin(name)
             yield

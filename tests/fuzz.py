@@ -1,10 +1,11 @@
-"""Scenes and command lines as nobody should write them, each run-ready or refused in one sentence.
+"""Scenes, command lines and files as nobody should write them, each run-ready or refused in one sentence.
 
-environment/run python3 -m tests.fuzz [--count 10000] [--seed 1] [--first 0]
+environment/run python3 -m tests.fuzz [--count 10000] [--seed 1] [--first 0] [--files]
 
 A mutant is made from a scene that comes along, or from the defaults, by a few changes at random: of values, keys, bytes
 and arguments. It is fixed by the seed and its number alone, so that ``--first N --count 1`` repeats one of them. What
-is accepted has passed everything that a run does before it meshes; nothing is computed.
+is accepted has passed everything that a run does before it meshes; nothing is computed. With ``--files`` the mutants
+are files that a scene or a command names: maps, meshes, voltages, measurements (:mod:`tests.fuzz_files`).
 """
 
 import argparse
@@ -13,6 +14,7 @@ import io
 import json
 import os
 import random
+import signal
 import sys
 import tempfile
 import time
@@ -33,6 +35,7 @@ from fingerpad.model import options
 from fingerpad.model.memory import estimate
 from fingerpad.reduced.cylinders import tip_radius
 from fingerpad.scene import Scene, SceneError
+from tests import fuzz_files
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError
 
 SCENES = sorted((Path(__file__).parent.parent / "demos/scenes").glob("*.toml"))
@@ -59,6 +62,8 @@ _TEXTS = (
     '"200"', '"high"', '""', '"a/b"', '"../../etc"', '"/"', '"."', '".hidden"', '"CON"', '"a\\u0000b"', '"line\\nend"',
     '"' + "n" * 300 + '"', '"' + "long " * 20000 + '"', '"Größe bei 200 V"', '"压"', '"\\u202Ename"', "'''x'''",
     '"press"', '"50 N/m"', '"5 µm"', '"0.2 kV"', '"25 kPa"', '"1e999 m"', '"20 degC"', '"9**9**9 V"', '"5 {0} ("',
+    '"/dev/zero"', '"=1+1"', '"@press"', '{file = "/dev/zero"}', '{file = "/dev/stdin"}', '{file = "/"}',
+    '{waveform = "file", file = "/dev/zero"}',
 )  # fmt: skip
 _OTHERS = (
     "true", "false", "[]", "[1.0]", "[nan]", "[[[]]]", "{}", "{a = 1}", "1979-05-27", "07:32:00",
@@ -230,7 +235,8 @@ def fault(case: Mutant, folder: Path) -> tuple[str, str]:
     parser.add_scene()
     parser.add_out("results", "folder of the results")
     out, err = io.StringIO(), io.StringIO()
-    start = time.perf_counter()
+    signal.signal(signal.SIGALRM, _hang)
+    signal.alarm(fuzz_files.SLOW)
     try:
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -241,18 +247,27 @@ def fault(case: Mutant, folder: Path) -> tuple[str, str]:
                 return _unready(scene), "ready"
             except SceneError as error:
                 code = refuse(str(error))
-        return _bad_refusal(code, err.getvalue()), err.getvalue()
+        return bad_refusal(code, err.getvalue()), err.getvalue()
     except SystemExit as stop:
         helped = stop.code == 0 and out.getvalue().startswith("usage: ")
         return ("", "help") if helped else (f"exit code {stop.code}", "")
     except Exception as error:  # noqa: BLE001 (whatever it is, it is what is looked for)
         return f"{type(error).__name__}: {error}"[:500], ""
+    except _Hang:
+        return f"more than {fuzz_files.SLOW} s", ""
     finally:
-        if time.perf_counter() - start > 60:
-            print(f"mutant {case.number} took {time.perf_counter() - start:.0f} s", file=sys.stderr)
+        signal.alarm(0)
 
 
-def _bad_refusal(code: Any, text: str) -> str:
+class _Hang(BaseException):
+    """A mutant takes too long."""
+
+
+def _hang(*_: Any) -> None:
+    raise _Hang
+
+
+def bad_refusal(code: Any, text: str) -> str:
     """Return what is wrong with a refusal, empty if nothing."""
     if code != 2:
         return f"exit code {code}"
@@ -263,7 +278,8 @@ def _bad_refusal(code: Any, text: str) -> str:
         return f"{len(text)} characters: {text[:500]!r}"
     if not sentence.rstrip("\n").isprintable():
         return f"not printable: {text!r}"
-    if sentence.startswith((" ", ".", "is ")) or " ." in sentence.split(";")[0] or "Invalid JSON" in sentence:
+    key = sentence.split(";")[0].replace(" ...", "")  # of a text that was cut
+    if sentence.startswith((" ", ".", "is ")) or " ." in key or "Invalid JSON" in sentence:
         return f"no key: {text!r}"
     return ""
 
@@ -294,12 +310,16 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name, default in (("--count", 10000), ("--seed", 1), ("--first", 0)):
         parser.add_argument(name, type=int, default=default)
+    parser.add_argument("--files", action="store_true")
     args = parser.parse_args(argv)
     kinds, wrong, start = Counter[str](), 0, time.monotonic()
     with tempfile.TemporaryDirectory() as name:
         prepare(Path(name))
         for k in range(args.first, args.first + args.count):
-            what, how = fault(mutant(args.seed, k), Path(name))
+            if args.files:
+                what, how = fuzz_files.fault(fuzz_files.mutant(args.seed, k), Path(name), bad_refusal)
+            else:
+                what, how = fault(mutant(args.seed, k), Path(name))
             kinds["ready" if how == "ready" else "refused"] += 1
             if what:
                 wrong += 1

@@ -123,7 +123,7 @@ def test_height_map_and_its_numbers_are_refused():
         from_data({"roughness": {"h_rms": 3e-6, "topography": {"file": "skin.csv", "unit": "um"}}})
 
 
-@pytest.mark.parametrize(("name", "words"), [("none", "none is not there"), (".", "is a folder")])
+@pytest.mark.parametrize(("name", "words"), [("none", "none cannot be read: No such file"), (".", "Is a dir")])
 def test_file_that_is_none_is_named(name, words, tmp_path, capsys):
     """Before a package for instruments' formats is asked for."""
     assert words in refused(capsys, "topography", str(tmp_path / name))

@@ -77,6 +77,7 @@ def test_units_are_converted(table):
             "# state: sideways\nforce (N/m), friction (1)\n1, 2\n",
             "state is 'sideways'; it must be one of uncharged, ch",
         ),
+        (f"force (N/m), friction (1)\n1, {'2' * 200_000}\n", "is no table in CSV: field larger than field limit"),
     ],
 )
 def test_tables_are_refused(table, capsys, text, words):

@@ -1,4 +1,4 @@
-"""Libraries take no configuration from the folder that a run is started in."""
+"""Libraries take no configuration from the folder that a run is started in, and none from the home folder."""
 
 import os
 import subprocess
@@ -58,16 +58,36 @@ def test_without_it_they_would_be(tmp_path, clean):
     assert done.stdout == "True ['found']\n77 77.0\n"
 
 
-def test_the_home_folder_is_obeyed(tmp_path):
-    """PETSc's file there comes first, then the environment, then the command line."""
-    home, place = tmp_path / "home", tmp_path / "place"
-    home.mkdir()
+def test_nothing_is_taken_from_the_home_folder(tmp_path, clean):
+    """Its files were written for other programs; the control shows that these libraries read them."""
+    place, home = tmp_path / "place", tmp_path / "home"
+    for name in (".petscrc", ".config/dolfinx/dolfinx_jit_options.json", ".config/ffcx/ffcx_options.json"):
+        (home / name).parent.mkdir(parents=True, exist_ok=True)
+        (home / name).write_text(FOUND[name.rpartition("/")[2]].format())
     place.mkdir()
-    (home / ".petscrc").write_text("-a home\n-b home\n-c home\n")
+    found = [
+        python(place, first + STATE.replace(', matplotlib.rcParams["lines.linewidth"]', ""), HOME=str(home))
+        for first in ("", "from fingerpad.startup import start; start()")
+    ]
+    assert found[0].stdout == "True ['found']\n77\n"
+    assert found[1].stdout == clean.replace(" 1.5\n", "\n"), found[1].stderr
+
+
+def test_pictures_are_the_same_with_a_style_in_the_home_folder(tmp_path):
+    """Of a matplotlibrc there; outside of the pictures it is obeyed."""
+    folder = tmp_path / ".config" / "matplotlib"
+    folder.mkdir(parents=True)
+    (folder / "matplotlibrc").write_text("lines.markersize: 77\ntext.usetex: True\n")
+    code = "import matplotlib; from fingerpad.io.style import look\n"
+    code += "r = matplotlib.rcParams; before = r['lines.markersize']\n"
+    code += "with look(): print(before, r['lines.markersize'], r['text.usetex'])\nprint(r['lines.markersize'])"
+    assert python(tmp_path, code, HOME=str(tmp_path)).stdout == "77.0 6.0 False\n77.0\n"
+
+
+def test_the_environment_and_the_command_line_are_obeyed(tmp_path):
     code = "from fingerpad.startup import start; start(['-c', 'line'])\nfrom petsc4py import PETSc\n"
-    code += "o = PETSc.Options(); print(*(o.getString(name) for name in 'abc'))"
-    done = python(place, code, HOME=str(home), PETSC_OPTIONS="-b environment -c environment")
-    assert done.stdout == "home environment line\n"
+    code += "o = PETSc.Options(); print(*(o.getString(name) for name in 'bc'))"
+    assert python(tmp_path, code, PETSC_OPTIONS="-b environment -c environment").stdout == "environment line\n"
 
 
 def test_modules_of_the_current_folder_are_not_run(tmp_path):

@@ -55,38 +55,6 @@ def test_lengths_that_are_exchanged(tmp_path):
     assert scan(path, unit="m", pixel=(2e-6, 0.5e-6)).map.size == (8e-6, 4e-6)
 
 
-# -- instruments -------------------------------------------------------------------------------------------
-def test_instrument_with_a_size_and_unit_of_its_own(tmp_path):
-    """Heights in um over 3 x 4 um; what the file has is not to be given too."""
-    surface = pytest.importorskip("SurfaceTopography", reason="pip install fingerpad[topography]")
-    path, h = tmp_path / "map.nc", np.random.default_rng(1).normal(size=(6, 8))
-    surface.Topography(h, (3.0, 4.0), unit="um").to_netcdf(path)
-    found = scan(path).map
-    np.testing.assert_allclose(found.heights, h * 1e-6, rtol=1e-12)
-    assert found.size == pytest.approx((3e-6, 4e-6), rel=1e-12)
-    for given, sentence in (
-        ({"size": (1.0, 1.0)}, "has its own size; give none"),
-        ({"unit": "um"}, "has its own units; give none"),
-        ({"missing": "0"}, "has its own mark of missing pixels; give none"),
-    ):
-        with pytest.raises(ValueError, match=sentence):
-            scan(path, **given)
-
-
-def test_instrument_without_them(tmp_path):
-    """A format in which SurfaceTopography finds neither: both have to be given."""
-    pytest.importorskip("SurfaceTopography", reason="pip install fingerpad[topography]")
-    path, h = tmp_path / "map.npz", np.random.default_rng(1).normal(size=(6, 8))
-    np.savez(path, h=h)
-    found = scan(path, size=(3.0, 4.0), unit="um").map
-    np.testing.assert_allclose(found.heights, h * 1e-6, rtol=1e-12)
-    assert found.size == pytest.approx((3e-6, 4e-6), rel=1e-12)
-    with pytest.raises(ValueError, match="has no unit of its own; give that of the heights"):
-        scan(path, size=(3.0, 4.0))
-    with pytest.raises(ValueError, match="holds heights alone; give the lengths"):
-        scan(path, unit="um")
-
-
 # -- missing pixels ----------------------------------------------------------------------------------------
 def test_numbers_that_mark_missing_pixels(tmp_path):
     """In NumPy's files as in texts."""

@@ -207,8 +207,40 @@ def test_what_is_no_scene_file(tmp_path):
     for path in ("/dev/zero", tmp_path / "pipe"):
         assert refusal(path) == f"scene file {path} cannot be read: it is not an ordinary file"
     large = tmp_path / "large"
-    assert refusal(large) == f"scene file {large} has more than 1000000 bytes; a scene has a few hundred"
+    assert refusal(large) == f"scene file {large} cannot be read: it has 1000 MB, and at most 1 MB are read"
     assert refusal(tmp_path / ("n" * 300)).endswith(" cannot be read: File name too long")
+
+
+DOTS = "a." * 400_000 + "a"
+
+
+@pytest.mark.timeout(20)
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{DOTS} = 1",
+        f"[{DOTS}]",
+        f"x = {{{DOTS} = 1}}",
+        f'x = {{s = """\n""", {DOTS} = 1}}',
+        f'# """\n{DOTS} = 1\n# """',
+        f'x = "\\"" # "\n{DOTS} = 1',
+        f"x = '\\' # '\n{DOTS} = 1",
+        '"=".' * 200_000 + "a = 1",
+        "a . " * 200_000 + "a = 1",
+    ],
+    ids=lambda text: text[:12],
+)
+def test_long_dotted_key_is_refused_at_once(write, text):
+    """Wherever it stands; tomllib takes minutes, and hours for a megabyte."""
+    assert "has lists or tables that are nested too deep; a scene has at most 8" in refusal(write(text))
+
+
+def test_dots_that_are_no_key(write):
+    """In comments, texts and lists of numbers."""
+    dots = "." * 50
+    numbers = ", ".join(["1.5"] * 12)
+    text = f'# {dots} don\'t\nfriction = 0.25 # "{dots}\n[[history]]\nname = "a{dots}"\nf_ext = 5.0\n[geometry]\n'
+    assert scenes.load(write(f"{text}ridge_profile = [\n{numbers}\n]")).history[0].name == f"a{dots}"
 
 
 @pytest.mark.parametrize(

@@ -57,6 +57,14 @@ from tests.test_refusals import SCENES, refusal
             '[[history]]\nname = ".a"\nf_ext = 1',
             "history[0].name is '.a'; it must not begin with '.', since files are named by it",
         ),
+        *(
+            (
+                f'[[history]]\nname = "{first}1+1"\nf_ext = 1',
+                f"history[0].name is '{first}1+1'; it must not begin with '{first}', which makes a formula of it when "
+                "a table is opened",
+            )
+            for first in "=+@\uff1d"
+        ),
         ('[[history]]\nname = " "\nf_ext = 1', "history[0].name is ' '; it must have a letter or a digit"),
         (
             f'[[history]]\nname = "{"n" * 300}"\nf_ext = 1',

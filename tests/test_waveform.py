@@ -234,6 +234,7 @@ def test_missing_file_is_told_in_the_system_s_words(tmp_path):
         (TABLE + "1,1\n2,2\n", "times start at 1 s; the first must be 0"),
         (TABLE + "0,1\n2,2\n2,3\n", "times are 2 and then 2 s; each must be later"),
         (TABLE + "".join(f"{k},1\n" for k in range(2500)), "with 2500 points; there must be from 2 to 2000 of them"),
+        (TABLE + f"0,{'1' * 200_000}\n", "which is no table in CSV: 'field larger than field limit (131072)'"),
         (TABLE + "\0,1\n", "whose line 2 has '\\x00'; it must be a finite number"),
     ],
     ids=lambda value: str(value)[:40],

@@ -1,6 +1,7 @@
 """``fingerpad compare-data``: tables of measurements beside a run or a sweep."""
 
 import math
+import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -80,7 +81,8 @@ class _Compared:
     def rows(self) -> list[dict[str, str | float | None]]:
         """Return the rows by name, in SI units; None for what is missing."""
         table = self.table
-        about = (str(table.file), WORDS[table.state], table.quantity, table.unit, table.force_unit)
+        file = os.path.join(os.curdir, table.file)  # ./=a.csv: a cell =a.csv would be a formula
+        about = (file, WORDS[table.state], table.quantity, table.unit, table.force_unit)
         values = (self.force, self.voltage, self.measured, self.spread, self.ours, self.error, self.ratio)
         found = ([float(v) if np.isfinite(v) else None for v in row] for row in zip(*values, strict=True))
         return [dict(zip((*_ABOUT, *_VALUES), (*about, *row), strict=True)) for row in found]

@@ -23,6 +23,7 @@ from pathlib import Path
 
 from fingerpad.scene.messages import SceneError, clip
 from geometry.units import to_si
+from variational import files
 
 CONDITIONS = {"force": ("f_ext", "N/m"), "voltage": ("voltage", "V")}
 """Names of the columns that are conditions: key of ours, and its SI unit."""
@@ -110,14 +111,15 @@ def read(file: Path) -> Measured:
     """
     name = clip(str(file), 80)
     try:
-        if file.stat().st_size > _LARGEST:
-            raise SceneError(f"{name} has more than {_LARGEST / 1e6:g} MB; a table of measurements is smaller")
-        lines = file.read_text(encoding="utf-8-sig").splitlines()
+        lines = files.read(file, _LARGEST).decode("utf-8-sig").splitlines()
     except OSError as error:
         raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise SceneError(f"{name} is not text in UTF-8; save it as CSV in UTF-8") from None
-    about, rows = _parts(lines)
+    try:
+        about, rows = _parts(lines)
+    except csv.Error as error:
+        raise SceneError(f"{name} is no table in CSV: {error}") from None
     if not about.get("source"):
         raise SceneError(f"{name} has no source; add a first line such as '# source: Surname 2020, Journal 1, 2-3'")
     if (state := about.get("state", "full slip").lower()) not in STATES:

@@ -22,6 +22,7 @@ from fingerpad.io.files import replace
 from fingerpad.io.load_variables import loads
 from fingerpad.io.states import STATES
 from fingerpad.io.variables import Variable, Variables, array, described
+from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.reading import flat
 from variational.state import ContactState, Errors, Skin
 
@@ -288,6 +289,8 @@ def _table(result: "Result", name: str) -> list[dict[str, Any]]:
                 return list(csv.DictReader(file))
         except FileNotFoundError:
             return []
+        except (csv.Error, UnicodeDecodeError) as error:
+            raise SceneError(f"{name}.csv in {clip(str(result.folder), 80)} cannot be read: {error}") from None
     return list(_in_memory(result.steps)) if name == "ridges" else []
 
 

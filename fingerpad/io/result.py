@@ -240,7 +240,7 @@ class Result:
             path, final = (mesh["contact"] if mesh else None for mesh in meshes)
             drawing = KeptDrawing(mu_0, steps, {}, {}, {}, path, found.named, folder.absolute(), final)
             return replace(found, steps=steps, loads=tuple(_loads(steps, found.scene, summary)), drawing=drawing)
-        except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:  # JSON of other things
+        except (OSError, ValueError, KeyError, TypeError, AttributeError, csv.Error) as error:  # JSON of other things
             if isinstance(error, SceneError) and name in str(error):
                 raise
             if isinstance(error, FileNotFoundError | NotADirectoryError) and not (folder / "summary.json").exists():

@@ -36,8 +36,10 @@ _LOOK = {
 
 @contextmanager
 def look() -> Iterator[None]:
-    """Give the figures that are drawn and saved inside the block the common fonts, sizes and resolution."""
-    with matplotlib.rc_context(_LOOK):
+    """Give the figures of the block the common fonts, sizes and resolution, whatever a matplotlibrc of the user has."""
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(_LOOK)
         yield
 
 

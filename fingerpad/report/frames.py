@@ -114,7 +114,7 @@ def _ridges(file: Path) -> dict[tuple[str, int], tuple[float, float]]:
                 )
                 for row in csv.DictReader(table)
             }
-    except (OSError, KeyError, ValueError, TypeError):
+    except (OSError, KeyError, ValueError, TypeError, csv.Error):
         return {}
 
 

@@ -67,7 +67,7 @@ def _unfinished(folder: Path) -> Result:
         with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
             rows = [row for row in csv.DictReader(file) if None not in row.values()]  # the last may be cut short
         steps = tuple(ContactState.from_row(row) for row in rows)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, csv.Error) as error:
         raise SceneError(f"the unfinished run in {clip(str(folder), 80)} cannot be read: {error}") from None
     if not steps:
         raise SceneError(

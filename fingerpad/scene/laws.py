@@ -19,6 +19,7 @@ import numpy as np
 from fingerpad.scene.law_source import digest
 from fingerpad.scene.messages import SceneError, clip, show
 from geometry import tags
+from variational import files
 from variational.contact.friction import Coulomb, Friction, law_of
 from variational.roughness import closure as closures
 from variational.roughness.closure import Closure
@@ -81,10 +82,10 @@ class Laws:
         if self.mesh is not None:
             if not isinstance(self.mesh, str | Path):
                 raise SceneError(f"mesh is {show(self.mesh)}; it must be the path of a file")
-            if not Path(self.mesh).is_file():
-                raise SceneError(f"mesh is {show(str(self.mesh))}, and there is no such file")
             try:
-                content = Path(self.mesh).read_bytes()
+                content = files.read(self.mesh)
+            except FileNotFoundError:
+                raise SceneError(f"mesh is {show(str(self.mesh))}, and there is no such file") from None
             except OSError as error:
                 raise SceneError(f"mesh is {show(str(self.mesh))}, which cannot be read: {error.strerror}") from None
             object.__setattr__(self, "mesh", Path(self.mesh).absolute())

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 FINAL_STATES = ("charged normal contact", "full slip")
 """States that have files of their own where an accuracy is asked for."""
 _MOST_BYTES = 100  # of a name; a file system allows 255, of which the files take some
+_FORMULA = ("=", "+", "-", "@")  # of a cell in a spreadsheet, also as wide letters; a tab is forbidden anyway
 _FORBIDDEN = '/\\:*?"<>|'  # the first separates folders, the others are forbidden on memory sticks
 
 
@@ -28,6 +29,8 @@ def load_name(name: str) -> str:
         raise ValueError(f"it must be without {unfit!r}, since files are named by it")
     if name.startswith((".", "-", " ")):
         raise ValueError(f"it must not begin with {name[0]!r}, since files are named by it")
+    if unicodedata.normalize("NFKC", name[0]) in _FORMULA:
+        raise ValueError(f"it must not begin with {name[0]!r}, which makes a formula of it when a table is opened")
     return name
 
 

@@ -4,9 +4,8 @@ import hashlib
 import json
 import os
 import re
-import stat
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +13,10 @@ import numpy as np
 from pydantic import BaseModel
 
 from fingerpad.scene.messages import SceneError, clip, key_of, show
+from variational import files
 
-_MOST_BYTES = 1_000_000  # of a file; the longest scene that comes along has 1000
+MOST_BYTES = 1_000_000
+"""Largest size of a scene, or of a table of voltages; the longest scene that comes along has 1000 bytes."""
 _MOST_DEPTH = 8  # of tables in lists in tables; a scene has 3
 _DEPTH = f"a scene has at most {_MOST_DEPTH} inside one another"
 _MOST_BITS = 1000  # of a whole number; floating point has 1024
@@ -25,6 +26,9 @@ _NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
 _FILES = r"geometry\.file|roughness\.topography\.file|history\[\d+\]\.voltage\.file"
 _LAWS = "laws of its own, which are no part of a scene; run it from Python"
 _FORCE = "a force on the whole finger, which is no part of a scene; its report.html has the command"
+_QUOTED = re.compile(
+    r'''#[^\n]*|"""(?:[^\\]|\\.)*?(?:"""|\Z)|\'{3}.*?(?:\'{3}|\Z)|"(?:[^"\\\n]|\\.)*"?|'[^'\n]*'?''', re.DOTALL
+)  # comments and texts of TOML
 _KEY = re.compile(rf"{_NAME}(\.{_NAME})*")
 
 
@@ -36,16 +40,16 @@ def read(path: Path) -> dict[str, Any]:
     """
     name = f"scene file {clip(str(path), _PATH)}"
     try:
-        raw = read_bytes(path)
-    except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
-        raise SceneError(f"{name} cannot be read: {getattr(error, 'strerror', None) or error}") from None
-    if len(raw) > _MOST_BYTES:
-        raise SceneError(f"{name} has more than {_MOST_BYTES} bytes; a scene has a few hundred")
+        raw = files.read(path, MOST_BYTES)
+    except OSError as error:
+        raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
     try:
-        return tomllib.loads(raw.decode("utf-8-sig"))
+        return _toml(raw.decode("utf-8-sig"))
+    except SceneError:
+        raise
     except UnicodeDecodeError:
         raise SceneError(f"{name} is not text in UTF-8; save it in UTF-8") from None
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # tomllib's, or a whole number of more digits than Python reads
         hint = "; decimals have points, and a value with a unit has quotes" if _AFTER_VALUE in str(error) else ""
         raise SceneError(f"{name} is not TOML: {clip(str(error), 150)}{hint}") from None
     except RecursionError:
@@ -98,7 +102,11 @@ def _of_run(path: Path) -> dict[str, Any]:
         raise SceneError(f"{name} is of a run with {more[0]}")
     if laws:
         file, shape = laws["mesh"]["path"], data.pop("geometry")
-        if not Path(file).is_file() or hashlib.sha256(Path(file).read_bytes()).hexdigest() != laws["mesh"]["sha256"]:
+        try:
+            same = hashlib.sha256(files.read(file)).hexdigest() == laws["mesh"]["sha256"]
+        except OSError:
+            same = False
+        if not same:
             raise SceneError(f"{name} has the mesh {show(file)}, which is gone or was changed; put that one back")
         data["geometry"] = {"file": file} | {key: shape[key] for key in ("sc_thickness",) if key in shape}
         data.pop("mesh", None)
@@ -109,7 +117,7 @@ def _kept(path: Path) -> dict[str, Any]:
     """Return what a ``scene.json`` holds."""
     name = f"scene file {clip(str(path), _PATH)}"
     try:
-        data = json.loads(read_bytes(path))
+        data = json.loads(files.read(path, MOST_BYTES))
     except OSError as error:
         raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
     except (ValueError, RecursionError) as error:
@@ -127,20 +135,26 @@ def _beside(value: Any, folder: Path, where: str = "") -> Any:
         names = [f"{where}[{k}]" if isinstance(inner, dict) else where for k, inner in enumerate(value)]
         return [_beside(inner, folder, name) for inner, name in zip(value, names, strict=True)]
     elif isinstance(value, str) and re.fullmatch(_FILES, where):
-        return str(folder / value)
+        return os.path.join(os.curdir, folder, value)  # ./=a.msh: a cell =a.msh would be a formula
     return value
 
 
-def read_bytes(path: Path) -> bytes:
-    """Return the first bytes of an ordinary file, one more than are allowed."""
-    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)  # a pipe must not make the program wait
-    with os.fdopen(descriptor, "rb") as file:
-        mode = os.fstat(descriptor).st_mode
-        if stat.S_ISDIR(mode):
-            raise OSError("Is a directory")
-        if not stat.S_ISREG(mode):
-            raise OSError("it is not an ordinary file")
-        return file.read(_MOST_BYTES + 1)
+def _toml(text: str) -> dict[str, Any]:
+    """Return what a text in TOML holds.
+
+    Raises:
+        SceneError: a dotted key has too many parts; tomllib's time is quadratic in them.
+        ValueError: it is not TOML.
+        RecursionError: a value is nested too deep.
+    """
+    for part in re.split(r"[^\w\s.-]|\n", _QUOTED.sub("_", text)):  # a key or a value, with all its dots
+        if part.count(".") > _MOST_DEPTH:
+            raise _too_deep([name.strip() for name in part.split(".")])
+    return tomllib.loads(text)
+
+
+def _too_deep(place: Sequence[int | str]) -> SceneError:
+    return SceneError(f"{key_of(tuple(place[:3]))} has lists or tables that are nested too deep; {_DEPTH}")
 
 
 def plain(value: Any, place: tuple[int | str, ...] = ()) -> Any:
@@ -153,7 +167,7 @@ def plain(value: Any, place: tuple[int | str, ...] = ()) -> Any:
         SceneError: data that is nested too deep, or a whole number beyond floating point.
     """
     if len(place) > _MOST_DEPTH:
-        raise SceneError(f"{key_of(place[:3])} has lists or tables that are nested too deep; {_DEPTH}")
+        raise _too_deep(place)
     if isinstance(value, np.generic | np.ndarray):
         value = float(value) if isinstance(value, np.floating) else value.tolist()
     if isinstance(value, BaseModel):
@@ -196,7 +210,7 @@ def override(text: str) -> tuple[str, Any]:
         shown = clip(text.strip()) or "an empty text"
         raise SceneError(f"{shown} is no change of a scene; it must be key=value, as in mesh.contact=10e-6")
     try:
-        found = tomllib.loads(f"value = {value}") if value.isprintable() else {}
+        found = _toml(f"value = {value}") if value.isprintable() else {}
     except (ValueError, RecursionError):
         found = {}
     if found.keys() == {"value"}:
@@ -213,11 +227,13 @@ def put(data: dict[str, Any], key: str, value: Any) -> None:
     """Put a value at a dotted key (``history[0].f_ext``), with the tables on the way to it; a list keeps its length.
 
     Raises:
-        SceneError: a table, or an entry of a list, that is not there.
+        SceneError: a table, or an entry of a list, that is not there; or too many of them inside one another.
     """
     parts = [
         int(part[1:-1]) if part.startswith("[") else part for part in re.split(r"\.|(?=\[[0-9]{1,6}\](?:\.|$))", key)
     ]
+    if len(parts) > _MOST_DEPTH:
+        raise _too_deep(parts)
     here: Any = data
     for depth, part in enumerate(parts):
         name = key_of(parts[:depth])

@@ -17,15 +17,15 @@ import csv
 import math
 from collections.abc import Iterator
 from itertools import count, pairwise
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from fingerpad.scene.messages import clip, show
-from fingerpad.scene.reading import read_bytes
+from fingerpad.scene.reading import MOST_BYTES
 from fingerpad.scene.table import Finite, Part
 from geometry.bounds import Range, within
+from variational import files
 
 SAMPLES = 24
 """Samples of a period at ``numerics.step_scale`` 1."""
@@ -291,7 +291,7 @@ def _table(file: str) -> dict[str, Any]:
     """
     name = f"file is {show(file)}"
     try:
-        lines = list(csv.reader(read_bytes(Path(file)).decode("utf-8-sig").splitlines(), strict=True))
+        lines = list(csv.reader(files.read(file, MOST_BYTES).decode("utf-8-sig").splitlines(), strict=True))
     except OSError as error:
         raise ValueError(f"{name}, which cannot be read: {show(error.strerror or str(error))}") from None
     except (ValueError, csv.Error) as error:

@@ -4,12 +4,15 @@ SurfaceTopography (Röttger et al. 2022, doi:10.1088/2051-672X/ac860a; MIT licen
 Zygo, Bruker and others: ``pip install fingerpad[topography]``.
 """
 
+import io
+from contextlib import redirect_stderr
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from variational import files
 from variational.roughness import heighttext, unfilled
 from variational.roughness.heightheader import UNITS
 from variational.roughness.missing import filled
@@ -81,6 +84,8 @@ def scan(
     """
     path = Path(path)
     found = _read(path, missing)
+    if not found.heights.size:
+        raise ValueError(f"{path} holds no heights")
     if missing is None and is_plain(path):
         _refuse_unfilled(path, found.heights)
     if found.unit is not None and (unit is not None or size_unit is not None):
@@ -181,10 +186,14 @@ def _read(path: Path, missing: str | None) -> _Read:
 
 
 def _array(path: Path, missing: str | None) -> _Read:
+    content = io.BytesIO(files.read(path))
     try:
-        heights = np.array(np.load(path, allow_pickle=False), dtype=float)
-    except (ValueError, TypeError, EOFError) as error:
-        raise ValueError(f"{path} is no matrix of numbers: {error}") from None
+        found = np.lib.format.read_array(content, allow_pickle=False)
+    except Exception as error:  # a header that is no Python, an array that is larger than the memory
+        raise ValueError(f"{path} is no matrix of numbers: {_words(error)}") from error
+    if found.dtype.kind not in "iuf":
+        raise ValueError(f"{path} is no matrix of numbers: its values are of type {found.dtype}, and heights are real")
+    heights = found.astype(float)
     if missing is not None:
         if not heighttext.is_number(missing) and missing.lower() != "nan":
             raise ValueError(f"missing is {missing[:30]!r}; {path} has numbers alone, so it must be one")
@@ -193,7 +202,7 @@ def _array(path: Path, missing: str | None) -> _Read:
 
 
 def _text(path: Path, missing: str | None) -> heighttext.Text:
-    raw = path.read_bytes()
+    raw = files.read(path)
     try:
         text = raw.decode("utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
     except UnicodeDecodeError:
@@ -205,25 +214,41 @@ def _text(path: Path, missing: str | None) -> heighttext.Text:
 
 
 def _instrument(path: Path) -> _Read:
-    if not path.is_file():
-        raise FileNotFoundError(f"{path} is {'a folder' if path.is_dir() else 'not there'}")
+    content = files.read(path)
     try:
         from SurfaceTopography import open_topography
-        from SurfaceTopography.Exceptions import ReadFileError
+        from SurfaceTopography.Exceptions import CannotDetectFileFormat, ReadFileError
     except ImportError:
         raise ImportError(
             f"reading {path} needs SurfaceTopography; get it with: pip install fingerpad[topography], or in a clone "
             "environment/wheels"
         ) from None
+    form = "a map"
     try:
-        reader = open_topography(str(path))
-        channel = reader.default_channel
-        own = channel.physical_sizes is not None
-        found = reader.topography(**({} if own else {"physical_sizes": (1.0,) * channel.dim}))
-    except ReadFileError:
+        with files.alone(content, f"map{path.suffix}") as copy, redirect_stderr(io.StringIO()):  # what they warn of
+            reader = open_topography(str(copy))
+            form = reader.name()
+            if not reader.channels or reader.default_channel.dim != 2:
+                raise ReadFileError("it holds no map of heights")
+            return _map(reader)
+    except CannotDetectFileFormat:
         raise ValueError(f"{path} is no height map of a format that SurfaceTopography reads") from None
-    if found.dim != 2:
-        raise ValueError(f"{path} has {found.dim} dimensions; a map has 2")
+    except Exception as error:  # of a damaged file, or one of another kind, its readers raise anything
+        words = _words(error) if isinstance(error, ReadFileError) else f"{type(error).__name__}: {_words(error)}"
+        raise ValueError(
+            f"{path} cannot be read by SurfaceTopography as {form} ({words}); export the heights as text"
+        ) from error
+
+
+def _words(error: Exception) -> str:
+    """Return what an error of a library has to say, on one line."""
+    return "".join(filter(str.isprintable, " ".join(str(error).split())))[:120]
+
+
+def _map(reader: Any) -> _Read:
+    """Return the default channel of a reader of SurfaceTopography."""
+    own = reader.default_channel.physical_sizes is not None
+    found = reader.topography(**({} if own else {"physical_sizes": (1.0, 1.0)}))
     if found.unit is not None:
         found = found.to_unit("m")
     heights = np.ma.filled(found.heights().astype(float), np.nan)

@@ -1,0 +1,159 @@
+"""Files of a user, at every door: ordinary, bounded, and read with nothing beside them."""
+
+import os
+import subprocess
+import sys
+from functools import partial
+from pathlib import Path
+
+import gmsh
+import numpy as np
+import pytest
+
+import geometry
+from fingerpad.cli.measured import read as measurements
+from fingerpad.scene import SceneError, from_data, load
+from geometry.meshfile import file as mesh
+from geometry.profiles import GeometryError
+from geometry.session import session
+from tests.test_meshfile import write
+from variational import files
+from variational.roughness.heightfile import scan
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def voltages(path: Path) -> None:
+    from_data({"history": [{"name": "hold", "hold": 0.1, "voltage": {"waveform": "file", "file": str(path)}}]})
+
+
+def topography(path: Path) -> None:
+    from_data({"roughness": {"topography": {"file": str(path), "unit": "um", "size": [1.0, 1.0]}}})
+
+
+DOORS = {
+    "scene": (load, "a.toml"),
+    "scene.json": (load, "scene.json"),
+    "voltages": (voltages, "a.csv"),
+    "measurements": (measurements, "a.csv"),
+    "topography": (topography, "a.csv"),
+    "matrix": (scan, "a.npy"),
+    "text": (scan, "a.csv"),
+    "instrument": (scan, "a.sur"),
+    "mesh": (mesh, "a.msh"),
+    "geometry.file": (lambda path: from_data({"geometry": {"file": str(path)}}), "a.msh"),
+}
+
+
+@pytest.fixture(params=DOORS)
+def door(request, tmp_path):
+    """A function that reads a file, and a path for it."""
+    call, name = DOORS[request.param]
+    return partial(_sentence, call), tmp_path / name
+
+
+def _sentence(call, path) -> str:
+    with pytest.raises((SceneError, GeometryError, OSError)) as refused:
+        (call(path) if call is not mesh else call(path)())
+    return str(refused.value)
+
+
+@pytest.mark.timeout(20)
+def test_pipes_and_devices_are_refused_at_once(door):
+    """Nobody writes into the pipe, and /dev/zero has no end."""
+    sentence, path = door
+    os.mkfifo(path)
+    assert "it is not an ordinary file" in sentence(path)
+    path.unlink()
+    path.symlink_to("/dev/zero")
+    assert "it is not an ordinary file" in sentence(path)
+
+
+@pytest.mark.timeout(20)
+def test_large_files_are_refused_unread(door):
+    """20 GB of nothing, of which no memory could hold a copy."""
+    sentence, path = door
+    with path.open("wb") as file:
+        file.truncate(20 * 10**9)
+    assert "it has 20000 MB, and at most" in sentence(path)
+
+
+def test_files_that_cannot_be_opened(door):
+    sentence, path = door
+    path.mkdir()
+    assert "Is a directory" in sentence(path)
+    assert "\n" not in sentence(path.with_name("gone") / path.name)
+
+
+def test_file_is_read_whole_up_to_its_limit(tmp_path):
+    path = tmp_path / "a"
+    path.write_bytes(b"12345")
+    assert files.read(path, 5) == b"12345"
+    with pytest.raises(OSError, match="it has 5e-06 MB, and at most 4e-06 MB are read"):
+        files.read(path, 4)
+    with pytest.raises(OSError, match="embedded null"):
+        files.read("a\0b")
+
+
+def test_copy_is_alone_and_goes(tmp_path):
+    """Its folder is the user's, and the one that is worked in; afterwards all is as before."""
+    before = Path.cwd()
+    with files.alone(b"12", "a.b") as path:
+        assert (path.read_bytes(), os.listdir()) == (b"12", ["a.b"])
+        assert path.parent == Path.cwd() and path.parent.stat().st_mode & 0o777 == 0o700
+    assert not path.exists() and Path.cwd() == before
+
+
+# -- what libraries would read by themselves ---------------------------------------------------------------
+@pytest.mark.parametrize("name", ["mine.msh.opt", "mine.opt", ".gmsh-options", ".gmshrc", "mesh.msh.opt"])
+def test_neighbours_of_a_mesh_are_not_run(tmp_path, monkeypatch, name):
+    """gmsh merges NAME.msh.opt with NAME.msh; the control shows that it does."""
+    path, script = write(tmp_path / "mine.msh"), tmp_path / name
+    script.write_text(f'SystemCall "touch {tmp_path}/run";\nMesh.MeshSizeFactor = 2;\n', encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    with session("file"):
+        mesh(path)()
+        assert gmsh.option.getNumber("Mesh.MeshSizeFactor") == 1
+        assert not (tmp_path / "run").exists()
+        if name == "mine.msh.opt":
+            gmsh.merge(str(path))
+            assert (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize("name", [".gmsh-options", ".gmshrc"])
+@pytest.mark.parametrize("variable", ["HOME", "GMSH_HOME"])
+def test_options_of_gmsh_in_the_home_have_no_effect(tmp_path, name, variable):
+    """As its window saves them; the control shows that gmsh reads them."""
+    (tmp_path / name).write_text("Mesh.MeshSizeFactor = 2;\n", encoding="utf-8")
+    code = "import gmsh, geometry; from geometry.session import session\n"
+    code += "gmsh.initialize(); print(gmsh.option.getNumber('Mesh.MeshSizeFactor')); gmsh.finalize()\n"
+    code += "with session('a'): geometry.ridge(size=40e-6)(); print(len(gmsh.model.mesh.getNodes()[0]))"
+    environment = {key: value for key, value in os.environ.items() if key != "GMSH_HOME"}
+    environment |= {variable: str(tmp_path), "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
+    with session("here"):
+        geometry.ridge(size=40e-6)()
+        expected = len(gmsh.model.mesh.getNodes()[0])
+    assert done.stdout.split() == ["2.0", str(expected)]
+
+
+def test_damaged_mesh_does_not_end_the_program(tmp_path, monkeypatch):
+    """Wrong numbers may end the process in which gmsh reads them; which ones depends on its version."""
+    path = write(tmp_path / "mine.msh")
+    monkeypatch.setattr("geometry.meshfile._TRY", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
+    with session("file"), pytest.raises(GeometryError, match="gmsh cannot read the mesh, which is damaged"):
+        mesh(path)()
+
+
+def test_links_of_a_map_lead_nowhere(tmp_path, monkeypatch):
+    """Heights of an HDF5 file may be kept in another one, which HDF5 looks for in the current folder."""
+    h5py = pytest.importorskip("h5py", reason="pip install fingerpad[topography]")
+    pytest.importorskip("SurfaceTopography", reason="pip install fingerpad[topography]")
+    monkeypatch.chdir(tmp_path)
+    np.arange(64.0).tofile("beside.raw")
+    with h5py.File("map.h5", "w") as file:
+        file.create_dataset("z", (8, 8), float, external=[("beside.raw", 0, 512)])
+    with h5py.File("map.h5") as file:
+        assert file["z"][7, 7] == 63  # HDF5 by itself
+    with pytest.raises(ValueError, match=r"map\.h5"):
+        scan("map.h5", (1.0, 1.0), "um")
