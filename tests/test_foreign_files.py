@@ -23,7 +23,7 @@ from fingerpad.report.write import write
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene, SceneError
 
-DEEP = "[" * 100_000 + "]" * 100_000
+DEEP = pytest.param("[" * 100_000 + "]" * 100_000, id="deep")
 NO_SCENES = (
     '{"trace": 5}',
     '{"trace": {"force": "x", "parameters": {}}}',
@@ -51,12 +51,10 @@ def test_files_of_no_run_are_not_deleted(tmp_path):
     assert (tmp_path / "history.png").read_bytes() == b"mine"
 
 
-@pytest.mark.parametrize(
-    ("text", "words"), [(DEEP, "nested too deep"), ("5", "holds no object"), ('{"a": ', "Expecting")]
-)
-def test_json_of_other_things(tmp_path, text, words):
+@pytest.mark.parametrize("text", ["5", "null", '{"a": ', "", DEEP])
+def test_json_of_other_things(tmp_path, text):
     (tmp_path / "a.json").write_text(text)
-    with pytest.raises(ValueError, match=words):
+    with pytest.raises(ValueError, match=r"a\.json holds no object|Expecting"):
         read_object(tmp_path / "a.json")
 
 

@@ -52,7 +52,7 @@ def result(scene: Scene, folder: Path, force: float | None = None) -> Summary | 
     A run that was stopped, or had too little memory, has not come to its end; nor has one of a force with traces alone.
     """
     summary = _summary(folder / key(scene, force))
-    again = summary is None or summary.get("interrupted") or _OF_THE_MACHINE in summary.get("failure", "")
+    again = summary is None or summary.get("interrupted") or _OF_THE_MACHINE in str(summary.get("failure"))
     trace = force is not None and summary is not None and "asked" not in summary and set(summary) != {"failure"}
     return None if again or trace else summary
 
