@@ -36,12 +36,14 @@ ridge = fp.Body(
 )
 ridge.press(4.4).charge(200.0).slide(until_full_slip=True)
 print(ridge.state.mu_app, ridge.state.d_eq, ridge.displacement.shape)  # arrays with documented shapes
+print(ridge.cautions)  # limits of validity that its states reach; none here
 
 # %% [markdown]
 # Two laws hold at full slip, whatever the body. The screen bears the bone's load and the attraction. The friction force
 # is the friction coefficient times the contact force, since every point in contact slips.
 
 # %%
+assert not ridge.cautions
 for state in (slip, ridge.state):
     assert abs(state.f_contact - state.f_electrostatic - state.f_ext) < 1e-6 * state.f_ext
     assert abs(state.f_t - 0.25 * state.f_contact) < 1e-6 * state.f_ext

@@ -277,5 +277,6 @@ def test_folders_are_told_apart(folder, table, tmp_path, capsys):
     sweep(Scene(), other, model="cylinders", voltage=[0, 100])
     (other / "sweep.json").unlink()  # as an earlier version left it
     assert "does not give its force" in refused(capsys, "compare-data", file, "--sweep", str(other))
-    sweep(Scene(), other, model="cylinders", friction=[0.2, 0.3])
-    assert "is over friction, which no measurement has" in refused(capsys, "compare-data", file, "--sweep", str(other))
+    third = tmp_path / "third"
+    sweep(Scene(), third, model="cylinders", friction=[0.2, 0.3])
+    assert "is over friction, which no measurement has" in refused(capsys, "compare-data", file, "--sweep", str(third))

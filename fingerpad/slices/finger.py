@@ -105,7 +105,7 @@ class WholeFinger:
         for name, total in self.states.items():
             arrays = {key: values.tolist() for key, values in total.slices().items()}
             known = {"error": self.error[name], "carried": self.carried.get(name, {})}
-            found["states"][name] = self.values(name) | known | {"slices": arrays}
+            found["states"][name] = self.values(name) | known | {"centre": total.centre, "slices": arrays}
             if name in self.traces:
                 made = self.traces[name]
                 points = {key: values.tolist() for key, values in made.columns.items()}
@@ -124,7 +124,7 @@ class WholeFinger:
         for name, state in data["states"].items():
             arrays = {key: np.array(values) for key, values in state["slices"].items()}
             columns = {key: arrays[key] for key in NAMES}
-            centre = data["f_ext"] / state["effective_width"]
+            centre = state["centre"] if "centre" in state else data["f_ext"] / state["effective_width"]
             places = arrays["z"], arrays["thickness"], arrays["indentation"]
             states[name] = Total(state["indentation"], *places, centre, columns)
             if "trace" in state:
