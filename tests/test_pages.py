@@ -148,6 +148,18 @@ def test_results_differ_by_their_numbers_alone():
     assert list(same.differences(before, {})) and list(same.differences({"a": None}, {"a": 0.0}))
 
 
+def test_numbers_may_differ_by_a_part_of_the_largest_of_their_key():
+    """Roundoff of a force that is zero counts beside the largest force; another key has its own."""
+    before = {"states": [{"f_t": 1e-16, "x": 2e-3}, {"f_t": 40.0, "x": math.nan}], "steps": 3}
+    now = {"states": [{"f_t": -3e-9, "x": 2e-3}, {"f_t": 40.0, "x": math.nan}], "steps": 3}
+    within = same.allowed(before, 1e-9)
+    assert within == {"f_t": pytest.approx(40e-9), "x": pytest.approx(2e-12)}
+    assert list(same.differences(before, now)) and not list(same.differences(before, now, within=within))
+    assert list(same.differences(before, now | {"steps": 4}, within=within))
+    now["states"][0]["x"] = 2.001e-3
+    assert len(list(same.differences(before, now, within=within))) == 1
+
+
 def test_program_of_a_page_is_in_git():
     root = harness.ROOT
     assert all((root / path).exists() for name in pages.PAGES for path in pages.program(name))

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 NAMES = ("f_ext", "f_t", "f_electrostatic", "contact_length", "gross_width")
 """Columns: N/m the forces, m the lengths."""
 LEAST = 3
-"""Least number of points of a trace. Without one of them there is still a power law, and so an interpolation's error."""
+"""Least number of points of a trace: without one of them there is still a power law, and an error of interpolation."""
 _NOTHING = 1e-12  # of the largest external force: values below it are roundoff
 _APART = 1e-4  # relative distance of two points: of closer ones, slopes are made by the tolerances of solvers (1e-6)
 

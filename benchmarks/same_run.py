@@ -1,0 +1,93 @@
+"""Compute one case of benchmarks.same; executed by the Python of either program, so that it uses public names alone.
+
+The case comes as JSON from standard input; the last line of standard output is the answer as JSON.
+"""
+
+import dataclasses
+import json
+import sys
+import tempfile
+import warnings
+from pathlib import Path
+from typing import Any
+
+import fingerpad as fp
+from fingerpad.startup import MPI
+
+
+def plain(value: Any) -> Any:
+    """Return states and what they hold as JSON has it: dataclasses by field, arrays as lists."""
+    if dataclasses.is_dataclass(value):
+        return {field.name: plain(getattr(value, field.name)) for field in dataclasses.fields(value)}
+    if isinstance(value, dict):
+        return {str(key): plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(each) for each in value]
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def law(given: dict[str, Any]) -> Any:
+    """Return the law of a name with its numbers."""
+    return getattr(fp, given["law"])(**{name: value for name, value in given.items() if name != "law"})
+
+
+def body(case: dict[str, Any]) -> dict[str, Any]:
+    """Return the states of a ridge that is led by hand."""
+    ridge = fp.Body(
+        fp.geometry.ridge(size=20e-6),
+        fp.Ogden(86.76e3, -14.53, 0.48),
+        contact=law(case["contact"]),
+        friction=0.25,
+        roughness=fp.BearingArea(h_0=0.51e-6),
+    )
+    for name, argument in case["body"]:
+        getattr(ridge, name)(**argument)
+    return {"states": plain(ridge.states), "energy": plain(ridge.energy), "displacement": plain(ridge.displacement)}
+
+
+def scene(case: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return steps, loads, named states and newtons of a run."""
+    small = fp.Scene(**case["small"]).replace(mesh={"contact": 40e-6}, output={"errors": False})
+    given = (fp.Scene() if case.get("default") else small).replace(**case["scene"])
+    laws: dict[str, Any] = {}
+    if "friction" in case:
+        laws["friction"] = law(case["friction"])
+    if "closure" in case:
+        laws["closure"] = law(case["closure"] | {"h_0": given.h_0})
+    if "materials" in case:
+        laws["materials"] = {layer: law(each) for layer, each in case["materials"].items()}
+    if case.get("mesh"):
+        laws["mesh"] = folder / "finger.msh"
+        write_mesh(laws["mesh"])
+    more = {name: case[name] for name in ("model", "force") if name in case}
+    out = folder / "out" if case.get("folder") else None
+    result = fp.run(given, out=out, **more, **laws)
+    found = {"steps": result.steps, "loads": result.loads, "named": result.named, "failure": result.failure}
+    if result.finger is not None:
+        found["finger"] = result.finger.to_dict()
+    return {name: plain(value) for name, value in found.items()}
+
+
+def write_mesh(path: Path) -> None:
+    """Write the mesh of the small finger to a file, on rank 0; collective."""
+    if MPI.COMM_WORLD.rank == 0:
+        from fingerpad.cli import mesh
+
+        mesh.main(["demos/scenes/small_finger.toml", "--set", "mesh.contact=40e-6", "--out", str(path)])
+    MPI.COMM_WORLD.barrier()
+
+
+def main() -> None:
+    """Answer a case."""
+    warnings.simplefilter("ignore")
+    text = MPI.COMM_WORLD.bcast(sys.stdin.read() if MPI.COMM_WORLD.rank == 0 else None)
+    case = json.loads(text)
+    with tempfile.TemporaryDirectory() as own:
+        folder = Path(MPI.COMM_WORLD.bcast(own))
+        answer = body(case) if "body" in case else scene(case, folder)
+        MPI.COMM_WORLD.barrier()
+    if MPI.COMM_WORLD.rank == 0:
+        print("\n" + json.dumps(answer))
+
+
+main()
