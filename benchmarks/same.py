@@ -3,14 +3,14 @@
 python3 -m benchmarks.same COMMIT [--but WORD ...] [--within PART] [--jobs 2]     some minutes; needs git, no dolfinx
 
 Both programs run cases that between them go through every model, formulation, element and kind of load, laws of one's
-own, mesh files, folders, newtons, bodies and two ranks; most are of a small finger. A case agrees where all steps, loads
-and named states do, with their ridges, skin and counts of iterations; seconds, memory, versions and remarks are left
-out. Where all agree, the two commits go to docs/same.json. ``make stale`` takes one for the other: a page of the older
-one need not be made again because of a file that its numbers do not depend on.
+own, mesh files, folders, newtons, bodies and two ranks; most are of a small finger. A case agrees where all steps,
+loads and named states do, with their ridges, skin and counts of iterations; seconds, memory, versions and remarks are
+left out. Where all agree, the two commits go to docs/same.json. ``make stale`` takes one for the other: a page of the
+older one need not be made again because of a file that its numbers do not depend on.
 
 A change that moves numbers by roundoff alone has ``--within``: a number may then differ by this part of the largest one
-of its key, and the records of the solver's steps are left out. Two ranks, which add in another order in each run, always
-have it.
+of its key, and the records of the solver's steps are left out. Two ranks, which add in another order in each run,
+always have it.
 
 Numbers that a change is meant to change are left out by a word of their key, as in ``--but sed`` for slip_sed_0. Then
 the two commits are the same for those pages alone whose programs do not have the word.
@@ -147,10 +147,12 @@ def differences(
             yield from differences(*pair, f"{where}[{number}]", but, within)
     elif where.endswith("mu_app") and before == 0 and (now is None or now != now):
         return
-    elif within and isinstance(before, float) and isinstance(now, float) and abs(before - now) <= within.get(_key(where), 0.0):
-        return
-    elif repr(before) != repr(now):  # nan equals nan
+    elif repr(before) != repr(now) and not _near(before, now, (within or {}).get(_key(where), 0.0)):  # nan equals nan
         yield f"{where}: {before} before, {now} now"
+
+
+def _near(before: Any, now: Any, most: float) -> bool:
+    return isinstance(before, float) and isinstance(now, float) and abs(before - now) <= most
 
 
 def allowed(found: Any, part: float, where: str = "") -> dict[str, float]:
