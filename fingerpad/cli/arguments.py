@@ -15,7 +15,7 @@ from fingerpad.io import terminal
 from fingerpad.model.check import check
 from fingerpad.scene import Scene, load, override
 from fingerpad.scene.keys import every
-from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene.messages import SceneError, clip, ends
 from geometry.units import to_si
 
 _PETSC = "-fingerpad_"  # prefix of PETSc's options
@@ -130,7 +130,7 @@ class Parser(argparse.ArgumentParser):
                 continue
             refuse_file(file, kind)
             if sum(isinstance(each, Path) and _same(each, file) for each in values) > 1:
-                raise SceneError(f"{clip(str(file), 80)} is given twice, once to be written; give it another name")
+                raise SceneError(f"{ends(file)} is given twice, once to be written; give it another name")
         return args, passed
 
     def _refuse(self, word: str, petsc: bool) -> NoReturn:
@@ -275,7 +275,7 @@ def refuse_file(file: Path, kind: Kind) -> None:
     Raises:
         SceneError: its folder is not there or read-only, it is no ordinary file, read-only, or of another kind.
     """
-    name = clip(str(file), 80)
+    name = ends(file)
     if file.is_dir():
         raise SceneError(f"{name} is a folder; give a name of a file")
     if not file.absolute().parent.is_dir():

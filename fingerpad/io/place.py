@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 from fingerpad.io.files import lock_file, read_object, remove, replace_json
 from fingerpad.scene import Scene, SceneError, from_kept
+from fingerpad.scene.messages import ends
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -127,7 +128,7 @@ class Place:
             except PlaceError as error:
                 refusal = str(error)
             except OSError as error:
-                refusal = f"results cannot be written to {_short(self.folder)}: {error.strerror}; choose another folder"
+                refusal = f"results cannot be written to {ends(self.folder)}: {error.strerror}; choose another folder"
         refusal = self._comm.bcast(refusal)
         if refusal:
             self.__exit__()
@@ -145,16 +146,16 @@ class Place:
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise PlaceError(f"another run is writing to {_short(self.folder)}; choose another folder") from None
+            raise PlaceError(f"another run is writing to {ends(self.folder)}; choose another folder") from None
         except OSError as error:
             if error.errno not in _NO_LOCKS:
                 raise
         if (self.folder / "sweep.json").exists():
-            raise PlaceError(f"{_short(self.folder)} holds the results of a sweep; choose another folder")
+            raise PlaceError(f"{ends(self.folder)} holds the results of a sweep; choose another folder")
         for file in (*self._left(), *(self.folder / name for name in ("scene.json", "checkpoint"))):
             if file.is_symlink():
                 raise PlaceError(
-                    f"{file.name} in {_short(self.folder)} is a symbolic link, through which no results are written; "
+                    f"{file.name} in {ends(self.folder)} is a symbolic link, through which no results are written; "
                     "delete it, or choose another folder"
                 )
         kept = self._kept()
@@ -162,7 +163,7 @@ class Place:
         if kept is not None and identity(kept) != identity(self._parameters) and not same:
             what = difference(identity(_given(kept)), identity(_given(self._parameters)))
             raise PlaceError(
-                f"{_short(self.folder)} holds the results of another scene ({what}); "
+                f"{ends(self.folder)} holds the results of another scene ({what}); "
                 "choose another folder, or delete the folder"
             )
 
@@ -174,7 +175,7 @@ class Place:
             return _whole(read_object(self.folder / "summary.json").get("parameters", {}))
         for file in (self.folder / "scene.json", *self._left()):
             if file.exists():
-                raise PlaceError(f"{_short(self.folder)} holds {file.name} of an unknown scene; choose another folder")
+                raise PlaceError(f"{ends(self.folder)} holds {file.name} of an unknown scene; choose another folder")
         return None
 
     def _left(self) -> list[Path]:
@@ -201,17 +202,17 @@ def full_scene(folder: Path) -> Scene:
     try:
         kept = _whole(read_object(folder / "scene.json"))
     except (OSError, ValueError):
-        raise PlaceError(f"{_short(folder)} has no scene.json of a run, and so no run to go on with") from None
+        raise PlaceError(f"{ends(folder)} has no scene.json of a run, and so no run to go on with") from None
     if TRACE in kept:
         raise PlaceError(
-            f"{_short(folder)} has a trace of {kept[TRACE]['force']:g} N on the whole finger, which is one part of the "
+            f"{ends(folder)} has a trace of {kept[TRACE]['force']:g} N on the whole finger, which is one part of the "
             "answer; give the command with --force again"
         )
     if "model" in kept:
-        raise PlaceError(f"{_short(folder)} has a run of the model {kept['model']!r}; only a full one can go on")
+        raise PlaceError(f"{ends(folder)} has a run of the model {kept['model']!r}; only a full one can go on")
     if kept.get("laws", {}).keys() - {"mesh"}:
         raise PlaceError(
-            f"the run in {_short(folder)} has laws of its own; go on with it from Python, by fp.run with the same ones "
+            f"the run in {ends(folder)} has laws of its own; go on with it from Python, by fp.run with the same ones "
             "and resume=True"
         )
     return from_kept(kept)
@@ -260,10 +261,5 @@ def difference(old: Mapping[str, Any], new: Mapping[str, Any], table: str = "") 
                 return found
         elif a != b:
             plain = all(isinstance(value, int | float | str | None) for value in (a, b))
-            return f"its {table}{key} was {_short(a)}, and is {_short(b)} now" if plain else f"its {table}{key} differs"
+            return f"its {table}{key} was {ends(a)}, and is {ends(b)} now" if plain else f"its {table}{key} differs"
     return ""
-
-
-def _short(value: Any) -> str:
-    text = str(value)
-    return text if len(text) <= 80 else f"{text[:38]}…{text[-38:]}"

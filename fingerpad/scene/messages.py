@@ -57,6 +57,13 @@ def clip(text: str, most: int = _MOST_VALUE) -> str:
     return text if len(text) <= most else text[: most - 3] + "..."
 
 
+def ends(value: Any, most: int = 80) -> str:
+    """Return a text of at most so many printable characters, without its middle: a path has its name at the end."""
+    text = clip(str(value), len(str(value)) * len("\\U0010ffff"))
+    half = most // 2 - 2
+    return text if len(text) <= most else f"{text[:half]}…{text[-half:]}"
+
+
 def show(value: Any) -> str:
     """Return a value as a person would type it, shortened."""
     if isinstance(value, bool) or value is None:

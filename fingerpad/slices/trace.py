@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 NAMES = ("f_ext", "f_t", "f_electrostatic", "contact_length", "gross_width")
 """Columns: N/m the forces, m the lengths."""
 LEAST = 3
-"""Least number of points of a trace: without one of them there is still a power law, and an error of interpolation."""
+"""Least number of points of a trace. A power law, and so an error of interpolation, needs two without any of them."""
 _NOTHING = 1e-12  # of the largest external force: values below it are roundoff
 _APART = 1e-4  # relative distance of two points: of closer ones, slopes are made by the tolerances of solvers (1e-6)
 
