@@ -102,7 +102,10 @@ def _rename() -> None:
     """Give the groups the tags of :mod:`geometry.tags`, by their names."""
     groups = []
     for dim, tag in gmsh.model.getPhysicalGroups():
-        name = gmsh.model.getPhysicalName(dim, tag)
+        try:
+            name = gmsh.model.getPhysicalName(dim, tag)
+        except UnicodeDecodeError:
+            raise GeometryError(f"group {tag} has a name that is no text in UTF-8; write the file in UTF-8") from None
         gmsh.model.removePhysicalName(name)  # else it stays with its old tag
         if dim == 0:
             continue
