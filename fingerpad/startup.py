@@ -34,7 +34,7 @@ def start(options: Sequence[str] = ()) -> None:
     """Start the libraries, or give PETSc further options where they have been started.
 
     Args:
-        options: PETSc's, as on a command line; they override those of the environment and of the user's home.
+        options: PETSc's, as on a command line; they override those of the environment.
 
     Raises:
         ImportError: the forms cannot be compiled, in one sentence.
@@ -47,6 +47,7 @@ def start(options: Sequence[str] = ()) -> None:
         from petsc4py import PETSc
 
         PETSc.Options().insertString(" ".join(options))  # for the case that PETSc had been started
+        import dolfinx.fem.petsc  # loads the library that a petsc.cfg of the current folder names
         import dolfinx.jit
         import ffcx.options
         import matplotlib  # noqa: F401

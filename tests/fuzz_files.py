@@ -217,7 +217,8 @@ def _read(path: Path) -> int:
             load(MPI.COMM_SELF, geometry.file(path))
         elif path.suffix == ".volts":
             wave = {"waveform": "file", "file": str(path)}
-            from_data({"history": [{"name": "press", "f_ext": 5.0}, {"name": "wave", "hold": 0.1, "voltage": wave}]})
+            press, over_time = {"name": "press", "f_ext": 5.0}, {"name": "wave", "duration": 0.1, "voltage": wave}
+            from_data({"history": [press, over_time]})
         elif path.suffix == ".measured":
             measured.read(path)
         else:

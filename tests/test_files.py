@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def voltages(path: Path) -> None:
-    from_data({"history": [{"name": "hold", "hold": 0.1, "voltage": {"waveform": "file", "file": str(path)}}]})
+    from_data({"history": [{"name": "hold", "duration": 0.1, "voltage": {"waveform": "file", "file": str(path)}}]})
 
 
 def topography(path: Path) -> None:

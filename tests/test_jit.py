@@ -160,7 +160,7 @@ def test_without_locks(cache, monkeypatch):
 def test_compiler_that_fails_is_one_sentence(cache, monkeypatch):
     """It names the cause; with a compiler that works the next compile succeeds."""
     monkeypatch.setenv("CC", "false")
-    with pytest.raises(jit.CompileError, match="^a form cannot be compiled in .* kept in .*/false' failed") as found:
+    with pytest.raises(jit.CompileError, match="^a form cannot be compiled in .* kept in .*false'") as found:
         integral()
     assert found.value.name == COMPILER and "\n" not in str(found.value)
     monkeypatch.delenv("CC")
@@ -193,7 +193,7 @@ def test_command_refuses_where_the_compiler_fails(cache, monkeypatch, tmp_path, 
 @pytest.mark.mpi
 def test_failure_of_the_first_rank_has_its_cause_on_all(cache, monkeypatch):
     monkeypatch.setenv("CC", "false")
-    with pytest.raises(jit.CompileError, match="/false' failed"):
+    with pytest.raises(jit.CompileError, match="false'"):
         integral(MPI.COMM_WORLD)
 
 

@@ -31,7 +31,8 @@ _CPU = Path("/proc/cpuinfo")
 # part of -ffast-math, may cancel NaN, by which an element turned inside out is found.
 _FAST = ["-O3", "-fno-math-errno", "-fno-trapping-math", "-freciprocal-math"]
 _SILENT = 5.0  # s of waiting for another process until a line says so
-_SIGNALLED = "failed with exit code -"  # of a compiler that got a signal which the run holds back, as of Ctrl-C
+# What setuptools says of a compiler that got a signal, as of Ctrl-C, which the run holds back.
+_SIGNALLED = ("failed with exit code -", "died with <Signals.")
 
 
 class CompileError(ImportError):
@@ -99,7 +100,7 @@ def _compile(
             try:
                 return _apart(compile_in, folder)
             except cffi.VerificationError as error:
-                if _SIGNALLED not in str(error):
+                if not any(words in str(error) for words in _SIGNALLED):
                     raise
                 return _apart(compile_in, folder)
     except (cffi.VerificationError, OSError) as error:
