@@ -45,13 +45,19 @@ _FLAT = 1e-9  # out of the plane or below the screen, over the body's size
 _THIN = 1e-6  # double area of a triangle, over the square of its longest side
 _TRIANGLE, _LINE = 2, 1  # gmsh's numbers of linear elements
 _START = b"$MeshFormat"
-# Numbers that are wrong can end the process in which gmsh reads them.
+# Wrong numbers can end the process in which gmsh reads them, keep it reading for ever, or take all of the memory.
 _TRY = """
-import gmsh, sys
+import gmsh, resource, sys
+resource.setrlimit(resource.RLIMIT_AS, (int(sys.argv[2]),) * 2)
 gmsh.initialize(readConfigFiles=False)
 gmsh.option.setNumber("General.Terminal", 0)
-gmsh.merge(sys.argv[1])
+try:
+    gmsh.merge(sys.argv[1])
+except Exception as error:
+    sys.exit(str(error))
 """
+_MEMORY = 4e9, 40.0  # bytes, and bytes more for each of the file; gmsh takes some 4
+_SECONDS = 20.0, 1e-6  # s, and s more for each byte; gmsh takes 1e-7 or less
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -69,8 +75,11 @@ def file(path: str | Path, sha256: str = "") -> float:
         GeometryError: the file is none, has changed, or holds no such body.
     """
     path = Path(path)
-    _open(path, sha256)
+    content = _content(path, sha256)
     try:
+        with files.alone(content, "mesh.msh") as copy:  # gmsh would run a script called NAME.msh.opt beside NAME.msh
+            _refuse_unreadable(copy, len(content))
+            gmsh.merge(str(copy))
         _rename()
         _check_mesh()
     except GeometryError as error:
@@ -78,8 +87,8 @@ def file(path: str | Path, sha256: str = "") -> float:
     return 1.0
 
 
-def _open(path: Path, sha256: str) -> None:
-    """Read a file into the current gmsh session."""
+def _content(path: Path, sha256: str) -> bytes:
+    """Return the content of a file that gmsh takes for a mesh."""
     try:
         content = files.read(path)
     except OSError as error:
@@ -89,13 +98,26 @@ def _open(path: Path, sha256: str) -> None:
     if not content.startswith(_START) or path.suffix != ".msh":
         # gmsh tells kinds of files by their ends, and takes an unknown one for a script of its own, which it runs.
         raise GeometryError(f"{path} is no mesh of gmsh; it must be a .msh file of version 2.2 or 4.1")
-    with files.alone(content, "mesh.msh") as copy:  # gmsh would run a script called NAME.msh.opt beside NAME.msh
-        if subprocess.run([sys.executable, "-P", "-c", _TRY, copy], capture_output=True).returncode < 0:
-            raise GeometryError(f"{path}: gmsh cannot read the mesh, which is damaged; write it again")
-        try:
-            gmsh.merge(str(copy))
-        except Exception as error:  # gmsh's own are of no other kind
-            raise GeometryError(f"{path}: gmsh cannot read the mesh: {error}") from error
+    return content
+
+
+def _refuse_unreadable(copy: Path, size: int) -> None:
+    """Refuse a file of a size (bytes) that gmsh cannot read, as another process finds out.
+
+    Raises:
+        GeometryError: why not.
+    """
+    memory, seconds = (least + more * size for least, more in (_MEMORY, _SECONDS))
+    command, words = [sys.executable, "-P", "-c", _TRY, str(copy), str(int(memory))], ""
+    try:
+        done = subprocess.run(command, capture_output=True, timeout=seconds)
+        if done.returncode == 0:
+            return
+        words = done.stderr.decode(errors="replace").strip() if done.returncode > 0 else ""
+    except subprocess.TimeoutExpired:
+        pass
+    why = f": {words.splitlines()[-1]}" if words else ", which is damaged; write it again"
+    raise GeometryError(f"gmsh cannot read the mesh{why}")
 
 
 def _rename() -> None:
