@@ -139,7 +139,7 @@ def test_options_of_gmsh_in_the_home_have_no_effect(tmp_path, name, variable):
 
 @pytest.mark.parametrize("code", ["import os, signal; os.kill(os.getpid(), signal.SIGSEGV)", "while True: pass"])
 def test_damaged_mesh_does_not_end_the_program(tmp_path, monkeypatch, code):
-    """Wrong numbers may end the process in which gmsh reads them, or never end it; which ones depends on its version."""
+    """Wrong numbers may end the process in which gmsh reads them, or keep it; which ones depends on its version."""
     path = write(tmp_path / "mine.msh")
     monkeypatch.setattr("geometry.meshfile._TRY", code)
     monkeypatch.setattr("geometry.meshfile._SECONDS", (0.5, 0.0))
