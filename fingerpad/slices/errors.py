@@ -52,8 +52,8 @@ def estimate(name: str, total: Total) -> dict[str, float]:
 def lighter(known: dict[str, float], total: Total, ratio: float) -> dict[str, float]:
     """Return the errors of an estimate under another force: they grow away from the run's own state at the centre.
 
-    With the root of the ratio of forces: with the error of the interpolation, that covers all but 1 in 100 of the
-    errors of the kept runs at 0.2 to 0.6 of their forces (``tests/test_slices_errors.py`` has some).
+    *Assumption*: with the root of the ratio of forces. ``tests/test_slices_errors.py`` compares some kept runs with it,
+    together with the error of the interpolation.
 
     Args:
         known: the errors of the estimate.

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 NAMES = ("f_ext", "f_t", "f_electrostatic", "contact_length", "gross_width")
 """Columns: N/m the forces, m the lengths."""
 LEAST = 3
-"""Least number of points of a trace. A power law, and so an error of interpolation, needs two without any of them."""
+"""Least number of points of a trace. A power law needs two, and the error of the interpolation leaves one out."""
 _NOTHING = 1e-12  # of the largest external force: values below it are roundoff
 _APART = 1e-4  # relative distance of two points: of closer ones, slopes are made by the tolerances of solvers (1e-6)
 
