@@ -1,11 +1,9 @@
 """One measurement of benchmarks/performance.py in a process of its own; rank 0 prints JSON.
 
-python3 -m benchmarks.measure run [SCENE.toml] | tried [CONSTANT=VALUE ...] | compile | explicit
-python3 -m benchmarks.measure operations FACTOR | solvers FACTOR
+python3 -m benchmarks.measure run [SCENE.toml] | compile | explicit | operations FACTOR
 """
 
 import functools
-import importlib
 import json
 import os
 import sys
@@ -14,7 +12,6 @@ import time
 from collections import defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from benchmarks import explicit, linear
+from benchmarks import explicit
 from fingerpad.accuracy.refinement import Refinement
 from fingerpad.io.drawing import Drawing
 from fingerpad.io.writing import Writer
@@ -47,6 +44,7 @@ from variational.solvers.timing import memory_mb
 
 Numbers = dict[str, Any]
 _Key = tuple[str, str]
+STRAIN = (0.01, -0.02)  # of the body whose tangent is measured
 _REPEATS, _SIZES = 5, ("contact", "receptor", "interface", "growth")
 _NEWTON, _PATH, _ERRORS, _LAYER = "rest of Newton's method", "rest of the path", "errors", "layer at the screen"
 _WHOLE = ("stability", "output", "set-up", _LAYER)  # parts to which all that is called in them belongs
@@ -163,46 +161,12 @@ def run(scene: str = "") -> Numbers:
     }
 
 
-def tried(*constants: str) -> Numbers:
-    """Return counts and answers of the default scene with other constants of the solver.
-
-    Args:
-        constants: as ``coupling._HASTE=1`` or, a field of one, ``coupling._FIRST.most=1e-2``.
-    """
-    for constant in constants:
-        place, value = constant.split("=")
-        module, name, *fields = place.split(".")
-        owner = importlib.import_module(f"variational.solvers.{module}")
-        old = getattr(owner, name)
-        setattr(owner, name, replace(old, **{fields[0]: float(value)}) if fields else type(old)(value))
-    with tempfile.TemporaryDirectory() as folder:
-        scene = load().replace(output={"errors": False})
-        result = full.run(scene, Path(folder), MPI.COMM_WORLD, lines=False)
-    assert result.charged and result.full_slip
-    return {
-        "factorisations": result.cost.factorisations,
-        "newton": result.cost.newton_iterations,
-        "rounds": sum(state.record.coupling_iterations for state in result.steps if state.record),
-        "steps": len(result.steps),
-        "answers": {
-            "charged contact length": result.charged.contact_length,
-            "friction force at full slip": result.full_slip.f_t,
-        },
-    }
-
-
 def default_finger(factor: str) -> Finger:
     """Return the default finger with its element sizes times a factor."""
     scene = by_rule(load())
     size = scene.mesh.model_copy(update={name: float(factor) * getattr(scene.mesh, name) for name in _SIZES})
     model = FingerModel(scene.model_copy(update={"mesh": size}), plan(scene))
     return Finger(model, MPI.COMM_WORLD, lambda target, part, attempt: False)
-
-
-def solvers(factor: str) -> Numbers:
-    """Return what linear solvers cost on the tangent of the default finger with its element sizes times a factor."""
-    finger = default_finger(factor)
-    return {"unknowns": finger.unknowns, "ways": linear.measure(finger.solver)}
 
 
 def operations(factor: str) -> Numbers:
@@ -213,7 +177,8 @@ def operations(factor: str) -> Numbers:
     comm, before = MPI.COMM_WORLD, memory_mb()
     finger = default_finger(factor)
     solver, equations = finger.solver, finger.solver.equations
-    linear.strain(solver)
+    x = solver.problem.V.tabulate_dof_coordinates()[:, :2]
+    solver.set_displacement(x * STRAIN, np.zeros(2))
     K, f, step = (equations.layout.create_matrix(), *(equations.layout.create_vector() for _ in "ab"))
     ksp = PETSc.KSP().create(comm)
     ksp.setOptionsPrefix(PREFIX)
@@ -278,9 +243,7 @@ def forms() -> Numbers:
 if __name__ == "__main__":
     jobs: dict[str, Callable[..., Numbers]] = {
         "run": run,
-        "tried": tried,
         "operations": operations,
-        "solvers": solvers,
         "compile": forms,
         "explicit": explicit.measure,
     }

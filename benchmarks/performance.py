@@ -19,14 +19,12 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks import harness, linear, targets, tried
+from benchmarks import harness
 from benchmarks.harness import Made, keep, kept, made, prose, table
 
 FACTORS = (2.0, 1.4, 1.0, 0.7, 0.5, 0.31)  # on the element sizes of the default scene: 45 k to 1.16 M unknowns
 ON_RANKS, REPEATS = (1.0, 0.5), 3
 IDLE = 0.5  # load average above which a ratio of wall times is not measured
-BEFORE = {"commit": "8e60a12", "factorisations": 348, "newton": 1119, "path": 230.0}
-WITHOUT = {"commit": "706e0c0", "factorisations": 205, "newton": 483}  # of the kept numbers before the layer's solves
 OPERATIONS = {"tangent": "tangent", "factorisation": "LU", "solution": "back-substitution", "residual": "residual"}
 LAYER = "layer at the screen"
 _LINK, _LATENCY = 10e9, 2e-6  # bytes/s and s, of a cluster's network
@@ -84,10 +82,8 @@ PARTS = {
     "ranks": _ranks,
     "compile": _compile,
     "operations": _operations,
-    "solvers": lambda: child("solvers", "1.0"),
     "explicit": lambda: child("explicit"),
     "run": lambda: child("run"),
-    "tried": lambda: tried.measure(child),
 }
 
 
@@ -143,18 +139,18 @@ def cluster(one: Mapping[str, Any], ranks: int) -> tuple[float, float, float]:
 def _work(run: Mapping[str, Any]) -> str:
     path = sum(run["path"].values())
     rows = [
-        ["LU factorisations, those of stability checks included", BEFORE["factorisations"], run["factorisations"]],
-        ["of these with half of the finger, before the bone moves sideways", 0, run["led"]],
-        ["factorisations of the layer at the screen", 0, run["calls"][LAYER]],
-        ["Newton iterations", BEFORE["newton"], run["newton"]],
-        ["accepted steps", None, run["steps"]],
-        ["path, in units of one factorisation with its tangent", None, path / unit(run)],
-        ["whole run with errors and pictures, in the same units", None, run["processor"] / unit(run)],
-        ["path (processor s)", BEFORE["path"], path],
-        ["whole run (processor s)", None, run["processor"]],
-        ["one factorisation with its tangent (processor s)", None, unit(run)],
+        ["LU factorisations, those of stability checks included", run["factorisations"]],
+        ["of these with half of the finger, before the bone moves sideways", run["led"]],
+        ["factorisations of the layer at the screen", run["calls"][LAYER]],
+        ["Newton iterations", run["newton"]],
+        ["accepted steps", run["steps"]],
+        ["path, in units of one factorisation with its tangent", path / unit(run)],
+        ["whole run with errors and pictures, in the same units", run["processor"] / unit(run)],
+        ["path (processor s)", path],
+        ["whole run (processor s)", run["processor"]],
+        ["one factorisation with its tangent (processor s)", unit(run)],
     ]
-    return table(["default scene", f"before ({BEFORE['commit']})", "now"], rows)
+    return table(["default scene", "measured"], rows)
 
 
 def _parts(run: Mapping[str, Any]) -> str:
@@ -257,28 +253,20 @@ def draw(docs: Path) -> Path:
     run, sizes = of["run"], of["operations"]
     path, largest = sum(run["path"].values()), max(run["path"], key=run["path"].__getitem__)
     power = exponent([s["unknowns"] for s in sizes], [_step(s) for s in sizes])
-    costs = {"seconds": path, "units": path / unit(run), "time": power, "memory": _memory(sizes)}
     own = next(size["processor"] for size in sizes if size["factor"] == 1.0)
     saved = (own["tangent"] + own["factorisation"]) / (own["solution"] + own["residual"])
-    asked = targets.targets(of, costs, docs)
     finding = text["finding"].format(
-        **run, before=BEFORE, units=costs["units"], largest=largest, share=100 * run["path"][largest] / path,
-        power=power, reached=sum(target.reached for target in asked), asked=len(asked),
+        **run, units=path / unit(run), largest=largest, share=100 * run["path"][largest] / path, power=power
     )  # fmt: skip
-    missed = "\n\n".join(text[why].format(kept=1 / saved, alone=120 + 400 / saved) for why in targets.reasons(asked))
     cold, warm = (of["compile"][state] for state in ("cold", "warm"))
     two = f"{text['ranks']}\n\n{_two(of['ranks'])}" if "ranks" in of else "Not measured: the machine was busy."
     body = [
-        f"{text['asked']}\n\n{targets.rows(asked)}",
-        f"### What was missed\n\n{missed}" if missed else "",
         f"## Counts and ratios\n\n{_work(run)}",
         f"## Where the time goes\n\n{_parts(run)}",
-        text["layer"].format(calls=run["calls"][LAYER], share=100 * run["path"][LAYER] / path, without=WITHOUT),
+        text["layer"].format(calls=run["calls"][LAYER], share=100 * run["path"][LAYER] / path),
         text["compile"].format(files=of["compile"]["files"], ratio=cold["seconds"] / unit(run), cold=cold, warm=warm),
         f"## How the cost grows\n\n{text['growth'].format(saved=saved)}\n\n{_growth(sizes)}",
         f"## Two ranks\n\n{two}",
-        f"{text['solvers'].format(**of['solvers'])}\n\n{linear.rows(of['solvers']['ways'])}",
-        f"{text['tried']}\n\n{tried.rows(of['tried'])}\n\n{text['others']}",
         f"{text['cluster']}\n\n{_cluster(sizes)}\n\n{text['array']}",
         f"## Explicit dynamics\n\n{_explicit(of['explicit'], run)}",
         f"## Versions and load\n\n{_origin(found.numbers)}",

@@ -1,16 +1,13 @@
 """The measurements of docs/performance.md, on small bodies, and the sweep as an array of jobs."""
 
 import csv
-import importlib
 import os
 import subprocess
 from pathlib import Path
 
 import pytest
 
-from benchmarks import explicit, linear, performance, tried
-from benchmarks.harness import DOCS
-from benchmarks.targets import Target, reasons, rows, targets
+from benchmarks import explicit, performance
 
 ROOT = Path(__file__).resolve().parents[1]
 SMALL = ROOT / "demos" / "scenes" / "small_finger.toml"
@@ -41,72 +38,6 @@ def test_busy_machine_is_refused(monkeypatch, tmp_path, capsys):
     performance.measure(["ranks"], tmp_path)
     assert "the load average is 2.00" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
-
-
-def test_linear_solvers_that_are_compared_solve_the_same_system():
-    """On a coarse finger: direct ones to roundoff, the kept factorisation to what GMRES is asked for."""
-    found = performance.child("solvers", "6")
-    ways = found["ways"]
-    assert {linear.NOW, "GMRES, kept LU"} <= set(ways) <= set(linear.WAYS)
-    for name, numbers in ways.items():
-        assert min(numbers[part] for part in ("first", "set-up", "solve")) > 0
-        if numbers["iterations"] is None:
-            assert numbers["rest"] < 1e-9, name
-    assert ways["GMRES, kept LU"]["iterations"] > 1 and ways["GMRES, kept LU"]["rest"] < 1e-6
-    assert ways["its AMF ordering"]["entries"] != ways[linear.NOW]["entries"] > found["unknowns"]
-    first = linear.rows(ways).splitlines()[2]
-    assert first.startswith(f"| {linear.NOW} | 1.00 |")
-
-
-def test_what_is_tried_are_other_values_of_constants_that_there_are():
-    """A constant that is renamed would end the measurement; one that takes the value tried would be no trial."""
-    for words, constants in tried.VARIANTS.items():
-        assert bool(constants) == (words != tried.NOW)
-        for constant in constants:
-            place, value = constant.split("=")
-            module, *names = place.split(".")
-            now = importlib.import_module(f"variational.solvers.{module}")
-            for name in names:
-                now = getattr(now, name)
-            assert float(value) != now
-
-
-def test_tried_constants_are_shown_beside_the_solver_as_it_is():
-    counts = {"factorisations": 10, "newton": 30, "rounds": 5, "steps": 4}
-    now = counts | {"answers": {"friction force": 2.0}}
-    other = counts | {"answers": {"friction force": 2.001}, "newton": 31}
-    first, second = tried.rows({tried.NOW: now, "other": other}).splitlines()[2:]
-    assert first.split(" | ")[-1] == "– |"
-    assert second.split(" | ")[2:] == ["31", "5", "4", "+0.05 % |"]
-
-
-@pytest.mark.parametrize(
-    ("sign", "measured", "reached"),
-    [("≤", 120, True), ("≤", 121, False), ("≥", 120, True), ("≥", 119, False), ("≤", None, False), ("≥", None, False)],
-)
-def test_target(sign, measured, reached):
-    """A number that was not measured is not reached."""
-    target = Target("what", sign, 120, measured)
-    assert target.reached == reached
-    assert rows([target]).endswith("| yes |" if reached else "| no |")
-
-
-def test_targets_are_judged_by_the_kept_numbers():
-    """Twice the factorisations miss theirs, and nothing else changes."""
-    of = {name: part["found"] for name, part in performance.kept("performance", DOCS).numbers.items()}
-    path = {"seconds": 1.0, "units": 1.0, "time": 1.0, "memory": 1.0}
-    found = targets(of, path, DOCS)
-    more = targets(of | {"run": of["run"] | {"factorisations": 241}}, path, DOCS)
-    assert found[0].reached
-    assert [t.what for t, o in zip(found, more, strict=True) if t != o] == [found[0].what]
-    unmeasured = targets({name: part for name, part in of.items() if name != "ranks"}, path, DOCS)
-    assert [t.what for t in unmeasured] == [t.what for t in found]
-    assert [t.what for t in unmeasured if t.measured is None] == [t.what for t in found if t.why == "missed-ranks"]
-
-
-def test_a_missed_target_is_explained_and_a_reached_one_is_not():
-    missed, reached = (Target("what", "≤", 1, measured, why) for measured, why in ((2, "missed-a"), (1, "missed-b")))
-    assert reasons([missed, reached, missed, Target("what", "≤", 1, 2)]) == ["missed-a"]
 
 
 def test_pair_of_the_median_ratio_is_shown():
