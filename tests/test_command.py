@@ -25,7 +25,7 @@ SCENES = ROOT / "demos/scenes"
 
 
 def run_line(*argv: str) -> tuple[Scene, argparse.Namespace, list[str]]:
-    parser = Parser("fingerpad run", "Run.", "fingerpad run")
+    parser = Parser("run", "fingerpad run")
     parser.add_scene()
     parser.add_out("results", "folder")
     args, petsc = parser.read_with_petsc(argv)

@@ -54,7 +54,7 @@ def test_own_file_is_replaced(capsys, tmp_path):
 
 
 def read(*argv: str) -> None:
-    parser = Parser("fingerpad any", "Any command.", "fingerpad any")
+    parser = Parser("any", "fingerpad any")
     parser.add_argument("maps", nargs="*", type=Path)
     parser.add_file("--plot", PICTURE, "picture")
     parser.add_file("--csv", Kind("a table", (".csv",)), "table")
