@@ -189,7 +189,7 @@ def test_newtons_of_the_closed_form():
 
 @pytest.mark.parametrize("name", ["uncharged", "charged", "full_slip"])
 def test_trace_of_the_closed_form_is_scene_by_scene(name):
-    """The points that are computed together are those of one scene after the other, to the tolerance of roots, 1e-14."""
+    """Points that are computed together are those of one scene after the other, to the tolerance of roots."""
     scene = fp.Scene(voltage=120.0)
     found = fp.run(scene, model="cylinders", force=0.3).finger.traces[name]
     kind, voltage = ("full_slip" if name == "full_slip" else "charged"), (0.0 if name == "uncharged" else 120.0)

@@ -224,7 +224,7 @@ class Cylinder:
         attraction = 2 * sigma * a * (1 + beyond)
         columns: Any = np.array([2 * a, 2 * a * (1 + beyond), p_c, d_eq, f + attraction, attraction]).T.tolist()
         others = (tuple(map(float, pressures[:-1])) for pressures in found)
-        return [RidgeState(*each, more) for each, more in zip(columns, others, strict=True)]
+        return [RidgeState(*(*each, more)) for each, more in zip(columns, others, strict=True)]
 
     def _at(
         self, p_c: Array, voltage: float, loads: _Loads, near: Array | None = None
