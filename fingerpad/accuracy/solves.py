@@ -10,7 +10,6 @@ from mpi4py import MPI
 from fingerpad.accuracy.recompute import Solve, State, StateRecorder, solve_again
 from fingerpad.accuracy.rigid_screen import over_stiffer
 from fingerpad.model.finger import Step
-from fingerpad.model.memory import refuse_beyond
 from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.scene import Load
@@ -49,12 +48,10 @@ class Solves:
             states: as they were found on another mesh.
 
         Raises:
-            GeometryError: the mesh would need too much memory.
+            GeometryError: the mesh needs too much memory.
             StepFailed: a state was not found.
         """
-        model = self._model
-        refuse_beyond(model.geometry, mesh, model.numerics, model.options)
-        return self._again(model.changed(mesh=mesh), states)
+        return self._again(self._model.changed(mesh=mesh), states)
 
     def over_stiffer_screen(self, base: Solve, contact: Formulation) -> Solve:
         """Return states over a screen of twice the stiffness; collective.

@@ -22,7 +22,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from fingerpad.io.files import lock_file, read_object, replace_json
 from fingerpad.io.folder import below
-from fingerpad.io.left import between
+from fingerpad.io.pace import between
 from fingerpad.io.place import identity
 from fingerpad.io.terminal import watched
 from fingerpad.runs.processes import End, Pool, limit_processor_time, run
