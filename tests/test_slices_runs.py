@@ -221,7 +221,7 @@ def test_least_force(tmp_path):
 
     for model in ("full", "cylinders"):
         with pytest.raises(Stop):
-            traces.whole(fp.Scene(), 1e-5, model, solve)
+            traces.whole(fp.Scene(), 1e-5, find(model), solve)
     assert all(load.f_ext >= 1e-3 for scene in given for load in scene.loads() if load.f_ext is not None)
     finger = fp.run(force=1e-5, model="cylinders").finger
     assert finger.states["full_slip"].totals["f_ext"] == pytest.approx(1e-5, rel=1e-9)
@@ -232,7 +232,7 @@ def test_least_force(tmp_path):
 
 def test_folder_of_other_results_is_refused_before_the_work(tmp_path, monkeypatch):
     fp.run(model="cylinders", out=tmp_path)
-    monkeypatch.setattr(traces.cylinders, "solve", None)
+    monkeypatch.setattr("fingerpad.reduced.cylinders.solve", None)
     with pytest.raises(SceneError, match="holds the results of another scene"):
         fp.run(force=0.5, model="cylinders", out=tmp_path)
 

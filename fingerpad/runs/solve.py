@@ -181,7 +181,7 @@ def _whole(scene: Scene, force: float | str, model: Model, context: RunContext) 
         folder = traces.folder_of(context.folder, name) if model.path else None
         return _solved(each, model, replace(context, folder=folder))
 
-    found = traces.whole(scene, value, model.name, solve)
+    found = traces.whole(scene, value, model, solve)
     if found.interrupted:
         return found
     found = replace(found, record={**found.record, "asked": asked})
