@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import geometry as geometry
+    from fingerpad.io.quantities import Output as Output
     from fingerpad.io.result import Result as Result
     from fingerpad.model.body import Body as Body
     from fingerpad.runs.solve import run as run
@@ -42,6 +43,7 @@ _HOMES = {
     "sweep": "fingerpad.runs.sweep",
     "Sweep": "fingerpad.runs.sweep_results",
     "Result": "fingerpad.io.result",
+    "Output": "fingerpad.io.quantities",
     "ContactState": "variational.state",
     "Body": "fingerpad.model.body",
     "Material": "variational.materials.material",

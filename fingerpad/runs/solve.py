@@ -5,7 +5,7 @@ import os
 import signal
 import tempfile
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +15,8 @@ from fingerpad.io import dataset, terminal
 from fingerpad.io.files import replace_json
 from fingerpad.io.folder import below
 from fingerpad.io.place import Place, Serial, on_rank_0
+from fingerpad.io.quantities import Output
+from fingerpad.io.quantities import checked as checked_outputs
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS
 from fingerpad.model.check import check
@@ -45,6 +47,7 @@ def run(
     mesh: str | Path | None = None,
     comm: "MPI.Comm | None" = None,
     resume: bool = False,
+    outputs: Sequence[Output] = (),
 ) -> Result:
     """Return what a model answers to a scene; collective.
 
@@ -64,6 +67,7 @@ def run(
         mesh: file of a gmsh mesh in place of the finger's own, see :mod:`geometry.meshfile`.
         comm: communicator; by default of all ranks.
         resume: go on from where a run of the same scene in ``out`` was cut short; only of the full model.
+        outputs: further quantities, each computed from every state: see :class:`fingerpad.io.quantities.Output`.
 
     Returns:
         The result. A load that could not be reached is its ``failure``, with a warning; the states before are in it.
@@ -83,7 +87,7 @@ def run(
             f"resume is true, out is {show(out)}, model {show(model)} and force {show(force)}; "
             "only a full run in a folder, of one scene, can go on"
         )
-    result = solved(scene, model, None if out is None else Path(out), comm, force=force, resume=resume)
+    result = solved(scene, model, None if out is None else Path(out), comm, force=force, resume=resume, outputs=outputs)
     if result.interrupted:
         raise _ended(result)
     if result.failure and terminal.rank() == 0:
@@ -123,6 +127,7 @@ def solved(
     force: float | str | None = None,
     resume: bool = False,
     tables: Path | None = None,
+    outputs: Sequence[Output] = (),
 ) -> Result:
     """Return what a model answers to a scene with all its laws; collective; arguments as of :func:`run`.
 
@@ -137,15 +142,17 @@ def solved(
         force: on the whole finger, as of :func:`run`.
         resume: whether the full model goes on from where a run in the folder was cut short.
         tables: folder of the ridge's tables of the smooth finger; by default that of :func:`tables_in`.
+        outputs: as of :func:`run`.
     """
+    checked_outputs(outputs)
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     scene.laws.refuse_kept()
     try:
         if force is None:
-            result = _solved(scene, model, out, comm, lines, bar, resume, tables=tables)
+            result = _solved(scene, model, out, comm, lines, bar, resume, tables=tables, outputs=outputs)
         else:
-            result = _whole(scene, force, model, out, comm, lines, bar, tables)
+            result = _whole(scene, force, model, out, comm, lines, bar, tables, outputs)
     except LawError as error:
         raise SceneError(str(error)) from error
     whole = not (result.interrupted and force is not None)  # a force without all of its traces is no result
@@ -167,6 +174,7 @@ def _solved(
     resume: bool = False,
     asked: Mapping[str, Any] | None = None,
     tables: Path | None = None,
+    outputs: Sequence[Output] = (),
 ) -> Result:
     """Return what a model answers, its results written into a folder; collective; arguments as of :func:`solved`.
 
@@ -180,11 +188,14 @@ def _solved(
         resume: whether to go on.
         asked: of which the scene is a trace, see :class:`fingerpad.io.place.Place`.
         tables: as of :func:`solved`.
+        outputs: as of :func:`run`.
     """
     if model == "cylinders":
         from fingerpad.reduced import cylinders
 
-        found = with_versions(cylinders.solve(scene), {"versions": {"fingerpad": version(), "source": source()}})
+        found = with_versions(
+            cylinders.solve(scene), {"versions": {"fingerpad": version(), "source": source()}}
+        ).with_outputs(outputs)
         return found if out is None else kept(found, out, _ranks(comm))
     with needed_by(f"the model {model!r}"):
         import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
@@ -196,7 +207,7 @@ def _solved(
         if model == "full":
             from fingerpad.runs import full
 
-            return full.run(scene, out, comm, lines, bar, resume, asked)
+            return full.run(scene, out, comm, lines, bar, resume, asked, outputs)
         from fingerpad.io.console import Console
         from fingerpad.io.provenance import provenance
         from fingerpad.reduced import smooth
@@ -204,7 +215,9 @@ def _solved(
         _refuse_other_results(scene, model, out, comm, asked)
         console = Console(comm, lines, bar)
         try:
-            found = with_versions(smooth.solve(scene, tables or tables_in(out), comm, console), provenance())
+            found = with_versions(
+                smooth.solve(scene, tables or tables_in(out), comm, console), provenance()
+            ).with_outputs(outputs)
             return kept(found, out, comm)
         finally:
             console.close()
@@ -237,6 +250,7 @@ def _whole(
     lines: bool,
     bar: bool,
     tables: Path | None = None,
+    outputs: Sequence[Output] = (),
 ) -> Result:
     """Return the result of a force on the whole finger, its sums written beside the files of the last trace."""
     from fingerpad.slices import traces
@@ -255,7 +269,9 @@ def _whole(
             what = f"trace of {WORDS[name]}" if name else "centre of the finger"
             print(f"scene {next(number)} of some {traces.scenes(scene)}: {what}, {each.f_ext:.4g} N/m", flush=True)
         folder = traces.folder_of(own, name)
-        return _solved(each, model, folder, comm, lines and model == "full", bar, asked=asked, tables=tables)
+        return _solved(
+            each, model, folder, comm, lines and model == "full", bar, asked=asked, tables=tables, outputs=outputs
+        )
 
     try:
         found = traces.whole(scene, value, model, solve)
