@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+from pathlib import Path
 
 import pytest
 import xarray
@@ -100,14 +101,22 @@ def test_entry_of_the_package_is_everywhere(tmp_path, monkeypatch):
     assert fp.Result.load(tmp_path).full_slip.p_mean == found.full_slip.p_mean
 
 
+def test_recipe_of_the_page_runs_as_written(capsys):
+    page = (Path(__file__).parents[1] / "docs" / "results.md").read_text(encoding="utf-8")
+    exec(page.split("```python\n")[1].split("```")[0], {})
+    printed = capsys.readouterr().out.splitlines()
+    shown = next(line for line in printed if line.strip().startswith("p_mean (kPa)")).split()[-1]
+    assert float(printed[-1]) == pytest.approx(1e3 * float(shown), rel=1e-3)
+
+
 @pytest.mark.parametrize(
     ("outputs", "words"),
     [
         (P_MEAN, "it must be a list of fingerpad.Output"),
         (["p_mean"], "it must be a list of fingerpad.Output"),
-        ([P_MEAN, fp.Output("p_mean", "Pa", max)], "called \"?p_mean\"?; it must have a name of its own"),
-        ([fp.Output("f_t", "N/m", max)], "called \"?f_t\"?; it must have a name of its own"),
-        ([fp.Output("mean p", "Pa", max)], "called \"?mean p\"?; it must have a name of its own"),
+        ([P_MEAN, fp.Output("p_mean", "Pa", max)], "called .*p_mean.*; it must have a name of its own"),
+        ([fp.Output("f_t", "N/m", max)], "called .*f_t.*; it must have a name of its own"),
+        ([fp.Output("mean p", "Pa", max)], "called .*mean p.*; it must have a name of its own"),
         ([fp.Output("p_mean", "Pa")], "must have a unit, such as 'kPa', and a function"),
         ([fp.Output("p_mean", "Pa", lambda state: state.pressure)], "p_mean of step 0 cannot be computed"),
         ([fp.Output("p_mean", "Pa", lambda state: "high")], "p_mean of step 0 cannot be computed"),

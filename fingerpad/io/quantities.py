@@ -260,9 +260,7 @@ def checked(outputs: Any) -> tuple[Output, ...]:
     every = tuple(dict.fromkeys((*OUTPUTS, *given)))
     for each in every:
         if not (isinstance(each.name, str) and each.name.isidentifier()) or each.name in names:
-            raise SceneError(
-                f"an output is called {show(each.name)}; its name must be that of a variable and a new one"
-            )
+            raise SceneError(f"an output is called {show(each.name)}; it must have a name of its own, such as 'p_mean'")
         if not isinstance(each.unit, str) or not callable(each.compute):
             raise SceneError(f"the output {each.name} must have a unit, such as 'kPa', and a function of a state")
         names.add(each.name)
