@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import geometry as geometry
     from fingerpad.io.quantities import Output as Output
     from fingerpad.io.result import Result as Result
+    from fingerpad.measurements.compare import compare as compare
     from fingerpad.model.body import Body as Body
     from fingerpad.runs.solve import run as run
     from fingerpad.runs.sweep import sweep as sweep
@@ -42,6 +43,7 @@ _HOMES = {
     "run": "fingerpad.runs.solve",
     "sweep": "fingerpad.runs.sweep",
     "Sweep": "fingerpad.runs.sweep_results",
+    "compare": "fingerpad.measurements.compare",
     "Result": "fingerpad.io.result",
     "Output": "fingerpad.io.quantities",
     "ContactState": "variational.state",

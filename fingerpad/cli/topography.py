@@ -30,11 +30,7 @@ _OPTIONS = {  # words of the reader's refusals
 
 def main(argv: Sequence[str]) -> int:
     """Print the table of roughness that a height map gives; return the exit code."""
-    parser = Parser(
-        "fingerpad topography",
-        "Compute the roughness of a scene from a height map: text, NumPy or an instrument's.",
-        _EXAMPLES,
-    )
+    parser = Parser("topography", _EXAMPLES)
     parser.add_argument("file", type=path, metavar="FILE", help="matrix of heights, or points x y z")
     units = ", ".join(unit for unit in UNITS if unit.isascii())
     parser.add_argument("--unit", choices=[*UNITS], metavar="UNIT", help=f"of the heights: {units}")
