@@ -119,7 +119,9 @@ def keep(folder, **values):
     cost = {"wall_seconds": 9.0, "factorisations": 3, "unknowns": 5, "full_slip": True}
     flat, at = names | lengths | ridges, {"f_ext": 75.0, "voltage": 200.0}
     states = {
-        name: at | {key: flat[f"{prefix}_{key}"] for key in RESULTS} for name, prefix in PREFIXES.items() if name in STATES
+        name: at | {key: flat[f"{prefix}_{key}"] for key in RESULTS}
+        for name, prefix in PREFIXES.items()
+        if name in STATES
     }
     summary = at | {"parameters": scene().parameters(), "states": states} | flat | cost | values
     (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
