@@ -15,7 +15,7 @@ from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.messages import clip
 
 _RESULTS = ("uncharged_", "normal_", "slip_", "load_")
-_MODELS = ("full", "smooth")
+_MODELS = ("full",)
 
 
 @dataclass(frozen=True)
