@@ -218,7 +218,7 @@ def plainly(*argv: str, folder: Path = ROOT, blocked: Sequence[str] = ()) -> sub
         ["microscale"],
         ["params", "roughness"],
         ["check"],
-        ["topography", "map.txt", "--unit", "um", "--size", "100", "100"],
+        ["topography", "map.txt", "--unit", "um", "--size", "1e-4", "1e-4"],
     ],
 )
 def test_commands_without_finite_elements(argv, tmp_path):
