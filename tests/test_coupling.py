@@ -51,7 +51,7 @@ class Stub:
         self.stops, self.lost = [], lambda d: False  # how solves may end; air gaps at which there is no equilibrium
         self.problem = SimpleNamespace(
             interface=SimpleNamespace(formulation=SimpleNamespace(error=lambda *_: 0.0, tolerance=0.0), friction=None),
-            history=None,
+            history=SimpleNamespace(accepted={}),
             voltage=SimpleNamespace(value=FOLD_VOLTAGE),
             mesh=SimpleNamespace(comm=MPI.COMM_SELF),
             set_air_gaps=lambda d: setattr(self, "d", d),

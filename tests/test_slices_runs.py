@@ -187,6 +187,18 @@ def test_newtons_of_the_closed_form():
     assert np.ptp([total.totals["f_ext"] for total in finger.states.values()]) < 1e-9
 
 
+@pytest.mark.parametrize("name", ["uncharged", "charged", "full_slip"])
+def test_trace_of_the_closed_form_is_scene_by_scene(name):
+    """Points that are computed together are those of one scene after the other, to the tolerance of roots."""
+    scene = fp.Scene(voltage=120.0)
+    found = fp.run(scene, model="cylinders", force=0.3).finger.traces[name]
+    kind, voltage = ("full_slip" if name == "full_slip" else "charged"), (0.0 if name == "uncharged" else 120.0)
+    for k, f_ext in enumerate(found.columns["f_ext"]):
+        state = fp.run(scene.replace(f_ext=float(f_ext), voltage=voltage), model="cylinders").named[kind]
+        for key in ("f_t", "f_electrostatic", "contact_length"):
+            assert found.columns[key][k] == pytest.approx(getattr(state, key), rel=1e-11, abs=0)
+
+
 def test_folder_of_another_force_is_refused_in_newtons(tmp_path):
     """Of a model without a path, too, whose state in N/m nobody gave; the same force is taken again."""
     for force in ("0.5 N", 0.5):

@@ -28,9 +28,7 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Describe a run; return the exit code."""
-    parser = Parser(
-        "fingerpad check", "Compute what a run contains, omits and costs, and draw its mesh; solve nothing.", _EXAMPLES
-    )
+    parser = Parser("check", _EXAMPLES)
     parser.add_scene()
     parser.add_out("results", "folder of the picture mesh.png (default: results)")
     args = parser.read(argv)
@@ -89,9 +87,8 @@ def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
     yield from (*remarks(scene), *leakage(scene))
     found, touching = estimate(scene, needed), by_rule(scene)
     ridges = touching_ridges(touching.geometry, touching.mesh)
-    if scene.contact.formulation == "augmented":
-        times = f"some {cost.FORMULATIONS['augmented']:.0f} times the factorisations of the penalty"
-        yield f"contact by a method for comparison, which takes {times} and may miss equilibria that it finds"
+    if caution := scene.contact.law().caution:
+        yield caution
     given = scene.mesh.touching_half_arc is not None
     how = "as mesh.touching_half_arc gives" if given else "by a rule of thumb; a run takes more where they come near"
     size = touching.mesh

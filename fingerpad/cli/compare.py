@@ -20,11 +20,7 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Compare models; return the exit code."""
-    parser = Parser(
-        "fingerpad compare",
-        "Compute a scene by several models; print their results and their cost side by side.",
-        _EXAMPLES,
-    )
+    parser = Parser("compare", _EXAMPLES)
     parser.add_scene()
     parser.add_out("results", "folder of the full run and of the ridge's tables (default: results)")
     parser.add_argument(

@@ -24,11 +24,7 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Print the table of roughness that a height map gives; return the exit code."""
-    parser = Parser(
-        "fingerpad topography",
-        "Compute the roughness of a scene from a height map: NumPy's, a matrix as text, or a file of an instrument.",
-        _EXAMPLES,
-    )
+    parser = Parser("topography", _EXAMPLES)
     parser.add_argument("file", type=path, metavar="FILE", help="matrix of heights, or a file of an instrument")
     units = ", ".join(unit for unit in UNITS if unit.isascii())
     parser.add_argument("--unit", choices=[*UNITS], metavar="UNIT", help=f"of the heights: {units}")

@@ -259,18 +259,13 @@ def used(scene: "Scene") -> dict[str, str]:
             found[layer] = _call("SaintVenant", getattr(m, layer).model_dump())
         else:
             found[layer] = _call("Ogden", getattr(m, layer).model_dump() | {"convention": m.exponent})
-    contact = scene.contact
-    numbers = contact.model_dump(exclude=contact.unread() | {"formulation", "length"})
-    found["contact"] = _call(_FORMULATIONS[contact.formulation], numbers)
+    found["contact"] = _words(scene.contact.law())
     friction = scene.friction_law()
     found["friction"] = "none" if friction is None else _words(friction)
     charged = any(load.voltage for load in scene.loads())
     found["attraction"] = _call("electrostatic", {"h_0": scene.h_0}) if charged else "none"
     found["closure"] = _words(scene.closure()) if charged else "none"
     return found | ({} if laws.mesh is None else {"mesh": str(laws.mesh)})
-
-
-_FORMULATIONS = {"penalty": "Penalty", "nitsche": "Nitsche", "augmented": "AugmentedLagrangian"}
 
 
 def _call(name: str, numbers: Mapping[str, Any]) -> str:

@@ -81,7 +81,7 @@ class WholeFinger:
             raise SceneError("the whole finger was read from a file without traces; run the scene again")
         states = {name: at_force(finger, self.traces[name], value, self.shape.count) for name in self.states}
         for name, total in states.items():
-            first = finger.centre_scale() * float(self.traces[name].columns["f_ext"][0])
+            first = finger.centre_scale * float(self.traces[name].columns["f_ext"][0])
             if total.centre < first * (1 - _ROUNDOFF):
                 raise SceneError(
                     f"the force is {value:.4g} N, under which the centre of the finger bears {total.centre:.3g} N/m, "
