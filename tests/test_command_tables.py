@@ -91,7 +91,7 @@ def test_colours_of_voltages_go_up_to_the_largest_amount(command, voltages, tmp_
         ("params zebra", "no key of a scene has zebra in its name"),
         ("compare --ridges 3", "one of --contact-length and --ridges is given without the other"),
         ("compare --run none --model cylinders", "none is not a folder of a finished run"),
-        ("compare --model smooth --ridges 3", "--ridges is given without the model cylinders"),
+        ("compare --model full --ridges 3", "--ridges is given without the model cylinders"),
         ("compare --contact-length 1.58 --ridges 16", "--contact-length is 1580 mm, longer than 16 ridges, 7.73 mm"),
         ("compare --contact-length 1.58mm --ridges 60", "--ridges is 60, and the finger has 55; count those that"),
         ("compare --contact-length 1.58N --ridges 16", "1.58N is not allowed"),
