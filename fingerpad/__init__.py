@@ -81,7 +81,7 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module 'fingerpad' has no attribute {name!r}; it has {', '.join(__all__)}")
     with needed_by(f"fingerpad.{name}"):
         if name in _FINITE_ELEMENTS:  # with the configuration of the user alone, before any other import
-            import_module("fingerpad.started")
+            import_module("fingerpad.startup")
         return getattr(import_module(_HOMES[name]), name)
 
 

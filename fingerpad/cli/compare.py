@@ -41,9 +41,9 @@ def main(argv: Sequence[str]) -> int:
     scene = scene_of(args)
     check_folder(args.out)
     footprint = _footprint(scene, args.contact_length, args.ridges, args.run)
-    from fingerpad import startup
+    from fingerpad.startup import start
 
-    startup.start(petsc)
+    start(petsc)
     import fingerpad.runs.full  # noqa: F401  # before Ctrl-C raises
     from fingerpad.runs import compare
 

@@ -7,7 +7,7 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
-import fingerpad.started  # noqa: F401
+import fingerpad.startup  # noqa: F401
 from fingerpad.io import petsc_options
 from fingerpad.io.abort import all_together, no_room
 from fingerpad.io.checkpoint import Checkpoint

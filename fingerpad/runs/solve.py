@@ -190,8 +190,7 @@ def _solved(
         ).with_outputs(outputs)
         return found if out is None else kept(found, out, _ranks(comm))
     with needed_by(f"the model {model!r}"):
-        import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
-        from fingerpad.startup import MPI
+        from fingerpad.startup import MPI  # before any other import of the libraries that it starts
 
         comm = comm or MPI.COMM_WORLD
         _refuse_different(scene, comm)
@@ -272,6 +271,8 @@ def _ranks(comm: "MPI.Comm | None") -> "MPI.Comm | Serial":
     """Return the communicator of a run: of all ranks by default, and of this process alone where there is no MPI."""
     if comm is not None:
         return comm
+    if not terminal.launched():  # nor do the libraries of finite elements start
+        return Serial()
     try:
         from fingerpad.startup import MPI
     except ImportError:
