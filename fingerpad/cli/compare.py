@@ -49,9 +49,9 @@ def main(argv: Sequence[str]) -> int:
     scene = scene_of(args)
     check_folder(args.out)
     models = MODELS | {Cylinders.name: Cylinders(_footprint(scene, args.contact_length, args.ridges, args.run))}
-    from fingerpad import startup
+    from fingerpad.startup import start
 
-    startup.start(petsc)
+    start(petsc)
     import fingerpad.runs.full  # noqa: F401  # before Ctrl-C raises
 
     def answer_or_refusal(model: Model) -> Result:
