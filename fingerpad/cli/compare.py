@@ -5,7 +5,7 @@ from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, length, path, positive, scene_of
 from fingerpad.ctrl_c import raises
-from fingerpad.io.folder import below, check_folder
+from fingerpad.io.files import below, check_folder
 from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
 from fingerpad.runs.solve import MODELS, solved
