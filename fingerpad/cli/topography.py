@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.cli.arguments import PICTURE, Parser, echo, length, path
-from fingerpad.io.titles import plain
+from fingerpad.io.style import plain
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.remarks import missing_waves, ridges_as_roughness

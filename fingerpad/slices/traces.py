@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fingerpad.io.folder import below
+from fingerpad.io.files import below
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS
 from fingerpad.reduced.model import Model
