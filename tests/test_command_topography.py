@@ -211,7 +211,8 @@ def test_map_wider_than_any_skin_is_refused(tmp_path, capsys):
     """64 pixels of 2.5 mm."""
     np.save(tmp_path / "map.npy", SelfAffine().surface((64, 64), (160e-6, 160e-6), 3).heights)
     words = "map.npy is 0.16 m x 0.16 m large, at most 0.1 m is allowed; check the unit"
-    assert words in refused(capsys, "topography", str(tmp_path / "map.npy"), "--unit", "m", "--pixel", "2.5e-3", "2.5 mm")
+    given = ("--unit", "m", "--pixel", "2.5e-3", "2.5 mm")
+    assert words in refused(capsys, "topography", str(tmp_path / "map.npy"), *given)
 
 
 def test_laws_of_ones_own_have_no_remark():
