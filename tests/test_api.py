@@ -335,7 +335,7 @@ def test_world_is_the_default(monkeypatch):
     """Without a communicator a run is of all ranks."""
     seen = []
 
-    def run(scene, out, comm, lines, bar, resume, asked):
+    def run(scene, out, comm, *more):
         seen.append(comm)
         return fp.Result(scene, "full", None, None, None)
 

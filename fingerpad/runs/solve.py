@@ -3,7 +3,7 @@
 import os
 import signal
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,8 @@ from fingerpad.installed import needed_by, source, version
 from fingerpad.io import dataset, terminal
 from fingerpad.io.files import replace_json
 from fingerpad.io.place import Place, Serial, on_rank_0
+from fingerpad.io.quantities import Output
+from fingerpad.io.quantities import checked as checked_outputs
 from fingerpad.io.result import Result
 from fingerpad.model.check import check
 from fingerpad.scene import Scene, SceneError
@@ -41,6 +43,7 @@ def run(
     mesh: str | Path | None = None,
     comm: "MPI.Comm | None" = None,
     resume: bool = False,
+    outputs: Sequence[Output] = (),
 ) -> Result:
     """Return what a model answers to a scene; collective.
 
@@ -60,6 +63,7 @@ def run(
         mesh: file of a gmsh mesh in place of the finger's own, see :mod:`geometry.meshfile`.
         comm: communicator; by default of all ranks.
         resume: go on from where a run of the same scene in ``out`` was cut short; only of the full model.
+        outputs: further quantities, each computed from every state: see :class:`fingerpad.io.quantities.Output`.
 
     Returns:
         The result. A load that could not be reached is its ``failure``, with a warning; the states before are in it.
@@ -79,7 +83,7 @@ def run(
             f"resume is true, out is {show(out)}, model {show(model)} and force {show(force)}; "
             "only a full run in a folder, of one scene, can go on"
         )
-    result = solved(scene, model, None if out is None else Path(out), comm, force=force, resume=resume)
+    result = solved(scene, model, None if out is None else Path(out), comm, force=force, resume=resume, outputs=outputs)
     if result.interrupted:
         raise _ended(result)
     if result.failure and terminal.rank() == 0:
@@ -118,6 +122,7 @@ def solved(
     report: bool = True,
     force: float | str | None = None,
     resume: bool = False,
+    outputs: Sequence[Output] = (),
 ) -> Result:
     """Return what a model answers to a scene with all its laws; collective; arguments as of :func:`run`.
 
@@ -131,15 +136,17 @@ def solved(
         report: whether ``report.html`` is written beside the results.
         force: on the whole finger, as of :func:`run`.
         resume: whether the full model goes on from where a run in the folder was cut short.
+        outputs: as of :func:`run`.
     """
+    checked_outputs(outputs)
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     scene.laws.refuse_kept()
     try:
         if force is None:
-            result = _solved(scene, model, out, comm, lines, bar, resume)
+            result = _solved(scene, model, out, comm, lines, bar, resume, outputs=outputs)
         else:
-            result = _whole(scene, force, model, out, comm, lines, bar)
+            result = _whole(scene, force, model, out, comm, lines, bar, outputs)
     except LawError as error:
         raise SceneError(str(error)) from error
     whole = not (result.interrupted and force is not None)  # a force without all of its traces is no result
@@ -160,6 +167,7 @@ def _solved(
     bar: bool,
     resume: bool = False,
     asked: Mapping[str, Any] | None = None,
+    outputs: Sequence[Output] = (),
 ) -> Result:
     """Return what a model answers, its results written into a folder; collective; arguments as of :func:`solved`.
 
@@ -172,11 +180,14 @@ def _solved(
         bar: whether to show a bar.
         resume: whether to go on.
         asked: of which the scene is a trace, see :class:`fingerpad.io.place.Place`.
+        outputs: as of :func:`run`.
     """
     if model == "cylinders":
         from fingerpad.reduced import cylinders
 
-        found = with_versions(cylinders.solve(scene), {"versions": {"fingerpad": version(), "source": source()}})
+        found = with_versions(
+            cylinders.solve(scene), {"versions": {"fingerpad": version(), "source": source()}}
+        ).with_outputs(outputs)
         return found if out is None else kept(found, out, _ranks(comm))
     with needed_by(f"the model {model!r}"):
         from fingerpad.startup import MPI  # before any other import of the libraries that it starts
@@ -186,7 +197,7 @@ def _solved(
         check(scene)
         from fingerpad.runs import full
 
-        return full.run(scene, out, comm, lines, bar, resume, asked)
+        return full.run(scene, out, comm, lines, bar, resume, asked, outputs)
 
 
 def _refuse_different(scene: Scene, comm: "MPI.Comm") -> None:
@@ -215,6 +226,7 @@ def _whole(
     comm: "MPI.Comm | None",
     lines: bool,
     bar: bool,
+    outputs: Sequence[Output] = (),
 ) -> Result:
     """Return the result of a force on the whole finger, its sums written beside the files of the last trace."""
     from fingerpad.slices import traces
@@ -227,7 +239,8 @@ def _whole(
     own = out if model == "full" else None
 
     def solve(each: Scene, name: str) -> Result:
-        return _solved(each, model, traces.folder_of(own, name), comm, lines and model == "full", bar, asked=asked)
+        full, folder = lines and model == "full", traces.folder_of(own, name)
+        return _solved(each, model, folder, comm, full, bar, asked=asked, outputs=outputs)
 
     found = traces.whole(scene, value, model, solve)
     if found.interrupted:
