@@ -204,7 +204,7 @@ PLAIN = {
     "microscale": ["microscale", "--plot", "a.png"],
     "params": ["params", "roughness"],
     "check": ["check", "--out", "checked"],
-    "topography": ["topography", "map.txt", "--unit", "um", "--size", "100", "100"],
+    "topography": ["topography", "map.txt", "--unit", "um", "--size", "1e-4", "1e-4"],
     "run": ["run", "--model", "cylinders", "--set", 'f_ext="50 N/m"', "--out", "out"],
     "again": ["run", "out/scene.json", "--out", "again"],
     "full": ["run"],

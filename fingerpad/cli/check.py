@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fingerpad.cli.arguments import Parser, echo, scene_of
-from fingerpad.io.folder import check_folder
+from fingerpad.io.files import check_folder
 from fingerpad.io.pace import about
 from fingerpad.model.memory import memory, refuse_mesh, unknowns
 from fingerpad.model.options import FingerModel, ModelOptions, plan

@@ -31,8 +31,6 @@ class Step:
     """An accepted step."""
 
     state: ContactState
-    notes: list[str]
-    """Remarks on each ridge's place on the closure, mostly empty."""
     attempt: Attempt
     touches: bool = False
     """Whether the bone was lowered to a first touch."""
@@ -127,7 +125,8 @@ class Finger:
         p_c = self.ridge_loads(by_gap=True).p_c if self.coupling.by_gap else loads.p_c  # the closure's own
         notes = [self.closure.state(float(p), self.voltage) if self.closure else "" for p in p_c]
         more = {"load": load, "load_number": number, "mesh_contact": self.contact_size}
-        return Step(contact_state(self.continuation, loads, self.ridges, d_eq, **more), notes, attempt or Attempt())
+        state = contact_state(self.continuation, loads, self.ridges, d_eq, notes, **more)
+        return Step(state, attempt or Attempt())
 
 
 def assembled(
@@ -179,5 +178,6 @@ def meshed(model: FingerModel, comm: MPI.Comm, half: bool | None = None) -> mesh
     refuse_sizes(model.geometry, model.mesh, model.numerics, model.options)
     build = partial(fingertip.build, model.geometry, model.mesh, model.options.receptors, half)
     found = mesh.load(comm, build, tags.LAYERS.values())
-    refuse_mesh(*(found.mesh.topology.index_map(d).size_global for d in (0, 2)), model)
+    points, triangles = (found.mesh.topology.index_map(dimension).size_global for dimension in (0, 2))
+    refuse_mesh(points, triangles, model)
     return found

@@ -15,7 +15,7 @@ PROGRAM = 0.23e9
 """Bytes of the program itself."""
 PER_UNKNOWN = 6.3e3
 """Bytes of an unknown, of which the factors of MUMPS are most. ``fingerpad run --set mesh.contact=…`` prints the memory
-of a run: 0.35 GB with 27 000 unknowns, 0.56 GB with 73 000, 1.2 GB with 186 000, 5.7 GB with 873 000, the last taken."""
+of a run: 0.35 GB with 27 000 unknowns, 0.56 GB with 73 000, 1.2 GB with 186 000, 5.7 GB with 873 000: the last."""
 
 
 def unknowns(points: int, triangles: int, element: str) -> int:

@@ -2,19 +2,17 @@
 
 import json
 import signal
-from collections.abc import Mapping
-from contextlib import nullcontext
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-import fingerpad.started  # noqa: F401
+import fingerpad.startup  # noqa: F401
 from fingerpad.io import petsc_options
 from fingerpad.io.abort import all_together, no_room
 from fingerpad.io.checkpoint import Checkpoint
 from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt
-from fingerpad.io.place import Place
 from fingerpad.io.provenance import provenance
+from fingerpad.io.quantities import Output, checked
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
 from fingerpad.model.cost import Clock
@@ -22,22 +20,16 @@ from fingerpad.model.journal import Journal
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.touching import by_rule
 from fingerpad.runs.attempt import Attempt
+from fingerpad.runs.context import RunContext
 from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import coefficient
+from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
 
 
-def run(
-    scene: Scene,
-    folder: Path | None,
-    comm: MPI.Comm,
-    lines: bool = True,
-    bar: bool = True,
-    resume: bool = False,
-    asked: Mapping[str, Any] | None = None,
-) -> Result:
+def run(scene: Scene, context: RunContext) -> Result:
     """Reach every load of a scene; refine where it asks for an accuracy; collective.
 
     Where the scene does not give the number of ridges that can touch, a rule of thumb does. All loads are gone through
@@ -47,12 +39,7 @@ def run(
 
     Args:
         scene: what is run.
-        folder: of tables, plots and fields; None to write nothing.
-        comm: communicator of the run.
-        lines: whether to print the steps.
-        bar: whether to show the progress bar.
-        resume: go on from the checkpoint in the folder.
-        asked: of which the scene is a trace, see :class:`fingerpad.io.place.Place`; a trace has no checkpoint.
+        context: ranks, folder, console, and whether to go on from the checkpoint in the folder.
 
     Returns:
         The result, the same on every rank. It has a ``failure`` if a load or an accuracy could not be reached; every
@@ -66,20 +53,19 @@ def run(
         SceneError: the finger cannot be meshed; on every rank.
         DiskFull: there is no more room for results; on the ranks that found out, which end the others.
     """
+    comm = context.comm or MPI.COMM_WORLD
+    outputs = checked(context.outputs)
     all_together(comm)
     petsc_options.check(comm, scene.numerics.element)
-    console = Console(comm, lines, bar)
     try:
-        with nullcontext() if folder is None else Place(folder, scene.parameters(), comm, asked=asked) as place:
+        with context.console() as console, context.place(scene, DEFAULT_MODEL) as place:
             journal = None
-            if place is not None and asked is None:
-                journal = Journal(comm, _checkpoint(scene, place.folder), resume)
-            return _run(scene, Writer(place, comm), comm, console, journal)
+            if place is not None and context.asked is None:
+                journal = Journal(comm, _checkpoint(scene, place.folder), context.resume)
+            return _run(scene, Writer(place, comm), comm, console, journal, outputs)
     except GeometryError as error:
         what = "the finger cannot be meshed" if scene.laws.mesh is None else "mesh"
         raise SceneError(f"{what}: {error}") from error
-    finally:
-        console.close()
 
 
 def _checkpoint(scene: Scene, folder: Path) -> Checkpoint:
@@ -88,7 +74,14 @@ def _checkpoint(scene: Scene, folder: Path) -> Checkpoint:
     return Checkpoint(folder, scene.parameters(), {"source": versions["source"], "dolfinx": versions["dolfinx"]})
 
 
-def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console, journal: Journal | None) -> Result:
+def _run(
+    scene: Scene,
+    writer: Writer,
+    comm: MPI.Comm,
+    console: Console,
+    journal: Journal | None,
+    outputs: Sequence[Output],
+) -> Result:
     """Run a scene until nothing must be added to its model."""
     writer.log.info("scene %s", json.dumps(scene.parameters()))
     clock, restarts = Clock(comm), Restarts(writer.log, console)
@@ -101,7 +94,7 @@ def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console, journal
     try:
         with Interrupt(comm) as interrupt:
             while True:
-                attempt = Attempt(model, comm, writer, console, clock, interrupt, journal)
+                attempt = Attempt(model, comm, writer, console, clock, interrupt, journal, outputs)
                 _expect(scene, console)
                 restart = attempt.follow()
                 if restart is None:
