@@ -138,7 +138,7 @@ def test_real_area_is_the_bearing_area():
 def test_microscale_table_is_the_closure():
     """External pressure is that of Eq. 9, attraction that across the equivalent air gap (Eq. 12), to roundoff."""
     scene = Scene()
-    law = scene.roughness.bearing_area(scene.h_0)
+    law = scene.closure()
     for row in microscale.table(scene, [100.0, 200.0], [5e3, 5e4]):
         assert row["p_ext"] == pytest.approx(float(law.external_pressure(row["u_bar"], row["voltage"])), rel=1e-9)
         across = 8.854e-12 * row["voltage"] ** 2 / 2 / (scene.h_0 + row["d_eq"]) ** 2

@@ -40,7 +40,7 @@ def flat(scene):
 
 def test_laws_are_left_out():
     scene = fp.Scene()
-    assert flat(scene.with_laws(closure=Mine())) == flat(scene)
+    assert flat(scene.replace(roughness=Mine())) == flat(scene)
 
 
 @pytest.mark.mpi

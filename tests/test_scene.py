@@ -52,7 +52,7 @@ def test_default_air_gap_without_contact():
 
 
 def test_closure_takes_the_scene_s_roughness():
-    closure = scenes.load(None, {"roughness.h_rms": 2e-6}).roughness.bearing_area(0.5e-6)
+    closure = scenes.load(None, {"roughness.h_rms": 2e-6}).roughness
     assert (closure.h_0, closure.h_rms, closure.gamma) == (0.5e-6, 2e-6, 0.5)
 
 

@@ -57,7 +57,7 @@ def main(argv: Sequence[str]) -> int:
 
 def _own_mesh(scene: Scene, needed: ModelOptions) -> "Section | None":
     """Return the mesh of a scene's file, checked; None where it has none."""
-    if scene.laws.mesh is None:
+    if scene.geometry.file is None:
         return None
     from fingerpad.cli import section  # gmsh
 

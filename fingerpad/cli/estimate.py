@@ -11,6 +11,7 @@ from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinders, known
 from fingerpad.reduced.answer import refuse_others
 from fingerpad.scene import Scene, from_data
+from fingerpad.scene.laws import coefficient, used
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import LEAKAGE, remarks
 
@@ -48,7 +49,8 @@ def main(argv: Sequence[str]) -> int:
     forces, voltages = (_axis(scene, key, getattr(args, key)) for key in ("f_ext", "voltage"))
     rows, lost = grid(scene, forces, voltages)
     echo("Friction at full slip by a closed form, every ridge in contact the same charged cylinder.")
-    echo(f"Friction coefficient {scene.friction:g}.\n")
+    mu_0 = coefficient(scene)
+    echo(f"Friction coefficient {mu_0:g}.\n" if mu_0 is not None else f"Friction {used(scene)['friction']}.\n")
     echo(tables.text(_COLUMNS, rows))
     echo("\nmu_app is friction over force, at full slip; contact is the length of skin on the screen.")
     states = [row["state"] for row in rows if "state" in row]

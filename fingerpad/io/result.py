@@ -190,8 +190,6 @@ class Result:
         names = (*CONDITIONS, *RESULTS, *_STABILITY, *(f"{f.name}_{kind}" for f in fields(Errors) for kind in _CHANGES))
         used |= {f"{prefix}_{name}" for prefix in PREFIXES.values() for name in names}
         record = {key: value for key, value in summary.items() if key not in used}
-        if "laws" in parameters:  # objects of Python, of which only the names are kept
-            record["parameters"] = parameters
         uncharged, charged, full_slip = (_state(summary, PREFIXES[name]) for name in STATES)
         from fingerpad.slices.finger import WholeFinger  # it takes names of this module's wing
 

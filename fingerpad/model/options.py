@@ -10,10 +10,12 @@ expected to touch are another matter (:mod:`fingerpad.model.touching`).
 from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from fingerpad.scene import Contact, Load, Numerics, Scene
 from geometry.parameters import Fingertip, MeshSize
 from geometry.sizing import touching_ridges
+from variational.materials.material import Material
 
 
 @dataclass(frozen=True)
@@ -77,9 +79,9 @@ def plan(scene: Scene) -> ModelOptions:
     errors = scene.output.errors or scene.accuracy is not None
     if not errors:
         omitted.append(Omission("discretisation errors", "output.errors is false"))
-    symmetric = all(solid.keeps_symmetry() for solid in scene.laws.materials.values())
+    symmetric = all(solid.keeps_symmetry() for solid in scene.own_laws().values() if isinstance(solid, Material))
     both_halves = any(load.moves for load in scene.loads()) or not symmetric
-    if scene.laws.mesh is not None:  # the whole of it, and no other mesh of the same finger
+    if scene.geometry.file is not None:  # the whole of it, and no other mesh of the same finger
         if receptors:
             omitted.append(Omission("receptor sites", _FILE))
         if errors:
@@ -121,7 +123,8 @@ class FingerModel:
         self.options = options
         self.geometry: Fingertip = scene.geometry
         self.mesh: MeshSize = scene.mesh
-        self.mesh_file, self.mesh_sha256 = scene.laws.mesh, scene.laws.mesh_sha256
+        self.mesh_file = None if scene.geometry.file is None else Path(scene.geometry.file)
+        self.mesh_sha256 = scene.geometry.file_sha256
         self.solids = scene.solids()
         self.contact: Contact = scene.contact
         self.friction = scene.friction_law()

@@ -78,18 +78,13 @@ def fitted(scene: Scene) -> Footprint:
         SceneError: the scene's finger is another one.
     """
     default = Scene()
-    if scene.laws.materials:
-        raise SceneError(
-            f"materials are given for {', '.join(scene.laws.materials)}, and a contact length is known of the default "
-            f"finger alone; {_ELSE}"
-        )
     for name in _SHAPING:
         if getattr(scene, name) != getattr(default, name):
             raise SceneError(f"{name} is not that of the default finger, whose contact length is known; {_ELSE}")
     source = "uncharged contact length interpolated between full runs of the default finger"
     if not FORCES[0] <= scene.f_ext <= FORCES[-1]:
         source = f"uncharged contact length extrapolated from full runs at {FORCES[0]:g} to {FORCES[-1]:g} N/m"
-    if scene.friction_law() != default.friction_law():
+    if scene.friction != default.friction:
         source += f"; that of full slip with a friction coefficient of {default.friction:g}"
     length = {state: _interpolate(scene.f_ext, LENGTHS[state]) for state in STATES}
     ridges = {state: max(1, round(_interpolate(scene.f_ext, RIDGES[state]))) for state in STATES}

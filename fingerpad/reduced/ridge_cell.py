@@ -137,9 +137,6 @@ def _made_of(scene: Scene, deeper: int = 1) -> dict[str, Any]:
     parameters = scene.parameters()
     skin = ("sc_thickness", "ve_thickness", "ridge_wavelength", "ridge_amplitude", "ridge_profile")
     layers = ("stratum_corneum", "viable_epidermis", "dermis", "exponent")
-    given = scene.laws.parameters()
-    own = {layer: solid for layer, solid in given.get("materials", {}).items() if layer in layers}
-    laws = ({"materials": own} if own else {}) | ({"closure": given["closure"]} if "closure" in given else {})
     return {
         "version": VERSION,
         "voltage": scene.voltage,
@@ -150,7 +147,6 @@ def _made_of(scene: Scene, deeper: int = 1) -> dict[str, Any]:
         "contact_size": scene.mesh.contact,
         "touching_fraction": scene.mesh.touching_fraction,
         **{name: parameters[name] for name in ("electric", "roughness", "contact", "numerics")},
-        **({"laws": laws} if laws else {}),
     }
 
 

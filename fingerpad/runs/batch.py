@@ -137,7 +137,7 @@ def sweep(
             start = time.monotonic()
             given = [str(place / "asked.json"), str(place), str(limit), model]
             given += [] if force is None else [repr(force)]
-            end = run("fingerpad.runs.batch", given, limit)
+            end = run("fingerpad.runs.batch", given, limit, scenes[name].law_folders())
             took.append(time.monotonic() - start)
             return end
 
@@ -170,9 +170,9 @@ def _one(scene: Path, folder: Path, model: str, force: float | None = None) -> N
     from fingerpad.io.checkpoint import CheckpointError
     from fingerpad.io.place import PlaceError
     from fingerpad.runs.solve import solved, tables_in
-    from fingerpad.scene import SceneError, from_kept
+    from fingerpad.scene import SceneError, from_data
 
-    asked = from_kept(json.loads(scene.read_text(encoding="utf-8")))
+    asked = from_data(json.loads(scene.read_text(encoding="utf-8")))
 
     def solve(resume: bool) -> None:
         tables = tables_in(folder.parent) if model == "smooth" else None  # of all points

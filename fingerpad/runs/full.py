@@ -78,7 +78,7 @@ def run(
                 journal = Journal(comm, _checkpoint(scene, place.folder), resume)
             return _run(scene, Writer(place, comm), comm, console, journal)
     except GeometryError as error:
-        what = "the finger cannot be meshed" if scene.laws.mesh is None else "mesh"
+        what = "the finger cannot be meshed" if scene.geometry.file is None else "mesh"
         raise SceneError(f"{what}: {error}") from error
     finally:
         console.close()

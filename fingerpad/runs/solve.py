@@ -25,9 +25,6 @@ from variational.coefficients import LawError
 
 if TYPE_CHECKING:
     from fingerpad.startup import MPI
-    from variational.contact.friction import Friction
-    from variational.materials.material import Material
-    from variational.roughness.closure import Closure
 
 MODELS = ("cylinders", "smooth", "full")
 """The cheapest first; see :mod:`fingerpad.runs.compare`."""
@@ -39,10 +36,6 @@ def run(
     out: str | Path | None = None,
     model: str = "full",
     force: float | str | None = None,
-    closure: "Closure | None" = None,
-    materials: "Mapping[str, Material] | None" = None,
-    friction: "Friction | float | None" = None,
-    mesh: str | Path | None = None,
     comm: "MPI.Comm | None" = None,
     resume: bool = False,
 ) -> Result:
@@ -58,10 +51,6 @@ def run(
             (:mod:`fingerpad.slices.traces`): three runs of the full one, some 25 scenes of the others. States in N/m:
             for the full model, those at the end of its last trace; for other models, those under the force on the
             centre slice.
-        closure: microscale model in place of the bearing area model, see :mod:`variational.roughness.closure`.
-        materials: materials by layer (``{"dermis": NeoHooke(2.5e3)}``), see :mod:`variational.materials.material`.
-        friction: friction law, see :mod:`variational.contact.friction`.
-        mesh: file of a gmsh mesh in place of the finger's own, see :mod:`geometry.meshfile`.
         comm: communicator; by default of all ranks.
         resume: go on from where a run of the same scene in ``out`` was cut short; only of the full model.
 
@@ -76,8 +65,6 @@ def run(
     scene = checked(scene)
     if out is not None and not isinstance(out, str | os.PathLike):
         raise SceneError(f"out is {show(out)}; it must be the path of a folder")
-    if closure is not None or materials or friction is not None or mesh is not None:
-        scene = scene.with_laws(closure=closure, materials=materials, friction=friction, mesh=mesh)
     if resume and (out is None or model != "full" or force is not None):
         raise SceneError(
             f"resume is true, out is {show(out)}, model {show(model)} and force {show(force)}; "
@@ -140,7 +127,9 @@ def solved(
     """
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
-    scene.laws.refuse_kept()
+    scene = scene.resolved()
+    if resume:
+        scene.refuse_laws_of_program("a run that goes on")
     try:
         if force is None:
             result = _solved(scene, model, out, comm, lines, bar, resume, tables=tables)
@@ -213,12 +202,12 @@ def _solved(
 def _refuse_different(scene: Scene, comm: "MPI.Comm") -> None:
     """Refuse scenes that differ from rank to rank, whose solves would wait for each other for ever; collective.
 
-    Laws of one's own are left out: those without a source are another one in each process.
+    Hashes of laws are left out: those without a file are another one in each process.
 
     Raises:
         SceneError: the first key that differs, on every rank.
     """
-    first, *others = comm.allgather({k: v for k, v in flat(scene.parameters()).items() if not k.startswith("laws.")})
+    first, *others = comm.allgather({k: v for k, v in flat(scene.parameters()).items() if not k.endswith(".sha256")})
     for rank, other in enumerate(others, start=1):
         for key in sorted(first.keys() | other.keys()):
             if (one := first.get(key)) != (two := other.get(key)):

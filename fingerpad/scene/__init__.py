@@ -4,7 +4,7 @@ from fingerpad.scene.changes import start
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.parameters import Accuracy, Contact, Load, Numerics, Output
 from fingerpad.scene.reading import override
-from fingerpad.scene.scene import Scene, as_kept, from_data, from_kept, load
+from fingerpad.scene.scene import Scene, as_kept, from_data, load
 
 __all__ = [
     "Accuracy",
@@ -16,7 +16,6 @@ __all__ = [
     "SceneError",
     "from_data",
     "as_kept",
-    "from_kept",
     "load",
     "override",
     "start",

@@ -27,6 +27,9 @@ def changed(
         present["mesh"] = {key: size for key, size in present.get("mesh", {}).items() if coarse.get(key) != size}
     if changes.get("history") is not None:
         present = {key: value for key, value in present.items() if key not in DEFAULT_HISTORY}
+    shape = changes.get("geometry")
+    if isinstance(shape, Mapping) and "file" in shape:
+        present["geometry"] = {k: value for k, value in present.get("geometry", {}).items() if k != "file_sha256"}
     contact = changes.get("contact")
     if isinstance(contact, Mapping) and contact.get("formulation", formulation) != formulation:
         present["contact"] = {
@@ -39,9 +42,17 @@ def _merged(present: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str,
     """Return a table with changes: tables are merged, all else is replaced."""
     found = dict(present)
     for key, value in changes.items():
-        both = isinstance(value, Mapping) and isinstance(found.get(key), Mapping)
-        found[key] = _merged(found[key], value) if both else value
+        before = found.get(key)
+        both = isinstance(value, Mapping) and isinstance(before, Mapping) and _same_law(before, value.get("law"))
+        found[key] = _merged(before, value) if both else value  # type: ignore[arg-type]
     return found
+
+
+def _same_law(present: Mapping[str, Any], name: Any) -> bool:
+    """Return whether changes of a table are not of another law than the table's."""
+    kind = present.get("law")
+    names = (f"{kind.__module__}:{kind.__qualname__}", kind.__name__) if isinstance(kind, type) else ()
+    return name in (None, kind, *names)
 
 
 def with_coarse_start(data: Mapping[str, Any]) -> Mapping[str, Any]:

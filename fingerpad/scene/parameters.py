@@ -4,7 +4,9 @@
 ``docs/scene.md``.
 """
 
+import hashlib
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
@@ -17,12 +19,14 @@ from pydantic import (
     model_validator,
 )
 
+from fingerpad.scene.law_keys import fail, reading_results
 from fingerpad.scene.load_names import load_name
 from fingerpad.scene.messages import NUMBER, WAVE, show
 from fingerpad.scene.table import Finite, Part, Switch
 from fingerpad.scene.waveform import Volts, Waveform
 from geometry.bounds import within
 from geometry.parameters import Fingertip
+from variational import files
 
 if TYPE_CHECKING:
     from variational.contact.formulation import Formulation
@@ -198,9 +202,27 @@ class Geometry(Fingertip):
     are marked as *assumption*.
     """
 
-    file: Annotated[str | None, Field(exclude=True)] = None  # a scene keeps it as a law, with a hash
+    file: str | None = None
     """File of a gmsh mesh in place of the cross-section and of the sizes in mesh, by the rules of ``docs/mesh.md``; a
     relative path starts at the scene file. Only sc_thickness is read of the other keys, for the attraction."""
+    file_sha256: str | None = None
+    """Hash of that file, which a run writes into its scene; another file is then refused."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _hashed(cls, data: Any) -> Any:
+        file = data.get("file") if isinstance(data, dict) else None
+        if not isinstance(file, str) or reading_results():
+            return data
+        try:
+            found = hashlib.sha256(files.read(file)).hexdigest()
+        except FileNotFoundError:
+            raise fail(f"is {show(file)}, and there is no such file", "file") from None
+        except OSError as error:
+            raise fail(f"is {show(file)}, which cannot be read: {error.strerror}", "file") from None
+        if data.get("file_sha256") not in (None, found):
+            raise fail(f"is {show(file)}, which was changed since the scene was kept; put that file back", "file")
+        return data | {"file": str(Path(file).absolute()), "file_sha256": found}
 
 
 class Contact(Part):
