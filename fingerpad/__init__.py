@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import geometry as geometry
     from fingerpad.io.result import Result as Result
+    from fingerpad.measurements.compare import compare as compare
     from fingerpad.model.body import Body as Body
     from fingerpad.runs.solve import run as run
     from fingerpad.runs.sweep import sweep as sweep
@@ -41,6 +42,7 @@ _HOMES = {
     "run": "fingerpad.runs.solve",
     "sweep": "fingerpad.runs.sweep",
     "Sweep": "fingerpad.runs.sweep_results",
+    "compare": "fingerpad.measurements.compare",
     "Result": "fingerpad.io.result",
     "ContactState": "variational.state",
     "Body": "fingerpad.model.body",

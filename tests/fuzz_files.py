@@ -25,7 +25,8 @@ import scipy.io
 from mpi4py import MPI
 
 import geometry
-from fingerpad.cli import measured, refuse, topography
+from fingerpad.cli import refuse, topography
+from fingerpad.measurements import table as measurements
 from fingerpad.scene import SceneError, from_data
 from geometry.mesh import load
 from geometry.profiles import GeometryError
@@ -220,7 +221,7 @@ def _read(path: Path) -> int:
             press, over_time = {"name": "press", "f_ext": 5.0}, {"name": "wave", "duration": 0.1, "voltage": wave}
             from_data({"history": [press, over_time]})
         elif path.suffix == ".measured":
-            measured.read(path)
+            measurements.read(path)
         else:
             unit, size = ["--unit", "um"], ["--size", "32", "24"]
             given = {".npy": unit + size, ".csv": unit + size, ".xyz": unit}

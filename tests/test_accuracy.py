@@ -18,6 +18,7 @@ from fingerpad.model.touching import by_rule
 from fingerpad.richardson import MORE, ONCE
 from fingerpad.scene import from_data
 from tests.runs import run
+from variational.contact.penalty import Penalty
 from variational.solvers.continuation import StepFailed
 from variational.solvers.equations import Control
 from variational.solvers.transfer import StateSnapshot
@@ -179,7 +180,7 @@ def test_estimate_alone_refines_nothing(monkeypatch):
 def springs(model, states, comm, views=False) -> Solve:
     """A contact that springs of the screen make longer, by their law."""
     solve = known(model, states, comm)
-    if model.contact.formulation == "penalty":
+    if isinstance(model.contact, Penalty):
         change(solve, contact_length=1e-3 + 1e-5 * (model.contact.eps_n / 1.5e12) ** -ORDER)
     return solve
 

@@ -103,6 +103,12 @@ def state(f_contact: float, stored: float) -> ContactState:
     return ContactState(**(SLIP | made))
 
 
+class Own(Penalty):
+    """A formulation with a remedy of its own."""
+
+    unloaded_energy = "try a softer eps_n"
+
+
 def test_body_without_loads_stores_nothing():
     """Nitsche's method may keep a tenth of the energy; 1e-30 J/m are roundoff, as is all before the first load.
 
@@ -111,6 +117,7 @@ def test_body_without_loads_stores_nothing():
     unloaded, pressed = state(1e-12, 1e-40), state(100.0, 1e-5)
     balance.refuse_strained("step 3 (lift)", record(1e-30), [unloaded, pressed], 75.0, PENALTY)
     balance.refuse_strained("step 2 (lower)", record(1e-30), [unloaded], 75.0, PENALTY)
-    for formulation, remedy in ((Nitsche(20.0, 1), "larger"), (PENALTY, "second state without stress")):
+    remedies = {Nitsche(20.0, 1): "larger", PENALTY: "second state without stress", Own(1e12, 1e11): "softer eps_n"}
+    for formulation, remedy in remedies.items():
         with pytest.raises(StepFailed, match=rf"^step 3 \(lift\): nothing loads .* stores 1e-06 J/m; .*{remedy}"):
             balance.refuse_strained("step 3 (lift)", record(1e-6), [unloaded, pressed], 75.0, formulation)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import geometry
-from fingerpad.cli.measured import read as measurements
+from fingerpad.measurements.table import read as measurements
 from fingerpad.scene import SceneError, from_data, load
 from geometry.meshfile import file as mesh
 from geometry.profiles import GeometryError

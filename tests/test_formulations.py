@@ -1,5 +1,7 @@
 """Penalty, Nitsche and augmented Lagrangian solve the same contact problems, on any number of ranks."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 from ffcx.naming import compute_signature
@@ -11,7 +13,7 @@ from geometry.bodies import block, ridge
 from geometry.mesh import load
 from variational.body import Body
 from variational.contact.augmented import AugmentedLagrangian
-from variational.contact.formulation import History
+from variational.contact.formulation import Formulation, History, Springs
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
@@ -72,6 +74,31 @@ def test_patch_of_the_penalty():
     p_n = brentq(lambda p: confined_stress(0.98 + p / eps_n / HEIGHT) + p, 0.0, 1e6, xtol=1e-12, rtol=1e-15)
     np.testing.assert_allclose(run.surface_state.p_n, p_n, rtol=1e-8)
     np.testing.assert_allclose(run.surface_state.y, -p_n / eps_n, rtol=1e-8)
+
+
+# -- a formulation of one's own -------------------------------------------------------------------------
+@dataclass(frozen=True)
+class OneSpring(Formulation):
+    """Springs of one stiffness (Pa/m) in both directions, by the recipe of CONTRIBUTING."""
+
+    eps: float = 1.5e12
+
+    def springs(self, skin) -> Springs:
+        """Return springs without preload."""
+        return Springs(0.0, 0.0, skin.constant(self.eps), skin.constant(self.eps))
+
+
+def test_formulation_of_one_s_own():
+    """One class is all that a body takes: it presses as the penalty of that stiffness, to the last bit."""
+    mine, springs = (
+        make(load(MPI.COMM_WORLD, block(WIDTH, HEIGHT, 0.25e-3)), formulation, MU_F)
+        for formulation in (OneSpring(), Penalty(1.5e12, 1.5e12))
+    )
+    for run in (mine, springs):
+        run.run(Target("press", bone_height=-0.02 * HEIGHT))
+        run.run(Target("slide", bone_x=1e-6))
+    assert contact_force(mine) == contact_force(springs)
+    assert (mine.solver.reaction == springs.solver.reaction).all()
 
 
 # -- one ridge -----------------------------------------------------------------------------------------

@@ -140,7 +140,7 @@ def test_command_and_measurements(tmp_path, capsys):
     with (out / "table.csv").open(encoding="utf-8", newline="") as file:
         low, high = (float(row["slip_finger_f_t"]) for row in csv.DictReader(file))
     with (tmp_path / "both.csv").open(encoding="utf-8", newline="") as file:
-        ours = [float(row["ours"]) for row in csv.DictReader(file)]
+        ours = [float(row["computed"]) for row in csv.DictReader(file)]
     assert ours == pytest.approx([low, np.sqrt(low * high)], rel=1e-9)
 
 

@@ -59,6 +59,7 @@ class Refinement:
         failure: why the accuracy asked for is not reached, else empty.
         notes: remarks on the estimate.
         penalty: change of each quantity by a rigid screen, where contact is a penalty.
+        stiffer: the contact over a screen of twice the stiffness; None where the screen is rigid.
         to_come: solves that are still to come, the one that starts now among them; more where they are not enough.
     """
 
@@ -99,6 +100,7 @@ class Refinement:
         self.failure, self.notes = "", list[str]()
         self._met = not self.asked
         self.penalty: dict[str, float] = {}
+        self.stiffer = model.contact.over_stiffer_screen()
         self.to_come = 0
         receptors = "sed" in self.asked or (not self.asked and model.options.receptors)
         keys = [key for key in _SIZES if key != "receptor" or receptors]
@@ -131,18 +133,16 @@ class Refinement:
                 self.failure = f"the accuracy asked for could not be established: {error}"
             else:
                 self._note(f"discretisation errors could not be estimated: {error}")
-        if self.solves.restart is None and self._has_penalty() and self.base.states:
+        if self.solves.restart is None and self.stiffer is not None and self.base.states:
             self.to_come = 1
             self._stiffen()
         return self.solves.restart
 
-    def _has_penalty(self) -> bool:
-        return self.model.contact.formulation == "penalty"
-
     def _stiffen(self) -> None:
         """Solve again over a screen of twice the stiffness."""
+        assert self.stiffer is not None
         try:
-            found = self.solves.over_stiffer_screen(self.base)
+            found = self.solves.over_stiffer_screen(self.base, self.stiffer)
         except (StepFailed, GeometryError) as error:
             self._note(f"the effect of the penalty could not be estimated: {error}")
             return
@@ -159,7 +159,7 @@ class Refinement:
         todo = list(self.parameters)
         for _ in range(1 + _ROUNDS):
             for k, key in enumerate(todo):
-                self.to_come = len(todo) - k + self._has_penalty()
+                self.to_come = len(todo) - k + (self.stiffer is not None)
                 self._halve(key)
             self._report()
             todo = to_refine(self.parameters, self.allowed())

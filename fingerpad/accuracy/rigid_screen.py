@@ -26,16 +26,10 @@ error of the mesh.
 from collections.abc import Mapping
 from dataclasses import replace
 
-from fingerpad.scene.parameters import Contact
 from variational.solvers.transfer import StateSnapshot
 
 ORDER = 0.75
 """In one over the stiffness, of what the penalty changes."""
-
-
-def stiffened(contact: Contact) -> Contact:
-    """Return a penalty of twice the stiffness, normal and tangential."""
-    return contact.model_copy(update={"eps_n": 2 * contact.eps_n, "eps_t": 2 * contact.eps_t})
 
 
 def over_stiffer(snapshot: StateSnapshot) -> StateSnapshot:

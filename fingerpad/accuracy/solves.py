@@ -8,13 +8,14 @@ import numpy as np
 from mpi4py import MPI
 
 from fingerpad.accuracy.recompute import Solve, State, StateRecorder, solve_again
-from fingerpad.accuracy.rigid_screen import over_stiffer, stiffened
+from fingerpad.accuracy.rigid_screen import over_stiffer
 from fingerpad.model.finger import Step
 from fingerpad.model.memory import refuse_beyond
 from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.scene import Load
 from geometry.parameters import MeshSize
+from variational.contact.formulation import Formulation
 from variational.solvers.continuation import StepFailed
 
 
@@ -55,9 +56,17 @@ class Solves:
         refuse_beyond(model.geometry, mesh, model.numerics, model.options)
         return self._again(model.changed(mesh=mesh), states)
 
-    def over_stiffer_screen(self, base: Solve) -> Solve:
-        """Return states over a screen of twice the stiffness; collective; raises as :meth:`on_mesh`."""
-        model = self._model.changed(mesh=base.mesh, contact=stiffened(self._model.contact))
+    def over_stiffer_screen(self, base: Solve, contact: Formulation) -> Solve:
+        """Return states over a screen of twice the stiffness; collective.
+
+        Args:
+            base: the states.
+            contact: over that screen.
+
+        Raises:
+            StepFailed: a state was not found.
+        """
+        model = self._model.changed(mesh=base.mesh, contact=contact)
         states = {name: replace(s, snapshot=over_stiffer(s.snapshot)) for name, s in base.states.items()}
         return self._again(model, states)
 

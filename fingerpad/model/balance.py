@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from variational.contact.formulation import Formulation
 from variational.contact.friction import CONE_ROUNDOFF
-from variational.contact.nitsche import Nitsche
 from variational.quantities import RidgeLoads
 from variational.solvers.continuation import StepFailed
 from variational.state import ContactState, StepRecord
@@ -92,9 +91,10 @@ def refuse_unbalanced(
 def refuse_strained(
     where: str, record: StepRecord, before: Iterable[ContactState], scale: float, formulation: Formulation
 ) -> None:
-    """Refuse a state that stores energy although nothing loads the body: Nitsche's method has such equilibria.
+    """Refuse a state that stores energy although nothing loads the body.
 
-    They come where the method is not coercive, and Newton's method may go on to them while the body is loaded.
+    Some formulations have such equilibria (:attr:`~variational.contact.formulation.Formulation.unloaded_energy`). They
+    come where the method is not coercive, and Newton's method may go on to them while the body is loaded.
 
     Args:
         where: step and load.
@@ -108,9 +108,8 @@ def refuse_strained(
     """
     loaded = (state.record.stored for state in before if state.record and state.f_contact > BALANCED * scale)
     if record.stored > _AT_REST * max(loaded, default=math.inf):
-        remedy = "a material of one's own may have a second state without stress, else " + _DEFECT
-        if isinstance(formulation, Nitsche):
-            remedy = "Nitsche's method has such equilibria where gamma_0 is too small, so start again with a larger one"
+        own = "a material of one's own may have a second state without stress, else " + _DEFECT
+        remedy = formulation.unloaded_energy or own
         raise StepFailed(f"{where}: nothing loads the body, and it stores {record.stored:.3g} J/m; {remedy}")
 
 

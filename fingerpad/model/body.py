@@ -83,7 +83,7 @@ class Body:
         shape: Callable[[], float] | TaggedMesh | str | Path,
         material: Material | Mapping[str, Material],
         *,
-        contact: Formulation = Penalty(1.5e12, 5e10),  # noqa: B008
+        contact: Formulation = Penalty(),  # noqa: B008
         friction: Friction | float | None = None,
         roughness: Closure | None = None,
         h_0: float | None = None,
@@ -119,7 +119,7 @@ class Body:
         if not (isinstance(element, str) and element in ELEMENTS):
             raise ValueError(f"element is {element!r}; it must be one of {', '.join(ELEMENTS)}")
         if not isinstance(contact, Formulation):
-            raise ValueError(f"contact is {contact!r}; it must be a Penalty, a Nitsche or an AugmentedLagrangian")
+            raise ValueError(f"contact is {contact!r}; it must be a Formulation, such as fp.Penalty(1.5e12, 5e10)")
         numbers = {"force_scale": force_scale, "touch_depth": touch_depth, "step_scale": step_scale}
         for name, value in (numbers | ({} if h_0 is None else {"h_0": h_0})).items():
             if isinstance(value, bool) or not (isinstance(value, Real) and 0 < value < math.inf):
@@ -245,7 +245,7 @@ class Body:
 
         They are computed of all states so far; without ``roughness`` there are none.
         """
-        return cautions.on_states(self.states, self._closure)
+        return cautions.on_states(self.states, self._closure, self.problem.interface.formulation)
 
     @property
     def _d_eq(self) -> Array:

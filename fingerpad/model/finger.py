@@ -150,7 +150,7 @@ def assembled(
     body = Body(
         tagged,
         {tag: solid for tag, solid in model.solids.items() if tag in layers},
-        Interface(model.contact.law(), model.friction, model.h_0, ELECTROSTATIC if model.options.voltage else None),
+        Interface(model.contact, model.friction, model.h_0, ELECTROSTATIC if model.options.voltage else None),
         model.closure,
         element=numerics.element,
         points=numerics.quadrature_points,
@@ -159,7 +159,7 @@ def assembled(
         mirror=tagged.facets(tags.SYMMETRY) if half else None,
         coupling_tolerance=numerics.coupling_tolerance,
         coupling_cap=numerics.coupling_cap,
-        by_gap=model.contact.length == "gap",
+        by_gap=model.by_gap,
         on_accept=on_accept,
         step_scale=numerics.step_scale,
     )

@@ -12,9 +12,10 @@ from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from fingerpad.scene import Contact, Load, Numerics, Scene
+from fingerpad.scene import Load, Numerics, Scene
 from geometry.parameters import Fingertip, MeshSize
 from geometry.sizing import touching_ridges
+from variational.contact.formulation import Formulation
 from variational.materials.material import Material
 
 
@@ -87,8 +88,7 @@ def plan(scene: Scene) -> ModelOptions:
         if errors:
             omitted.append(Omission("discretisation errors", f"{_FILE} and cannot be refined"))
         return ModelOptions(voltage, friction, False, True, False, False, tuple(omitted))
-    # The half's multipliers, which an augmented Lagrangian corrects within a step, are not put on the whole.
-    symmetric_start = both_halves and symmetric and scene.contact.formulation != "augmented"
+    symmetric_start = both_halves and symmetric and scene.contact.law().symmetric_start
     if not both_halves:
         omitted.append(_HALF)
     return ModelOptions(voltage, friction, receptors, both_halves, symmetric_start, errors, tuple(omitted))
@@ -105,6 +105,7 @@ class FingerModel:
         mesh_sha256: hash of that file, as it was when the scene was given it.
         solids: material of each layer's tag.
         contact: formulation of the contact.
+        by_gap: whether a ridge's length is that of a small gap, and not that under contact pressure.
         friction: law of friction; None without friction.
         closure: the microscale; None where there is never a voltage.
         h_0: effective insulator thickness (m).
@@ -126,7 +127,8 @@ class FingerModel:
         self.mesh_file = None if scene.geometry.file is None else Path(scene.geometry.file)
         self.mesh_sha256 = scene.geometry.file_sha256
         self.solids = scene.solids()
-        self.contact: Contact = scene.contact
+        self.contact: Formulation = scene.contact.law()
+        self.by_gap = scene.contact.length == "gap"
         self.friction = scene.friction_law()
         self.closure = scene.closure() if options.voltage else None
         self.h_0 = scene.h_0
@@ -139,7 +141,7 @@ class FingerModel:
         *,
         options: ModelOptions | None = None,
         mesh: MeshSize | None = None,
-        contact: Contact | None = None,
+        contact: Formulation | None = None,
         loads: tuple[Load, ...] | None = None,
         numerics: Numerics | None = None,
     ) -> "FingerModel":

@@ -102,7 +102,7 @@ class Attempt:
             text = f"states on other meshes, to the accuracy asked for: solve {self._solves}, {number} or more to come"
             self._console.phase(f"{text}; {in_words(number * least)} or more left" if least else text)
             return
-        number = len(self._refinement.parameters) + (self._model.contact.formulation == "penalty")
+        number = len(self._refinement.parameters) + (self._refinement.stiffer is not None)
         text = f"estimating discretisation errors: solve {self._solves} of {number}"
         self._console.phase(text, (self._solves - 0.5) / number)
 
@@ -181,7 +181,7 @@ class Attempt:
             notes=tuple(notes),
             cautions=(
                 *remarks(scene),
-                *cautions.on_states(record.states, scene.closure()),
+                *cautions.on_states(record.states, scene.closure(), self._model.contact),
                 *long_steps(loads, error),
             ),
             record=more,

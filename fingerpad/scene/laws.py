@@ -30,18 +30,13 @@ def used(scene: "Scene") -> dict[str, str]:
     Keys are the layers, ``contact``, ``friction``, ``attraction`` and ``closure``, and ``mesh`` where one was given.
     """
     found = {layer: _words(getattr(scene.materials, layer)) for layer in LAYERS}
-    contact = scene.contact
-    numbers = contact.model_dump(exclude=contact.unread() | {"formulation", "length"})
-    found["contact"] = _call(_FORMULATIONS[contact.formulation], numbers)
+    found["contact"] = _words(scene.contact.law())
     friction = Coulomb(scene.friction) if isinstance(scene.friction, float) else scene.friction
     found["friction"] = _words(friction) if scene.friction else "none"
     charged = any(load.voltage for load in scene.loads())
     found["attraction"] = _call("electrostatic", {"h_0": scene.h_0}) if charged else "none"
     found["closure"] = _words(scene.roughness) if charged else "none"
     return found | ({} if scene.geometry.file is None else {"mesh": scene.geometry.file})
-
-
-_FORMULATIONS = {"penalty": "Penalty", "nitsche": "Nitsche", "augmented": "AugmentedLagrangian"}
 
 
 def _call(name: str, numbers: Mapping[str, Any]) -> str:

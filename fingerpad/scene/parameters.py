@@ -7,7 +7,7 @@
 import hashlib
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
@@ -27,9 +27,8 @@ from fingerpad.scene.waveform import Volts, Waveform
 from geometry.bounds import within
 from geometry.parameters import Fingertip
 from variational import files
-
-if TYPE_CHECKING:
-    from variational.contact.formulation import Formulation
+from variational.contact.formulation import Formulation
+from variational.contact.formulations import FORMULATIONS
 
 Asked = Annotated[Finite, within(1e-6, 0.5)]
 Way = Annotated[Finite, within(1e-9, 0.1, "m", zero=True, sides=2)]
@@ -261,8 +260,11 @@ class Contact(Part):
     @model_validator(mode="before")
     @classmethod
     def _complete(cls, data: Any) -> Any:
-        stiff = isinstance(data, dict) and data.get("formulation") == "augmented"
-        return {"eps_n": 1.5e13, "eps_t": 5e11} | data if stiff else data
+        name = data.get("formulation") if isinstance(data, dict) else None
+        if not (isinstance(name, str) and name in FORMULATIONS):
+            return data
+        own = FORMULATIONS[name].parameters()
+        return {key: value for key, value in own.items() if value != cls.model_fields[key].default} | data
 
     @model_validator(mode="after")
     def _own_keys(self) -> "Contact":
@@ -276,27 +278,15 @@ class Contact(Part):
 
     def unread(self) -> set[str]:
         """Return the keys that the formulation does not read."""
-        return set(FORMULATION_KEYS) - _FORMULATION_KEYS[self.formulation]
+        return FORMULATION_KEYS - FORMULATIONS[self.formulation].parameters().keys()
 
-    def law(self) -> "Formulation":
+    def law(self) -> Formulation:
         """Return the formulation with its parameters."""
-        from variational.contact.augmented import AugmentedLagrangian  # UFL: not for those who only read scenes
-        from variational.contact.nitsche import Nitsche
-        from variational.contact.penalty import Penalty
-
-        if self.formulation == "nitsche":
-            return Nitsche(self.gamma_0, self.theta)
-        if self.formulation == "augmented":
-            return AugmentedLagrangian(self.eps_n, self.eps_t, self.tolerance)
-        return Penalty(self.eps_n, self.eps_t)
+        kind = FORMULATIONS[self.formulation]
+        return kind(**{name: getattr(self, name) for name in kind.parameters()})
 
 
-_FORMULATION_KEYS = {
-    "penalty": {"eps_n", "eps_t"},
-    "nitsche": {"gamma_0", "theta"},
-    "augmented": {"eps_n", "eps_t", "tolerance"},
-}
-FORMULATION_KEYS = frozenset().union(*_FORMULATION_KEYS.values())
+FORMULATION_KEYS = {name for kind in FORMULATIONS.values() for name in kind.parameters()}
 """Keys of :class:`Contact` that some formulations read and others do not."""
 
 

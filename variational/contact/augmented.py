@@ -16,9 +16,9 @@ The slip of a step counts from the accepted place :math:`x_n`, so that
 """
 
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
-import ufl
 
 from variational.contact.formulation import Contact, Formulation, History, Skin, Springs, SurfaceState
 from variational.contact.friction import CONE_ROUNDOFF, Friction
@@ -28,9 +28,16 @@ from variational.contact.friction import CONE_ROUNDOFF, Friction
 class AugmentedLagrangian(Formulation):
     """Stiffness, normal and tangential (Pa/m of reference area), and what is left of penetration and slip (m)."""
 
-    eps_n: float
-    eps_t: float
-    tolerance: float
+    eps_n: float = 1.5e13
+    eps_t: float = 5e11
+    tolerance: float = 5e-9
+
+    symmetric_start: ClassVar[bool] = False  # its multipliers, corrected within a step, are not put on the whole
+    caution: ClassVar[str] = (
+        "contact by a method for comparison, which takes several times the factorisations of the penalty and may miss "
+        "equilibria that it finds"
+    )
+    less_penetration: ClassVar[str] = "a smaller tolerance of the contact reduces it"
 
     def springs(self, skin: Skin) -> Springs:
         """Return springs that the multiplier preloads."""
@@ -42,6 +49,8 @@ class AugmentedLagrangian(Formulation):
         The augmented gap has a kink at the edge of contact, as sharp as eps_n is stiff, which would spoil the
         interpolation by which the edge is located in a facet; over the skin's stiffness the two are alike.
         """
+        import ufl
+
         return ufl.conditional(ufl.lt(contact.gap, 0.0), -contact.p_n / skin.stiffness(), skin.y)
 
     def error(self, state: SurfaceState, history: History, friction: Friction | None) -> float:

@@ -17,11 +17,10 @@ The history variable of friction is the anchor s, see :mod:`~variational.contact
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, Self
 
 import numpy as np
-import ufl
 from numpy.typing import NDArray
 
 from variational.coefficients import LawError, refuse_not_positive, said
@@ -33,6 +32,8 @@ Array = NDArray[np.float64]
 
 def pressure(gap, gamma_n):
     """Return the contact pressure p_n >= 0 (Pa of reference area) for an augmented gap (m) and a stiffness (Pa/m)."""
+    import ufl
+
     return ufl.conditional(ufl.lt(gap, 0.0), -gamma_n * gap, 0.0)
 
 
@@ -92,6 +93,8 @@ class Contact:
             guess: as in :func:`variational.contact.return_mapping.traction`.
             ease: part of the tangential stiffness that acts.
         """
+        import ufl
+
         self.springs = s = springs
         self.gap = skin.y - s.lambda_n / s.gamma_n
         self.p_n = pressure(self.gap, s.gamma_n)
@@ -110,6 +113,8 @@ def _limit(friction: Friction, p_n):
     Raises:
         LawError: the law cannot be written in UFL.
     """
+    import ufl
+
     try:
         return ufl.as_ufl(friction.limit(p_n))
     except Exception as error:  # whatever the user's limit raises
@@ -148,10 +153,21 @@ class SurfaceState:
 
 
 class Formulation(ABC):
-    """How contact and friction enter the weak form."""
+    """How contact and friction enter the weak form: a frozen dataclass, importable without UFL.
+
+    What a run, a check or a report must consider of a formulation is an attribute here; none of them compares names.
+    """
 
     tolerance: float = 0.0
     """Error of the contact's conditions (m) that is left."""
+    symmetric_start: ClassVar[bool] = True
+    """Whether a state that was reached on one half of a symmetric body can be put on the whole."""
+    caution: ClassVar[str] = ""
+    """What a check says of the formulation before a run; empty for nothing."""
+    less_penetration: ClassVar[str] = "a stiffer contact reduces it"
+    """Remedy against skin that is too deep in the screen."""
+    unloaded_energy: ClassVar[str] = ""
+    """Remedy against a body that stores energy without a load; empty where no such equilibria are known."""
 
     def __post_init__(self) -> None:
         """Refuse numbers that are no stiffness.
@@ -161,12 +177,27 @@ class Formulation(ABC):
         """
         refuse_not_positive(self)
 
+    @classmethod
+    def parameters(cls) -> dict[str, Any]:
+        """Return the defaults of the formulation's parameters by name."""
+        return {field.name: field.default for field in fields(cls)}  # type: ignore[arg-type]
+
     @abstractmethod
     def springs(self, skin: Skin) -> Springs:
         """Return what the trial tractions are made of."""
 
+    def over_stiffer_screen(self) -> Self | None:
+        """Return the contact over a screen of twice the stiffness; None where the screen is rigid already.
+
+        With one, the effect of a rigid screen is estimated beside the error of the mesh
+        (:mod:`fingerpad.accuracy.rigid_screen`).
+        """
+        return None
+
     def virtual_work(self, skin: Skin, contact: Contact, v):
         """Return the contact's part of the residual (J/m^2 of reference area) for a test function."""
+        import ufl
+
         return -ufl.dot(contact.traction, v)
 
     def opening(self, skin: Skin, contact: Contact):

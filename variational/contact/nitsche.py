@@ -23,8 +23,7 @@ translation does no work in it and forces balance exactly.
 """
 
 from dataclasses import dataclass
-
-import ufl
+from typing import ClassVar
 
 from variational.contact.formulation import Contact, Formulation, Skin, Springs
 
@@ -33,8 +32,13 @@ from variational.contact.formulation import Contact, Formulation, Skin, Springs
 class Nitsche(Formulation):
     """Parameter of the stiffness, and which of the variants: theta = 1, 0 or -1."""
 
-    gamma_0: float
+    gamma_0: float = 1.0
     theta: int = 0
+
+    less_penetration: ClassVar[str] = "a larger gamma_0 of the contact or smaller elements reduce it"
+    unloaded_energy: ClassVar[str] = (
+        "Nitsche's method has such equilibria where gamma_0 is too small, so start again with a larger one"
+    )
 
     def __post_init__(self) -> None:
         """Refuse other variants.
@@ -54,6 +58,8 @@ class Nitsche(Formulation):
 
     def virtual_work(self, skin: Skin, contact: Contact, v):
         """Return the work of the tractions and theta times the residual of the contact's conditions."""
+        import ufl
+
         work = super().virtual_work(skin, contact, v)
         if self.theta == 0:
             return work

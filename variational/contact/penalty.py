@@ -7,7 +7,8 @@ Contact Mechanics, 2nd ed., ch. 6). The skin sinks by :math:`p_n / \epsilon_n`, 
 :math:`t_t / \epsilon_t`; without friction the tangent is symmetric.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +23,10 @@ Array = NDArray[np.float64]
 class Penalty(Formulation):
     """Stiffness of the screen, normal and tangential (Pa/m of reference area)."""
 
-    eps_n: float
-    eps_t: float
+    eps_n: float = 1.5e12
+    eps_t: float = 5e10
+
+    less_penetration: ClassVar[str] = "a larger eps_n of the contact reduces it"
 
     def __post_init__(self) -> None:
         """Refuse negative stiffnesses; without any there is no screen.
@@ -36,6 +39,10 @@ class Penalty(Formulation):
     def springs(self, skin: Skin) -> Springs:
         """Return springs without preload."""
         return Springs(0.0, 0.0, skin.constant(self.eps_n), skin.constant(self.eps_t))
+
+    def over_stiffer_screen(self) -> "Penalty":
+        """Return springs of twice the stiffness, normal and tangential."""
+        return replace(self, eps_n=2 * self.eps_n, eps_t=2 * self.eps_t)
 
     def stored(self, state: SurfaceState) -> Array:
         """Return the energy of the springs (J/m^2 of reference area)."""

@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.cli import main, one_scene, ours
-from fingerpad.cli.compare_data import _Compared
-from fingerpad.cli.measured import read
+from fingerpad.cli import main
 from fingerpad.io.result import Result
+from fingerpad.measurements import one_scene
+from fingerpad.measurements.compare import beside
+from fingerpad.measurements.computed import computed
+from fingerpad.measurements.table import read
 from fingerpad.runs.solve import run
 from fingerpad.scene import Scene, SceneError
 from fingerpad.slices import traces
@@ -34,17 +36,28 @@ def state(step, f_ext, voltage=0.0, bone_x=0.0, **more):
     )
 
 
+def compared(runs, table):
+    """Return the rows of a table beside the values of runs."""
+    return beside(table, computed(runs, table))
+
+
+def ratio(runs, table):
+    """Return computed over measured values."""
+    found = compared(runs, table)
+    return found.computed.to_numpy() / found.measured.to_numpy()
+
+
 def test_press_of_a_run_is_compared(table):
     """The states on the way down and no later ones; full slip is one state."""
     steps = (state(1, 10.0), state(2, 20.0), state(3, 20.0, 100.0), state(4, 20.0, 100.0, 1e-3, mu_app=0.4))
     run = Result(Scene(), "full", steps[1], steps[2], steps[3], steps=steps)
     pressed = read(table("# state: uncharged\nforce (N/m), depth (mm)\n15, 0.3\n"))
-    found = _Compared(pressed, ours.ours([run], pressed))
-    assert found.ours == pytest.approx([1.5e-4]) and found.ratio == pytest.approx([0.5])
+    assert compared(run, pressed).computed.tolist() == pytest.approx([1.5e-4])
+    assert ratio(run, pressed) == pytest.approx([0.5])
     slip = read(table("friction (1)\n0.2\n"))
-    assert _Compared(slip, ours.ours([run], slip)).ratio == pytest.approx([2.0])
+    assert ratio([run], slip) == pytest.approx([2.0])
     with pytest.raises(SceneError, match="no state full slip"):
-        ours.ours([Result(Scene(), "full", steps[1], None, None, steps=steps[:2])], slip)
+        computed([Result(Scene(), "full", steps[1], None, None, steps=steps[:2])], slip)
 
 
 def test_errors_of_named_states_are_carried(table):
@@ -60,7 +73,7 @@ def test_errors_of_named_states_are_carried(table):
         ("gross area (mm^2)\n20\n", [np.nan]),
     ):
         asked = read(table(text))
-        np.testing.assert_array_equal(_Compared(asked, ours.ours([run], asked)).error, error)
+        np.testing.assert_array_equal(compared([run], asked).error, error)
 
 
 def test_whole_finger_is_compared(table):
@@ -72,13 +85,15 @@ def test_whole_finger_is_compared(table):
         for s, f in zip(slip, finger, strict=True)
     ]
     area = read(table("force (mN), voltage (V), gross area (mm^2), spread (mm^2)\n500, 100, 45, 50\n"))
-    assert area.whole and area.conditions["f_ext"] == pytest.approx((0.5,)) and area.values == pytest.approx((4.5e-5,))
+    assert area.whole and area.rows.iloc[0].to_dict() == pytest.approx(
+        {"force": 0.5, "voltage": 100.0, "measured": 4.5e-5, "spread": 5e-5}
+    )
     power = np.log(1e-4 / 8e-5) / np.log(0.6 / 0.4)
-    assert _Compared(area, ours.ours(runs, area)).ratio == pytest.approx([8e-5 * 1.25**power / 4.5e-5])
+    assert ratio(runs, area) == pytest.approx([8e-5 * 1.25**power / 4.5e-5])
     friction = read(table("force (N), friction (1)\n0.4, 0.25\n"))
-    assert _Compared(friction, ours.ours(runs[:1], friction)).ratio == pytest.approx([2.0])
+    assert ratio(runs[:1], friction) == pytest.approx([2.0])
     with pytest.raises(SceneError, match="the run has no newtons"):
-        ours.ours([Result(Scene(), "full", None, None, slip[0])], friction)
+        computed([Result(Scene(), "full", None, None, slip[0])], friction)
 
 
 def total(force, area):
@@ -98,15 +113,15 @@ def test_smaller_forces_are_those_of_the_traces(table):
     """Of one run to the largest force, as of runs to each; a run of its own wins, and what no trace reaches is left."""
     runs = [fp.run(fp.Scene(voltage=150.0), model="cylinders", force=force) for force in (0.5, 1.0)]
     asked = read(table("force (N), friction force (N)\n0.3, 0.1\n0.5, 0.1\n1, 0.1\n3, 0.1\n"))
-    one, both = (ours.ours(given, asked) for given in (runs[1:], runs))
-    force, voltage = np.array([0.3, 0.5, 1.0, 3.0]), np.full(4, 150.0)
+    one, both = (computed(given, asked) for given in (runs[1:], runs))
+    at = np.array([0.3, 0.5, 1.0, 3.0]), np.full(4, 150.0)
+    (of_one, _), (of_both, _) = one.at(*at), both.at(*at)
     direct = [run.finger.values("full_slip")["f_t"] for run in runs]
-    assert both.at(force, voltage)[1:3] == pytest.approx(direct, rel=1e-9)
-    assert 1e-6 < abs(one.at(force, voltage)[1] / direct[0] - 1) < 5e-3, "its trace has other points"
-    assert len(both.curves[0].force) == 3, "0.5 N is that of its own run alone"
-    nearest = runs[0].finger.under(0.3).values("full_slip")["f_t"]
-    assert both.at(force, voltage)[0] == nearest and both.computed(force, voltage).tolist() == [True] * 3 + [False]
-    assert np.isnan(both.at(force, voltage)[3])
+    assert of_both[1:3] == pytest.approx(direct, rel=1e-9)
+    assert 1e-6 < abs(of_one[1] / direct[0] - 1) < 5e-3, "its trace has other points"
+    assert both.points.force.tolist() == pytest.approx([0.3, 0.5, 1.0]), "0.5 N is that of its own run alone"
+    assert of_both[0] == runs[0].finger.under(0.3).values("full_slip")["f_t"]
+    assert np.isnan(of_both[3])
 
 
 # -- forces that differ a little -----------------------------------------------------------------------------
@@ -129,17 +144,17 @@ def test_forces_within_a_percent_are_one(table):
     """The newtons of one f_ext differ between voltages: the nearest force of each is taken, also without a column."""
     runs = fingers(0.3, 0.3015)
     asked = read(table("force (N), voltage (V), gross area (mm^2)\n0.301, 0, 100\n0.301, 50, 100\n0.305, 0, 100\n"))
-    np.testing.assert_allclose(_Compared(asked, ours.ours(runs, asked)).ratio, [1.0, 2.0, np.nan], rtol=1e-9)
+    np.testing.assert_allclose(ratio(runs, asked), [1.0, 2.0, np.nan], rtol=1e-9)
     free = read(table("voltage (V), gross area (mm^2)\n0, 100\n50, 100\n"))
-    assert _Compared(free, ours.ours(runs, free)).ratio == pytest.approx([1.0, 2.0])
+    assert ratio(runs, free) == pytest.approx([1.0, 2.0])
 
 
 def test_voltages_that_do_not_reach_a_force_are_named(table):
     """The forces of all voltages in one span would hold the force that was asked for."""
     runs = fingers(0.3, 0.32)
     asked = read(table("force (N), voltage (V), gross area (mm^2)\n0.31, 50, 100\n"))
-    with pytest.raises(SceneError, match="is within ours, which has 0.3 N at 0 V, 0.32 N at 50 V$"):
-        _Compared(asked, ours.ours(runs, asked))
+    with pytest.raises(SceneError, match="is within the results, which have 0.3 N at 0 V, 0.32 N at 50 V$"):
+        compared(runs, asked)
 
 
 # -- runs together -------------------------------------------------------------------------------------------
@@ -169,7 +184,7 @@ def test_runs_of_other_screens_are_refused(together, capsys):
 def test_runs_of_other_voltages_are_joined(together, capsys):
     """The force in N/m of a result for newtons is another one at each voltage."""
     assert main(together({}, {"voltage": -150}, {"voltage": 0})) == 0
-    assert "Misfit: ours over measured" in capsys.readouterr().out
+    assert "Misfit: computed over measured" in capsys.readouterr().out
 
 
 def test_runs_of_other_models_are_refused(tmp_path):
@@ -219,8 +234,8 @@ def test_two_values_at_one_place_are_refused(table):
     def slip(mu, f_ext=20.0):
         return Result(Scene(), "full", None, None, state(4, f_ext, 100.0, mu_app=mu))
 
-    assert len(ours.ours([slip(0.4), slip(0.4 + 1e-7, 20 + 1e-8)], friction).force) == 1
+    assert len(computed([slip(0.4), slip(0.4 + 1e-7, 20 + 1e-8)], friction).points) == 1
     near = Result(Scene(), "full", None, None, replace(slip(0.41).full_slip, error=Errors(mu_app=0.02)))
-    ours.ours([slip(0.4), near], friction)  # on another mesh, for an accuracy
+    computed([slip(0.4), near], friction)  # on another mesh, for an accuracy
     with pytest.raises(SceneError, match="friction is 0.4 in a run and 0.41 in a run, both at 20 N/m and 100 V; give"):
-        ours.ours([slip(0.4), slip(0.41)], friction)
+        computed([slip(0.4), slip(0.41)], friction)
