@@ -173,7 +173,7 @@ def test_every_key_is_listed():
     assert (found["roughness.h_rms"].unit, found["roughness.h_rms"].default) == ("m", 3.1e-6)
     assert found["roughness.h_rms"].meaning.startswith("Root mean square height")
     assert found["mesh.touching_half_arc"].allowed == "1e-06 to 0.2"
-    assert found["contact.formulation"].allowed == '"penalty", "nitsche", "augmented"'
+    assert found["contact.formulation"].allowed == '"penalty", "nitsche", "augmented" or module:Class'
     assert found["geometry.ridge_count"].allowed == "whole, 1 to 101"
     assert found["history[].name"].required
 

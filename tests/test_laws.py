@@ -2,20 +2,30 @@
 
 import json
 import pickle
+import re
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pytest
 import ufl
 from mpi4py import MPI
 
+import fingerpad as fp
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.reduced import cylinders
-from fingerpad.scene import Scene, SceneError, from_data, law_keys
+from fingerpad.scene import CONTACT, Scene, SceneError, from_data, law_keys, load
+from fingerpad.scene import materials as scene_materials
+from fingerpad.scene.keys import docstrings
 from fingerpad.scene.law_keys import digest
 from fingerpad.scene.laws import LAYERS, used
+from fingerpad.scene.materials import CLOSURES, FRICTION_LAWS, MATERIALS
+from fingerpad.scene.reading import flat
+from fingerpad.scene.schema import schema
 from geometry import tags
+from variational.coefficients import parameter
+from variational.contact.formulation import Springs
 from variational.contact.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction
 from variational.materials.material import Material
 from variational.materials.neo_hooke import NeoHooke
@@ -177,7 +187,7 @@ class NoData(Closure):
         ({"friction": {"law": "Derjaguin", "mu_f": 0.3}}, "friction.tau_0 is missing; it must be given"),
         ({"friction": {"mu_f": 0.3, "tau_0": 5e3}}, "friction.tau_0 is not a key of friction with the law Coulomb"),
         ({"friction": {"law": "Derjaguin", "mu_f": 0.3, "tau_0": "5 mm"}}, "friction.tau_0 is '5 mm'; its unit"),
-        ({"friction": {"law": 3}}, "friction.law is 3; it must be 'Coulomb', 'Derjaguin' or a law of one's own"),
+        ({"friction": {"law": 3}}, "friction.law is 3; it must be 'Coulomb', 'Derjaguin' or a law of your own"),
         ({"geometry": {"file": 3}}, "geometry.file is 3; it must be text"),
         ({"geometry": {"file": "nowhere.msh"}}, "geometry.file is 'nowhere.msh', and there is no such file"),
     ],
@@ -211,6 +221,75 @@ def test_closure_of_one_s_own_has_the_insulator_of_the_attraction():
 def test_closure_of_the_package_follows_the_insulator():
     found = Scene(roughness=BearingArea(Scene().h_0, h_rms=2e-6)).replace(geometry={"sc_thickness": 250e-6})
     assert found.closure() == BearingArea(found.h_0, h_rms=2e-6)
+
+
+# -- recipes of CONTRIBUTING -----------------------------------------------------------------------------------
+@dataclass(frozen=True)
+class Softer(Mine):
+    shear_modulus: float = parameter(1.0, 1e6, "Pa", default=2.5e3)
+    """Shear modulus (Pa)."""
+    bulk: float = parameter(1.0, 1e9, "Pa", default=6e4)
+    """Bulk modulus (Pa)."""
+
+
+@dataclass(frozen=True)
+class Stuck(Saturating):
+    mu_f: float = parameter(0.1, 1.0)
+    """Coefficient."""
+    t_most: float = parameter(1.0, 1e6, "Pa", default=2e4)
+    """Strength (Pa)."""
+
+
+@dataclass(frozen=True)
+class Wide(Held):
+    gap: float = parameter(1e-9, 1e-3, "m", default=2e-6)
+    """Gap (m)."""
+
+
+@dataclass(frozen=True)
+class OneSpring(fp.Formulation):
+    eps: float = parameter(1e7, 1e17, "Pa/m", default=1.5e12)
+    """Stiffness (Pa/m)."""
+
+    def springs(self, skin):
+        return Springs(0.0, 0.0, skin.constant(self.eps), skin.constant(self.eps))
+
+
+@pytest.mark.parametrize(
+    ("kind", "law", "table", "key"),
+    [
+        (MATERIALS, Softer, {"materials": {"dermis": {"law": "Softer", "bulk": "60 kPa"}}}, "materials.dermis.bulk"),
+        (FRICTION_LAWS, Stuck, {"friction": {"law": "Stuck", "mu_f": 0.4, "t_most": "20 kPa"}}, "friction.t_most"),
+        (CLOSURES, Wide, {"roughness": {"law": "Wide", "gap": "2 um"}}, "roughness.gap"),
+        (CONTACT.kind, OneSpring, {"contact": {"formulation": "OneSpring", "eps": "1.5e12 Pa/m"}}, "contact.eps"),
+    ],
+    ids=["material", "friction", "closure", "formulation"],
+)  # fmt: skip
+def test_law_of_the_package_is_one_line_of_a_registry(kind, law, table, key, monkeypatch):
+    """Its name, units, ranges and words are then those of scene files, refusals, the schema and fingerpad's names."""
+    monkeypatch.setitem(kind.laws, law.__name__, law)
+    scene = Scene(**table)
+    assert law.__name__ in " ".join(used(scene).values()) and law in map(type, scene.laws().values())
+    assert Scene(**json.loads(json.dumps(scene.parameters()))) == scene
+    assert getattr(fp, law.__name__) is law
+    assert law.__name__ in json.dumps(schema())
+    words = {docstrings(law)[name] for name in law_keys.keys_of(law)}
+    assert words <= set(re.findall('"description": "([^"]*)"', json.dumps(schema())))
+    with pytest.raises(SceneError, match=f"{key} is '1 s'; its unit is not a unit of"):
+        load(None, flat(table) | {key: "1 s"})
+    cylinders.solve(scene, cylinders.given(1.5e-3, 15))
+
+
+def test_registries_of_the_recipes_are_there():
+    """Each row of CONTRIBUTING for a law names a folder and a registry, which this test's laws were added to."""
+    rows = (Path(__file__).parents[1] / "CONTRIBUTING.md").read_text(encoding="utf-8").splitlines()
+    names = {"friction law": "FRICTION_LAWS", "material": "MATERIALS", "model of roughness": "CLOSURES"}
+    for what, name in names.items():
+        row = next(row for row in rows if row.startswith(f"| {what} |"))
+        assert f"`{name}` in `fingerpad/scene/materials.py`" in row and hasattr(scene_materials, name)
+    assert "`variational/contact/formulations.py`" in next(
+        row for row in rows if row.startswith("| contact formulation |")
+    )
 
 
 # -- scenes apart ----------------------------------------------------------------------------------------------

@@ -210,11 +210,6 @@ def test_what_is_left_out_is_said(place):
     assert said["discretisation errors"] == "the mesh is of a file and cannot be refined"
 
 
-def test_accuracy_is_refused(place):
-    with pytest.raises(fp.SceneError, match="accuracy is given and geometry.file too"):
-        from_data({"accuracy": {"mu_app": 0.01}}).replace(geometry={"file": write(place)})
-
-
 @pytest.mark.mpi
 def test_bad_file_is_refused(place):
     if MPI.COMM_WORLD.rank == 0:

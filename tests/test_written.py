@@ -80,7 +80,7 @@ def test_law_of_a_scene_file_has_units_and_ranges_of_its_own(place):
         ("os:path", "the module is one of Python's own"),
         ("broken:Mine", "the module cannot be imported: no law here"),
         ("__main__:Mine", "the class is known to the program that made it alone; put it into a module"),
-        ("mylaws", "or a law of one's own, as 'module:Class'"),
+        ("mylaws", "or a law of your own, as 'module:Class'"),
     ],
 )
 def test_path_that_names_no_law_is_refused(place, path, sentence):

@@ -89,7 +89,7 @@ def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
     yield from (*remarks(scene), *leakage(scene))
     found, touching = estimate(scene, needed), by_rule(scene)
     ridges = touching_ridges(touching.geometry, touching.mesh)
-    if caution := scene.contact.law().caution:
+    if caution := scene.contact.law.caution:
         yield caution
     given = scene.mesh.touching_half_arc is not None
     how = "as mesh.touching_half_arc gives" if given else "by a rule of thumb; a run takes more where they come near"

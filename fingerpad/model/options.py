@@ -88,7 +88,7 @@ def plan(scene: Scene) -> ModelOptions:
         if errors:
             omitted.append(Omission("discretisation errors", f"{_FILE} and cannot be refined"))
         return ModelOptions(voltage, friction, False, True, False, False, tuple(omitted))
-    symmetric_start = both_halves and symmetric and scene.contact.law().symmetric_start
+    symmetric_start = both_halves and symmetric and scene.contact.law.symmetric_start
     if not both_halves:
         omitted.append(_HALF)
     return ModelOptions(voltage, friction, receptors, both_halves, symmetric_start, errors, tuple(omitted))
@@ -127,7 +127,7 @@ class FingerModel:
         self.mesh_file = None if scene.geometry.file is None else Path(scene.geometry.file)
         self.mesh_sha256 = scene.geometry.file_sha256
         self.solids = scene.solids()
-        self.contact: Formulation = scene.contact.law()
+        self.contact: Formulation = scene.contact.law
         self.by_gap = scene.contact.length == "gap"
         self.friction = scene.friction_law()
         self.closure = scene.closure() if options.voltage else None

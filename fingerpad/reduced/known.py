@@ -43,9 +43,8 @@ def outside(f_ext: float, voltage: float) -> bool:
 
 def changed(scene: Scene) -> list[str]:
     """Return the tables and keys of a scene that those runs have at their defaults, and the scene has not."""
-    default = Scene()
-    found = [] if scene.friction == default.friction else ["friction"]
-    return found + [name for name in _TABLES if getattr(scene, name) != getattr(default, name)]
+    given, default = scene.parameters(), Scene().parameters()
+    return [name for name in ("friction", *_TABLES) if given[name] != default[name]]
 
 
 def errors(model: str, scene: Scene) -> Bands:

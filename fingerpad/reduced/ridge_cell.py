@@ -174,7 +174,7 @@ class _Cell:
         # A rank by itself makes the whole of it: it is small.
         body = load(MPI.COMM_SELF, partial(strip.build, finger, size, 1, top), strip.LAYERS)
         skins = {tag: s for tag, s in scene.solids().items() if tag in strip.LAYERS}
-        interface = Interface(scene.contact.law(), scene.friction_law(), scene.h_0)
+        interface = Interface(scene.contact.law, scene.friction_law(), scene.h_0)
         numerics = scene.numerics
         self.closure = scene.closure()
         made = Body(

@@ -4,21 +4,18 @@ from collections.abc import Mapping
 from typing import Any
 
 from fingerpad.scene.contradictions import DEFAULT_HISTORY
-from fingerpad.scene.parameters import FORMULATION_KEYS, Accuracy
+from fingerpad.scene.parameters import Accuracy
 
 _START = {"contact": 20e-6, "receptor": 40e-6, "interface": 120e-6, "growth": 0.5}  # m, but for the growth
 _START_AT_SITES = 10e-6  # m; coarser elements do not resolve the tips of 6 µm: halving them does not show the error
 
 
-def changed(
-    present: Mapping[str, Any], accuracy: Accuracy | None, formulation: str, changes: Mapping[str, Any]
-) -> dict[str, Any]:
+def changed(present: Mapping[str, Any], accuracy: Accuracy | None, changes: Mapping[str, Any]) -> dict[str, Any]:
     """Return the data of a scene with changes, without the keys that the changes make meaningless.
 
     Args:
         present: the keys that are given so far.
         accuracy: the present one.
-        formulation: the present one, of the contact.
         changes: values by key, as for :meth:`fingerpad.scene.Scene.replace`.
     """
     present = dict(present)
@@ -30,11 +27,6 @@ def changed(
     shape = changes.get("geometry")
     if isinstance(shape, Mapping) and "file" in shape:
         present["geometry"] = {k: value for k, value in present.get("geometry", {}).items() if k != "file_sha256"}
-    contact = changes.get("contact")
-    if isinstance(contact, Mapping) and contact.get("formulation", formulation) != formulation:
-        present["contact"] = {
-            key: value for key, value in present.get("contact", {}).items() if key not in FORMULATION_KEYS
-        }
     return _merged(present, changes)
 
 

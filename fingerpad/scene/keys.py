@@ -10,7 +10,7 @@ import re
 import textwrap
 import types
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import MISSING, Field, dataclass
 from functools import cache
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -35,6 +35,8 @@ class Key:
     """From the docstring of the key."""
     required: bool = False
     """Whether a table of its kind must give it."""
+    law: str = ""
+    """Law that reads it, where that is not the default one."""
 
 
 def every() -> Iterator[Key]:
@@ -84,20 +86,28 @@ def _of_law(table: str, key: LawKey, meaning: str) -> Iterator[Key]:
     """Yield the keys of a law's table: its name, and the parameters of the default law, or of all where a number is."""
     default = key.default
     name, names = key.kind.name(type(default)), ", ".join(f'"{name}"' for name in key.kind.laws)
-    text = f'Law of this table, or the import path of one\'s own, as "mylaws:Mine" (docs/laws.md). {meaning}'.strip()
-    yield Key(f"{table}law", "", None if key.number else name, f"{names} or module:Class", text)
+    table = table.removesuffix("law.") if key.flat else table
+    several = bool(key.number or key.flat)
+    text = f"{meaning or 'Name of the law.'} A law of your own has its import path here (docs/laws.md)."
+    yield Key(table + (key.flat or "law"), "", None if key.number else name, f"{names} or module:Class", text)
     seen = set[str]()
-    for law in dict.fromkeys([type(default), *(key.kind.laws.values() if key.number else ())]):
+    for law in dict.fromkeys([type(default), *(key.kind.laws.values() if several else ())]):
         for field in keys_of(law).values():
             if field.name in seen:
                 continue
             seen.add(field.name)
-            value = None if key.number else getattr(default, field.name)
+            value = None if key.number or field.default is MISSING else field.default
+            value = value if key.number or law is not type(default) else getattr(default, field.name)
             limits = range_of(field)
-            unit, allowed = ("", "") if limits is None else (limits.unit, _words(limits))
-            yield Key(table + field.name, unit, value, allowed, docstrings(law).get(field.name, ""))
+            unit, allowed = ("", _choices(field)) if limits is None else (limits.unit, _words(limits))
+            of = "" if law is type(default) else key.kind.name(law)
+            yield Key(table + field.name, unit, value, allowed, docstrings(law).get(field.name, ""), law=of)
     for each in key.tables:
         yield from _of(each, f"{table}{each.__name__.lower()}.", None)
+
+
+def _choices(field: "Field[Any]") -> str:
+    return ", ".join(map(str, field.metadata.get("allowed", ())))
 
 
 def _words(limits: Range, several: str = "") -> str:

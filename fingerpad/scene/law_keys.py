@@ -36,7 +36,7 @@ from variational.coefficients import said
 
 _OWN = re.compile(r"([A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*):([A-Za-z_<>][\w<>]*(?:\.[A-Za-z_<>][\w<>]*)*)", re.ASCII)
 _PROGRAM = {"fingerpad", "variational", "geometry"}
-_UNCODED = {"builtins", "abc", "typing"} | _PROGRAM
+_UNCODED = {"abc", "typing"} | _PROGRAM
 _KEPT = ContextVar("kept", default=False)
 
 
@@ -82,7 +82,7 @@ class Kind:
     """What a key holds, to follow "it must be"."""
     laws: Mapping[str, type]
     """The laws of the package, by name."""
-    check: Callable[[Any], None]
+    check: Callable[[Any], None] = lambda law: None
     """Refuses an object of one's own by ``ValueError``, in one sentence."""
 
     def name(self, law: type) -> str:
@@ -99,7 +99,7 @@ class Kind:
         if found is None and isinstance(name, str) and (parts := _OWN.fullmatch(name)):
             found = imported(*parts.groups())
         if found is None:
-            raise ValueError(f"it must be {', '.join(map(show, self.laws))} or a law of one's own, as 'module:Class'")
+            raise ValueError(f"it must be {', '.join(map(show, self.laws))} or a law of your own, as 'module:Class'")
         if not (isinstance(found, type) and issubclass(found, self.base)):
             raise ValueError(f"it must be {self.words}")
         if not is_dataclass(found) or not found.__dataclass_params__.frozen:  # type: ignore[attr-defined]
@@ -114,6 +114,7 @@ class LawKey:
         kind: of the law.
         default: law whose parameters complete a table without ``law``.
         number: parameter of the default law that a number in place of a table gives; empty for none.
+        flat: key of the law's name where name and parameters stand in the table around the law; else empty.
     """
 
     def __init__(
@@ -121,6 +122,7 @@ class LawKey:
         kind: Kind,
         default: Any,
         number: str = "",
+        flat: str = "",
         of_scene: Callable[[Mapping[str, Any]], dict[str, Any]] = lambda data: {},
     ) -> None:
         """Describe a key.
@@ -129,9 +131,10 @@ class LawKey:
             kind: see the attribute.
             default: see the attribute.
             number: see the attribute.
+            flat: see the attribute.
             of_scene: gives values of fields that the scene sets by itself, from the keys before this one.
         """
-        self.kind, self.default, self.number, self._of_scene = kind, default, number, of_scene
+        self.kind, self.default, self.number, self.flat, self._of_scene = kind, default, number, flat, of_scene
 
     tables: tuple[type[BaseModel], ...] = ()
     """Tables inside that of the default law, by their names in small letters."""
@@ -303,7 +306,8 @@ def _number(field: "Field[Any]", value: Any, at: tuple[str, ...]) -> Any:
         raise PydanticCustomError(error.type, "{said}", context) from None  # type: ignore[arg-type]
     allowed = field.metadata.get("allowed")
     if allowed is not None and value not in allowed:
-        raise fail(f"is {show(value)}; it must be {' or '.join(map(show, allowed))}", *at)
+        *first, last = map(show, allowed)
+        raise fail(f"is {show(value)}; it must be {', '.join(first)} or {last}", *at)
     found = _plain(value)
     if not _is_data(found):
         raise fail(f"is {clip(repr(value))}; parameters of a law are numbers, texts, and lists of these", *at)
@@ -375,7 +379,7 @@ def digest(law: Any) -> str:
 
     Code without a file, as of an interactive session, counts as itself alone, in this process alone.
     """
-    own = [each for each in law.__mro__ if each.__module__.partition(".")[0] not in _UNCODED]
+    own = [each for each in law.__mro__ if each is not object and each.__module__.partition(".")[0] not in _UNCODED]
     found = hashlib.sha256()
     for module in dict.fromkeys(each.__module__ for each in own):
         file = getattr(sys.modules.get(module), "__file__", None)

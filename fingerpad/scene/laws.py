@@ -30,7 +30,7 @@ def used(scene: "Scene") -> dict[str, str]:
     Keys are the layers, ``contact``, ``friction``, ``attraction`` and ``closure``, and ``mesh`` where one was given.
     """
     found = {layer: _words(getattr(scene.materials, layer)) for layer in LAYERS}
-    found["contact"] = _words(scene.contact.law())
+    found["contact"] = _words(scene.contact.law)
     friction = Coulomb(scene.friction) if isinstance(scene.friction, float) else scene.friction
     found["friction"] = _words(friction) if scene.friction else "none"
     charged = any(load.voltage for load in scene.loads())

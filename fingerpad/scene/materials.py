@@ -63,11 +63,17 @@ class Materials(Part):
     """Exponent of the stretches in Ogden's law: ``"printed"`` is the paper's -alpha, ``"abaqus"`` is +alpha.
     *Assumption*: the paper prints -alpha but was computed with Abaqus, whose Ogden law has +alpha."""
     subcutis: Annotated[Material, _layer(_SUBCUTIS)] = _SUBCUTIS
+    """Material of the subcutis."""
     dermis: Annotated[Material, _layer(_DERMIS)] = _DERMIS
+    """Material of the dermis."""
     viable_epidermis: Annotated[Material, _layer(_EPIDERMIS)] = _EPIDERMIS
+    """Material of the viable epidermis."""
     stratum_corneum: Annotated[Material, _layer(_CORNEUM)] = _CORNEUM
+    """Material of the stratum corneum."""
     nail: Annotated[Material, _layer(_NAIL)] = _NAIL
+    """Material of the nail."""
     nail_bed: Annotated[Material, _layer(_NAIL_BED)] = _NAIL_BED
+    """Material of the nail bed."""
 
 
 class Electric(Part):

@@ -95,6 +95,8 @@ def first_error(error: ValidationError, root: type[BaseModel]) -> str:
     first = error.errors(include_url=False)[0]
     kind, context = first["type"], first.get("ctx", {})
     loc = tuple(part for part in (*first["loc"], *context.get("at", ())) if part not in (NUMBER, WAVE))
+    if loc[:2] == ("contact", "law"):  # whose formulation's keys stand in the table itself
+        loc = ("contact", *("formulation" if part == "law" else part for part in loc[2:]))
     key, value = key_of(loc), context.get("value", first["input"])
     given = show(value)
     if kind == LAW:
@@ -184,8 +186,9 @@ def _instead(loc: tuple[int | str, ...], own: Sequence[str]) -> str:
         )
     wanted = clip(name, _MOST_KEY).lower().replace("-", "_")
     keys = [(table, key, _NEAR) for key in own]
-    others = (key.name.replace("[]", "[0]").rpartition(".") for key in every())
-    keys += [(where, key, _ELSEWHERE) for where, _, key in others if where != table]
+    names = [key.name.replace("[]", "[0]").split(".") for key in every()]
+    tables = dict.fromkeys((".".join(name[:depth]), name[depth]) for name in names for depth in range(len(name)))
+    keys += [(at, key, _ELSEWHERE) for at, key in tables if (at, key) != (table, wanted)]
     near = [
         (likeness, -k)
         for k, (_, key, least) in enumerate(keys)

@@ -99,7 +99,7 @@ class Scene(Part):
         Raises:
             SceneError: the first key at fault, or one in whose place the scene has a law.
         """
-        return Scene(**changed(plain(self), self.accuracy, self.contact.formulation, changes))
+        return Scene(**changed(plain(self), self.accuracy, changes))
 
     def __replace__(self, **changes: Any) -> "Scene":
         """Return :meth:`replace` of changes, as ``copy.replace`` does from Python 3.13 on."""
@@ -111,18 +111,18 @@ class Scene(Part):
         return self.electric.h_0(self.geometry.sc_thickness)
 
     # -- laws ------------------------------------------------------------------------------------------
-    def _laws(self) -> dict[str, Any]:
+    def laws(self) -> dict[str, Any]:
         """Return what each key has that holds a law: an object, or the number of a friction coefficient."""
         layers = {f"materials.{name}": getattr(self.materials, name) for name in LAYERS}
-        return {"friction": self.friction, "roughness": self.roughness} | layers
+        return {"friction": self.friction, "roughness": self.roughness, "contact": self.contact.law} | layers
 
     def own_laws(self) -> dict[str, Any]:
         """Return the laws of one's own by key."""
-        return {key: law for key, law in self._laws().items() if is_dataclass(law) and digest(type(law))}  # type: ignore[arg-type]
+        return {key: law for key, law in self.laws().items() if is_dataclass(law) and digest(type(law))}  # type: ignore[arg-type]
 
     def resolved(self) -> "Scene":
         """Return the scene with the laws that were not imported where results were read; raises as :meth:`replace`."""
-        return self.replace() if any(isinstance(law, Kept) for law in self._laws().values()) else self
+        return self.replace() if any(isinstance(law, Kept) for law in self.laws().values()) else self
 
     def refuse_laws_of_program(self, where: str) -> None:
         """Refuse laws that no other process can import.
@@ -191,7 +191,7 @@ class Scene(Part):
             unused["slices"] = True
         default = Numerics()  # likewise
         unused["numerics"] = {n for n in ("step_scale", "memory") if getattr(self.numerics, n) == getattr(default, n)}
-        found = self.model_dump(mode="json", exclude=unused | {"contact": self.contact.unread()})
+        found = self.model_dump(mode="json", exclude=unused)
         if self.geometry.file is not None:  # whose mesh has its own shape and sizes
             del found["mesh"]
             found["geometry"] = {key: found["geometry"][key] for key in ("file", "file_sha256", "sc_thickness")}

@@ -21,6 +21,7 @@ from geometry.units import QUANTITIES
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _NUMBER = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?"
 _NUMBER_AND_UNIT = _NUMBER + r"\s*[^\s0-9.+-].*$"
+_NAME = {"description": "Name of the law."}
 _SWEEP = {
     "type": "object",
     "description": "Of a study, for fingerpad sweep: a list or a range such as 0:200:5 by key.",
@@ -61,6 +62,9 @@ def schema() -> dict[str, Any]:
     parts = found["$defs"] | {Scene.__name__: found}
     for model in dict.fromkeys(tables(Scene)):
         _describe(parts[model.__name__], model)
+        for name, field in model.model_fields.items():
+            if flat := next((key.flat for key in field.metadata if isinstance(key, LawKey)), ""):
+                _flatten(parts[model.__name__], name, flat)
     found["properties"]["sweep"] = _SWEEP
     return {"$schema": DIALECT, "title": "Scene of fingerpad"} | found
 
@@ -87,11 +91,32 @@ def _law(key: LawKey) -> JsonSchemaValue:
             own[table.__name__.lower()] = _describe(table.model_json_schema(schema_generator=_Generator), table)
         left = [each.name for each in keys_of(law).values() if each.default is MISSING]
         found.append(
-            {"type": "object", "properties": {"law": {"const": name}} | own, "additionalProperties": False}
+            {
+                "type": "object",
+                "properties": {"law": {"const": name, "description": "Name of the law."}} | own,
+                "additionalProperties": False,
+            }
             | ({} if default else {"required": ["law", *left]})
         )
     own_law = {"type": "string", "pattern": r"^[\w.]+:[\w.]+$", "description": "module:Class on Python's path"}
     return {"anyOf": [*found, {"type": "object", "properties": {"law": own_law}, "required": ["law"]}]}
+
+
+def _flatten(part: JsonSchemaValue, law: str, name: str) -> None:
+    """Put the keys of a law into the table around it.
+
+    Args:
+        part: schema of that table.
+        law: key that holds the law.
+        name: key of the law's name.
+    """
+    properties = part.pop("properties")
+    part["anyOf"] = properties.pop(law)["anyOf"]
+    for table in part["anyOf"]:
+        table["properties"] = {name: table["properties"].pop("law")} | table["properties"] | properties
+        if "required" in table:
+            table["required"] = [name, *table["required"][1:]]
+    part.pop("additionalProperties", None)
 
 
 def _parameter(law: type, field: "Field[Any]") -> JsonSchemaValue:
