@@ -70,7 +70,7 @@ def scene(case: dict[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def with_laws(given: fp.Scene, laws: dict[str, Any]) -> tuple[fp.Scene, dict[str, Any]]:
-    """Return a scene with laws by key, and what a run is given beside it: a program of before took laws as arguments."""
+    """Return a scene with its laws, and what a run is given beside it: a program of before took them as arguments."""
     if not hasattr(given, "with_laws"):
         if "geometry" in laws:  # of which the file of a mesh leaves nothing to read
             data = given.parameters()

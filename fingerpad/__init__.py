@@ -29,7 +29,7 @@ def __getattr__(name: str) -> Any:
         return import_module("geometry")
     with needed_by(f"fingerpad.{name}"):
         if name == "Body":  # with the configuration of the user alone, before any other import
-            import_module("fingerpad.started")
+            import_module("fingerpad.startup")
         if name in _HOMES:
             return getattr(import_module(_HOMES[name]), name)
         laws = {} if name.startswith("_") else import_module("fingerpad.scene").laws_by_name()

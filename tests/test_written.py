@@ -10,7 +10,6 @@ import pytest
 
 import fingerpad as fp
 from fingerpad.io.result import Result
-from fingerpad.reduced import ridge_cell
 from fingerpad.scene import Scene, SceneError, load
 from fingerpad.scene.law_keys import digest
 from fingerpad.scene.laws import used
@@ -169,19 +168,6 @@ def test_tables_of_an_edited_law_are_not_those_before(place):
     old = before.parameters()
     edited(place)
     assert Scene.load(place / "scene.toml").parameters() != old == before.parameters()
-
-
-def test_tables_of_a_ridge_depend_on_the_file_of_its_closure(place):
-    text = (
-        "import fingerpad as fp\nfrom dataclasses import dataclass\n@dataclass(frozen=True)\nclass Mine(fp.Closure):\n"
-    )
-    text += "    def __call__(self, p_c):\n        return fp.AirGap({gap} + 0 * p_c)\n"
-    found = []
-    for gap in (2e-6, 3e-6):
-        sys.modules.pop("mylaws", None)
-        (place / "path" / "mylaws.py").write_text(text.format(gap=gap), encoding="utf-8")
-        found.append(ridge_cell._made_of(Scene(roughness={"law": "mylaws:Mine"})))
-    assert found[0] != found[1]
 
 
 def test_law_without_a_file_counts_in_its_process_alone():

@@ -14,19 +14,15 @@ from fingerpad.scene.messages import SceneError
 
 _EXAMPLES = """
     fingerpad compare --set voltage=100
-    fingerpad compare scene.toml --model cylinders smooth full --out results/compare
+    fingerpad compare scene.toml --model cylinders full --out results/compare
 """
 
 
 def main(argv: Sequence[str]) -> int:
     """Compare models; return the exit code."""
-    parser = Parser(
-        "fingerpad compare",
-        "Compute a scene by several models; print their results and their cost side by side.",
-        _EXAMPLES,
-    )
+    parser = Parser("compare", _EXAMPLES)
     parser.add_scene()
-    parser.add_out("results", "folder of the full run and of the ridge's tables (default: results)")
+    parser.add_out("results", "folder of the full run (default: results)")
     parser.add_argument(
         "--model",
         nargs="+",
@@ -45,9 +41,9 @@ def main(argv: Sequence[str]) -> int:
     scene = scene_of(args)
     check_folder(args.out)
     footprint = _footprint(scene, args.contact_length, args.ridges, args.run)
-    from fingerpad import startup
+    from fingerpad.startup import start
 
-    startup.start(petsc)
+    start(petsc)
     import fingerpad.runs.full  # noqa: F401  # before Ctrl-C raises
     from fingerpad.runs import compare
 

@@ -17,12 +17,14 @@ voltage. ``docs/models.md`` has its errors.
 """
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.io.files import read_object
 from fingerpad.io.place import difference
@@ -40,6 +42,7 @@ from geometry.profiles import Profiles
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState, hertz_modulus
 from variational.state import ContactState
 
+Array = NDArray[np.float64]
 # The default finger's full runs without voltage, contact size 10 um: f_ext (N/m), then contact length (m), ridges in
 # contact and indentation in each state. benchmarks/models.py keeps the same numbers in docs/models.json.
 FORCES = (5.0, 10.0, 25.0, 50.0, 75.0, 100.0, 120.0, 150.0)
@@ -53,9 +56,7 @@ INDENTATIONS = {  # m, how far the bone is lowered
     "full_slip": (0.1452e-3, 0.2239e-3, 0.3893e-3, 0.5842e-3, 0.7345e-3, 0.8569e-3, 0.9417e-3, 1.0510e-3),
 }
 _SHAPING = ("geometry", "materials", "contact")  # tables of a scene of which these lengths are a matter
-_ELSE = (
-    "use the model 'smooth', or the command compare with --contact-length and --ridges, or with the --run of a folder"
-)
+_ELSE = "use the model 'full', or the command compare with --contact-length and --ridges, or with the --run of a folder"
 
 
 @dataclass(frozen=True)
@@ -77,25 +78,42 @@ def fitted(scene: Scene) -> Footprint:
     Raises:
         SceneError: the scene's finger is another one.
     """
-    default = Scene()
-    for name in _SHAPING:
-        if getattr(scene, name) != getattr(default, name):
-            raise SceneError(f"{name} is not that of the default finger, whose contact length is known; {_ELSE}")
+    default = _default()
+    _refuse_other(scene, default)
     source = "uncharged contact length interpolated between full runs of the default finger"
     if not FORCES[0] <= scene.f_ext <= FORCES[-1]:
         source = f"uncharged contact length extrapolated from full runs at {FORCES[0]:g} to {FORCES[-1]:g} N/m"
     if scene.friction != default.friction:
         source += f"; that of full slip with a friction coefficient of {default.friction:g}"
-    length = {state: _interpolate(scene.f_ext, LENGTHS[state]) for state in STATES}
-    ridges = {state: max(1, round(_interpolate(scene.f_ext, RIDGES[state]))) for state in STATES}
-    return Footprint(length, ridges, False, source)
+    length = {state: float(_lengths(scene.f_ext, state)) for state in STATES}
+    return Footprint(length, {state: int(_ridges(scene.f_ext, state)) for state in STATES}, False, source)
 
 
-def _interpolate(f_ext: float, values: tuple[float, ...] | tuple[int, ...]) -> float:
-    """Return a power law through the two neighbours, at the ends through the last two."""
-    x, y = np.log(FORCES), np.log(values)
-    k = int(np.clip(np.searchsorted(x, np.log(f_ext)) - 1, 0, len(x) - 2))
-    return float(np.exp(y[k] + (y[k + 1] - y[k]) * (np.log(f_ext) - x[k]) / (x[k + 1] - x[k])))
+_default = cache(Scene)
+
+
+def _refuse_other(scene: Scene, default: Scene) -> None:
+    """Refuse a finger other than the default one."""
+    for name in _SHAPING:
+        if getattr(scene, name) != getattr(default, name):
+            raise SceneError(f"{name} is not that of the default finger, whose contact length is known; {_ELSE}")
+
+
+def _lengths(f_ext: ArrayLike, state: str) -> Array:
+    """Return the default finger's contact length (m) without voltage under external forces (N/m)."""
+    return _interpolate(f_ext, LENGTHS[state])
+
+
+def _ridges(f_ext: ArrayLike, state: str) -> NDArray[np.int_]:
+    """Return the default finger's ridges in contact without voltage under external forces (N/m)."""
+    return np.maximum(np.rint(_interpolate(f_ext, RIDGES[state])).astype(int), 1)
+
+
+def _interpolate(f_ext: ArrayLike, values: tuple[float, ...] | tuple[int, ...]) -> Array:
+    """Return power laws through the two neighbours, at the ends through the last two; shape of the forces."""
+    x, y, at = np.log(FORCES), np.log(values), np.log(f_ext)
+    k = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)
+    return np.exp(y[k] + (y[k + 1] - y[k]) * (at - x[k]) / (x[k + 1] - x[k]))
 
 
 def indentation(f_ext: float, state: str) -> float:
@@ -105,7 +123,7 @@ def indentation(f_ext: float, state: str) -> float:
         f_ext: external force (N/m).
         state: ``charged`` or ``full_slip``. A voltage of 200 V moves the bone at full slip by up to 6 %.
     """
-    return _interpolate(f_ext, INDENTATIONS[state])
+    return float(_interpolate(f_ext, INDENTATIONS[state]))
 
 
 def given(length: float, ridges: int) -> Footprint:
@@ -180,20 +198,9 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     notes = footprint.source, exact, known.in_words(errors), "the bone's height is not in this model", *leakage(scene)
     cautions, states = [*remarks(scene), *([] if footprint.charged else known.cautions(scene))], {}
     for state in STATES:
-        try:
-            ridge = _ridge(scene, footprint, state)
-        except NoEquilibriumError as error:
-            raise SceneError(f"{WORDS[state]} of the model 'cylinders': {error}") from None
-        n = footprint.ridges[state]
-        contact = {
-            "f_contact": n * ridge.f_contact,
-            "f_electrostatic": n * ridge.f_attraction,
-            "contact_length": n * ridge.length,
-            "ridges_in_contact": n,
-        }
-        found[state] = at_rest(scene, contact) if state == "charged" else at_slip(scene, contact)
-        states[state] = ridge
-        cautions += _others(state, ridge)
+        n, length = np.array([footprint.ridges[state]]), np.array([footprint.length[state]])
+        ((found[state], states[state]),) = _solved(scene, [scene.f_ext], length, n, state, footprint.charged)
+        cautions += _others(state, states[state])
     cautions += on_states(found.values(), scene.closure())
     more: dict[str, Any] = {
         f"{PREFIXES[state]}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
@@ -206,13 +213,74 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     )  # fmt: skip
 
 
-def _ridge(scene: Scene, footprint: Footprint, state: str) -> RidgeState:
-    n, length = footprint.ridges[state], footprint.length[state]
-    f, radius, closure = scene.f_ext / n, tip_radius(scene.geometry), scene.closure()
-    if footprint.charged:
-        return Cylinder(radius, skin_modulus(scene), scene.h_0, closure).over_length(length / n, f, scene.voltage)
-    modulus = hertz_modulus(radius, f, length / n)
-    return Cylinder(radius, modulus, scene.h_0, closure).under_load(f, scene.voltage)
+def over_forces(
+    scene: Scene, f_ext: Sequence[float], state: str, press: Sequence[ContactState] = ()
+) -> list[ContactState]:
+    """Return a state of a scene under each of several external forces, computed together.
+
+    Args:
+        scene: with the voltage of all.
+        f_ext: external forces (N/m).
+        state: ``charged`` or ``full_slip``.
+        press: states without voltage under these forces, whose contact it is; by default the default finger's.
+
+    Raises:
+        SceneError: as :func:`solve`, but for what is wrong with the other state alone.
+    """
+    refuse_others(scene, "cylinders")
+    if press:
+        length = np.array([each.contact_length for each in press])
+        ridges = np.array([each.ridges_in_contact for each in press])
+    else:
+        _refuse_other(scene, _default())
+        length, ridges = _lengths(f_ext, state), _ridges(f_ext, state)
+    return [found for found, _ in _solved(scene, f_ext, length, ridges, state)]
+
+
+def _solved(
+    scene: Scene,
+    f_ext: Sequence[float],
+    length: Array,
+    ridges: NDArray[np.int_],
+    state: str,
+    charged: bool = False,
+) -> list[tuple[ContactState, RidgeState]]:
+    """Return a state of a scene under external forces (N/m), and that of its ridges.
+
+    Args:
+        scene: with the voltage of all.
+        f_ext: external forces (N/m).
+        length: contact length (m) under each.
+        ridges: in contact under each.
+        state: ``charged`` or ``full_slip``.
+        charged: whether the lengths are those at the voltage.
+    """
+    radius, closure, forces, length = (
+        tip_radius(scene.geometry),
+        scene.closure(),
+        np.array(f_ext) / ridges,
+        length / ridges,
+    )
+    try:
+        if charged:
+            cylinder = Cylinder(radius, skin_modulus(scene), scene.h_0, closure)
+            found = [cylinder.over_length(*each, scene.voltage) for each in zip(length, forces, strict=True)]
+        else:
+            moduli = hertz_modulus(radius, forces, length)
+            found = Cylinder(radius, moduli, scene.h_0, closure).under_loads(forces, scene.voltage)
+    except NoEquilibriumError as error:
+        raise SceneError(f"{WORDS[state]} of the model 'cylinders': {error}") from None
+    made, states = at_rest if state == "charged" else at_slip, []
+    for each, count, ridge in zip(f_ext, ridges, found, strict=True):
+        n = int(count)
+        contact = {
+            "f_contact": n * ridge.f_contact,
+            "f_electrostatic": n * ridge.f_attraction,
+            "contact_length": n * ridge.length,
+            "ridges_in_contact": n,
+        }
+        states.append((made(scene.model_copy(update={"f_ext": float(each)}), contact), ridge))
+    return states
 
 
 def _others(state: str, ridge: RidgeState) -> list[str]:
@@ -237,6 +305,6 @@ def tip_radius(finger: Fingertip) -> float:
         what = f"{len(places)} crests" if len(places) > 1 else "a flat tip"
         raise SceneError(
             f"geometry.ridge_profile gives a ridge {what}; the model 'cylinders' takes ridges for cylinders, so use "
-            "the model 'smooth'"
+            "the model 'full'"
         )
     return step**2 / (2 * (high - low))

@@ -2,12 +2,12 @@
 
 import json
 import signal
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
-import fingerpad.started  # noqa: F401
+import fingerpad.startup  # noqa: F401
 from fingerpad.io import petsc_options
 from fingerpad.io.abort import all_together, no_room
 from fingerpad.io.checkpoint import Checkpoint
@@ -15,6 +15,7 @@ from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt
 from fingerpad.io.place import Place
 from fingerpad.io.provenance import provenance
+from fingerpad.io.quantities import Output, checked
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
 from fingerpad.model import expected
@@ -39,6 +40,7 @@ def run(
     bar: bool = True,
     resume: bool = False,
     asked: Mapping[str, Any] | None = None,
+    outputs: Sequence[Output] = (),
 ) -> Result:
     """Reach every load of a scene; refine where it asks for an accuracy; collective.
 
@@ -55,6 +57,7 @@ def run(
         bar: whether to show the progress bar.
         resume: go on from the checkpoint in the folder.
         asked: of which the scene is a trace, see :class:`fingerpad.io.place.Place`; a trace has no checkpoint.
+        outputs: computed from each state.
 
     Returns:
         The result, the same on every rank. It has a ``failure`` if a load or an accuracy could not be reached; every
@@ -68,6 +71,7 @@ def run(
         SceneError: the finger cannot be meshed; on every rank.
         DiskFull: there is no more room for results; on the ranks that found out, which end the others.
     """
+    outputs = checked(outputs)
     all_together(comm)
     petsc_options.check(comm, scene.numerics.element)
     console = Console(comm, lines, bar)
@@ -76,7 +80,7 @@ def run(
             journal = None
             if place is not None and asked is None:
                 journal = Journal(comm, _checkpoint(scene, place.folder), resume)
-            return _run(scene, Writer(place, comm), comm, console, journal)
+            return _run(scene, Writer(place, comm), comm, console, journal, outputs)
     except GeometryError as error:
         what = "the finger cannot be meshed" if scene.geometry.file is None else "mesh"
         raise SceneError(f"{what}: {error}") from error
@@ -90,7 +94,14 @@ def _checkpoint(scene: Scene, folder: Path) -> Checkpoint:
     return Checkpoint(folder, scene.parameters(), {"source": versions["source"], "dolfinx": versions["dolfinx"]})
 
 
-def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console, journal: Journal | None) -> Result:
+def _run(
+    scene: Scene,
+    writer: Writer,
+    comm: MPI.Comm,
+    console: Console,
+    journal: Journal | None,
+    outputs: Sequence[Output],
+) -> Result:
     """Run a scene until nothing must be added to its model."""
     writer.log.info("scene %s", json.dumps(scene.parameters()))
     clock, restarts = Clock(comm), Restarts(writer.log, console)
@@ -104,7 +115,7 @@ def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console, journal
         with Interrupt(comm) as interrupt:
             while True:
                 _expect(scene, model, comm, console)
-                attempt = Attempt(model, comm, writer, console, clock, interrupt, journal)
+                attempt = Attempt(model, comm, writer, console, clock, interrupt, journal, outputs)
                 if model.mesh_file is not None:
                     _expect(scene, model, comm, console, attempt.simulation.finger.unknowns)
                 restart = attempt.follow()

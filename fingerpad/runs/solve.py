@@ -1,11 +1,9 @@
 """Run a scene, or many: what ``import fingerpad`` gives for that."""
 
-import itertools
 import os
 import signal
-import tempfile
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 from fingerpad.installed import needed_by, source, version
 from fingerpad.io import dataset, terminal
 from fingerpad.io.files import replace_json
-from fingerpad.io.folder import below
 from fingerpad.io.place import Place, Serial, on_rank_0
+from fingerpad.io.quantities import Output
+from fingerpad.io.quantities import checked as checked_outputs
 from fingerpad.io.result import Result
-from fingerpad.io.states import WORDS
 from fingerpad.model.check import check
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import show
@@ -26,7 +24,7 @@ from variational.coefficients import LawError
 if TYPE_CHECKING:
     from fingerpad.startup import MPI
 
-MODELS = ("cylinders", "smooth", "full")
+MODELS = ("cylinders", "full")
 """The cheapest first; see :mod:`fingerpad.runs.compare`."""
 
 
@@ -38,21 +36,23 @@ def run(
     force: float | str | None = None,
     comm: "MPI.Comm | None" = None,
     resume: bool = False,
+    outputs: Sequence[Output] = (),
 ) -> Result:
     """Return what a model answers to a scene; collective.
 
     Args:
         scene: the scene; by default press, charge and slide of the default finger.
         out: folder for tables, pictures, fields and ``summary.json``; without it nothing is written.
-        model: ``"full"``, every ridge along the whole path (minutes); ``"smooth"``, a smooth finger with the law of
-            one ridge (seconds, half a minute the first time); ``"cylinders"``, a closed form (at once).
+        model: ``"full"``, every ridge along the whole path (minutes); ``"cylinders"``, a closed form (at
+            once).
         force: external force on the whole finger, in N, as a text such as ``"0.5 N"`` or as a quantity of pint, in
             place of the scene's ``f_ext``. The result's ``finger`` is then summed over traces of the model
-            (:mod:`fingerpad.slices.traces`): three runs of the full one, some 25 scenes of the others. States in N/m:
-            for the full model, those at the end of its last trace; for other models, those under the force on the
-            centre slice.
+            (:mod:`fingerpad.slices.traces`): three runs of the full one, some 25 scenes of the closed form. States in
+            N/m: for the full model, those at the end of its last trace; for the closed form, those under the force on
+            the centre slice.
         comm: communicator; by default of all ranks.
         resume: go on from where a run of the same scene in ``out`` was cut short; only of the full model.
+        outputs: further quantities, each computed from every state: see :class:`fingerpad.io.quantities.Output`.
 
     Returns:
         The result. A load that could not be reached is its ``failure``, with a warning; the states before are in it.
@@ -70,7 +70,7 @@ def run(
             f"resume is true, out is {show(out)}, model {show(model)} and force {show(force)}; "
             "only a full run in a folder, of one scene, can go on"
         )
-    result = solved(scene, model, None if out is None else Path(out), comm, force=force, resume=resume)
+    result = solved(scene, model, None if out is None else Path(out), comm, force=force, resume=resume, outputs=outputs)
     if result.interrupted:
         raise _ended(result)
     if result.failure and terminal.rank() == 0:
@@ -109,7 +109,7 @@ def solved(
     report: bool = True,
     force: float | str | None = None,
     resume: bool = False,
-    tables: Path | None = None,
+    outputs: Sequence[Output] = (),
 ) -> Result:
     """Return what a model answers to a scene with all its laws; collective; arguments as of :func:`run`.
 
@@ -118,13 +118,14 @@ def solved(
         model: one of :data:`MODELS`.
         out: folder of results.
         comm: communicator.
-        lines: whether the full model prints its steps, and the smooth finger what it does.
-        bar: whether they show a progress bar.
+        lines: whether the full model prints its steps.
+        bar: whether it shows a progress bar.
         report: whether ``report.html`` is written beside the results.
         force: on the whole finger, as of :func:`run`.
         resume: whether the full model goes on from where a run in the folder was cut short.
-        tables: folder of the ridge's tables of the smooth finger; by default that of :func:`tables_in`.
+        outputs: as of :func:`run`.
     """
+    checked_outputs(outputs)
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     scene = scene.resolved()
@@ -132,9 +133,9 @@ def solved(
         scene.refuse_laws_of_program("a run that goes on")
     try:
         if force is None:
-            result = _solved(scene, model, out, comm, lines, bar, resume, tables=tables)
+            result = _solved(scene, model, out, comm, lines, bar, resume, outputs=outputs)
         else:
-            result = _whole(scene, force, model, out, comm, lines, bar, tables)
+            result = _whole(scene, force, model, out, comm, lines, bar, outputs)
     except LawError as error:
         raise SceneError(str(error)) from error
     whole = not (result.interrupted and force is not None)  # a force without all of its traces is no result
@@ -155,7 +156,7 @@ def _solved(
     bar: bool,
     resume: bool = False,
     asked: Mapping[str, Any] | None = None,
-    tables: Path | None = None,
+    outputs: Sequence[Output] = (),
 ) -> Result:
     """Return what a model answers, its results written into a folder; collective; arguments as of :func:`solved`.
 
@@ -168,35 +169,24 @@ def _solved(
         bar: whether to show a bar.
         resume: whether to go on.
         asked: of which the scene is a trace, see :class:`fingerpad.io.place.Place`.
-        tables: as of :func:`solved`.
+        outputs: as of :func:`run`.
     """
     if model == "cylinders":
         from fingerpad.reduced import cylinders
 
-        found = with_versions(cylinders.solve(scene), {"versions": {"fingerpad": version(), "source": source()}})
+        found = with_versions(
+            cylinders.solve(scene), {"versions": {"fingerpad": version(), "source": source()}}
+        ).with_outputs(outputs)
         return found if out is None else kept(found, out, _ranks(comm))
     with needed_by(f"the model {model!r}"):
-        import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
-        from fingerpad.startup import MPI
+        from fingerpad.startup import MPI  # before any other import of the libraries that it starts
 
         comm = comm or MPI.COMM_WORLD
         _refuse_different(scene, comm)
         check(scene)
-        if model == "full":
-            from fingerpad.runs import full
+        from fingerpad.runs import full
 
-            return full.run(scene, out, comm, lines, bar, resume, asked)
-        from fingerpad.io.console import Console
-        from fingerpad.io.provenance import provenance
-        from fingerpad.reduced import smooth
-
-        _refuse_other_results(scene, model, out, comm, asked)
-        console = Console(comm, lines, bar)
-        try:
-            found = with_versions(smooth.solve(scene, tables or tables_in(out), comm, console), provenance())
-            return kept(found, out, comm)
-        finally:
-            console.close()
+        return full.run(scene, out, comm, lines, bar, resume, asked, outputs)
 
 
 def _refuse_different(scene: Scene, comm: "MPI.Comm") -> None:
@@ -225,33 +215,23 @@ def _whole(
     comm: "MPI.Comm | None",
     lines: bool,
     bar: bool,
-    tables: Path | None = None,
+    outputs: Sequence[Output] = (),
 ) -> Result:
     """Return the result of a force on the whole finger, its sums written beside the files of the last trace."""
     from fingerpad.slices import traces
     from fingerpad.slices.force import newtons
 
-    value, number = newtons(force), itertools.count(1)
+    value = newtons(force)
     asked = {"force": value, "parameters": scene.parameters()}
     if model != "full":
         _refuse_other_results(scene, model, out, _ranks(comm), asked)
     own = out if model == "full" else None
-    tables = tables or (tables_in(out) if model == "smooth" else None)
-    told = lines and model == "smooth" and terminal.rank() == 0
 
     def solve(each: Scene, name: str) -> Result:
-        if told:
-            what = f"trace of {WORDS[name]}" if name else "centre of the finger"
-            print(f"scene {next(number)} of some {traces.scenes(scene)}: {what}, {each.f_ext:.4g} N/m", flush=True)
-        folder = traces.folder_of(own, name)
-        return _solved(each, model, folder, comm, lines and model == "full", bar, asked=asked, tables=tables)
+        full, folder = lines and model == "full", traces.folder_of(own, name)
+        return _solved(each, model, folder, comm, full, bar, asked=asked, outputs=outputs)
 
-    try:
-        found = traces.whole(scene, value, model, solve)
-    except (KeyboardInterrupt, SystemExit):
-        if told:
-            print(f"Stopped. The same command starts the traces again, with the ridge's finished tables in {tables}.")
-        raise
+    found = traces.whole(scene, value, model, solve)
     if found.interrupted:
         return found
     found = replace(found, record={**found.record, "asked": asked})
@@ -280,6 +260,8 @@ def _ranks(comm: "MPI.Comm | None") -> "MPI.Comm | Serial":
     """Return the communicator of a run: of all ranks by default, and of this process alone where there is no MPI."""
     if comm is not None:
         return comm
+    if not terminal.launched():  # nor do the libraries of finite elements start
+        return Serial()
     try:
         from fingerpad.startup import MPI
     except ImportError:
@@ -317,16 +299,3 @@ def _written(result: Result, comm: "MPI.Comm | Serial") -> Result:
 
     missing = on_rank_0(comm, write)
     return replace(result, notes=(*result.notes, missing)) if missing else result
-
-
-def tables_in(out: Path | None) -> Path:
-    """Return the folder of the tables of ridges: inside that of the results, or else in the user's cache."""
-    if out is not None:
-        folder = below(out, "ridge_tables")
-    else:
-        folder = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "fingerpad" / "ridge_tables"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return Path(tempfile.mkdtemp(prefix="fingerpad-tables-"))
-    return folder

@@ -15,19 +15,21 @@ from fingerpad.installed import source, version
 from fingerpad.io import terminal
 from fingerpad.io.files import replace_json
 from fingerpad.io.folder import below, check_folder
+from fingerpad.io.quantities import Output
+from fingerpad.io.quantities import checked as checked_outputs
 from fingerpad.io.result import Result
 from fingerpad.model.check import check
 from fingerpad.report.write import attempt
-from fingerpad.runs import over_force, sweep_dataset
+from fingerpad.runs import over_force
 from fingerpad.runs.solve import MODELS, checked, solved
 from fingerpad.runs.sweep_columns import FORCE
-from fingerpad.runs.sweep_results import Sweep
+from fingerpad.runs.sweep_results import FILE, Sweep
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import clip, show
 from fingerpad.scene.reading import plain, put
 from fingerpad.scene.remarks import leakage
 
-FILES = ("table.csv", sweep_dataset.FILE, "report.html", "sweep.json")
+FILES = ("table.csv", FILE, "report.html", "sweep.json")
 """What a sweep writes into its folder beside its points."""
 _MOST = 10_000  # points
 _LIMIT = 4 * 3600.0  # s of processor time for one point
@@ -40,6 +42,7 @@ def sweep(
     jobs: int = 1,
     model: str = "full",
     quiet: bool = False,
+    outputs: Sequence[Output] = (),
     **axes: Sequence[Any],
 ) -> Sweep:
     """Return what a model answers to a scene over values of some of its keys.
@@ -54,6 +57,7 @@ def sweep(
         jobs: points that are run at a time.
         model: as of :func:`fingerpad.runs.solve.run`.
         quiet: whether to print no line for each point, and show no progress bar.
+        outputs: as of :func:`fingerpad.runs.solve.run`; the folders of the points do not have them.
         **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``. An axis ``force``
             is of external forces on the whole finger, in N or as texts with units, in place of ``f_ext``: see
             ``force`` of :func:`fingerpad.runs.solve.run`. Tables and arrays are then of the whole finger.
@@ -73,6 +77,7 @@ def sweep(
         raise SceneError(f"out is {show(out)}; it must be the path of a folder")
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
+    checked_outputs(outputs)
     _refuse_axes(axes)
     scene = scene.resolved()
     scenes = _scenes(scene, axes)
@@ -86,14 +91,15 @@ def sweep(
         found = [_closed(point) for point in points]
     else:
         found = _in_processes(points, folder, jobs, model, quiet)
-    done = Sweep(values, tuple(found), folder)
+    done = Sweep(values, tuple(each.with_outputs(outputs) for each in found), folder)
     for name in FILES[:-1]:  # else that of an earlier sweep may stay beside this one's
         (folder / name).unlink(missing_ok=True)
     asked = {"version": version(), "model": model, "parameters": scene.parameters()}
+    asked |= {"outputs": [each.to_dict() for each in done.outputs]}
     leaks = next((note for each in done for note in leakage(each.scene)), "")
     replace_json(folder / FILES[-1], asked | {"cautions": done.cautions(), "notes": [leaks] if leaks else []})
     done.to_csv(folder / FILES[0])
-    notes = tuple(filter(None, (leaks, sweep_dataset.save(done), _older(done, folder / model))))
+    notes = tuple(filter(None, (leaks, done.save(), _older(done, folder / model))))
     attempt(folder)
     return replace(done, notes=notes)
 

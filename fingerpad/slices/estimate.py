@@ -84,7 +84,7 @@ def _scaled(scene: Scene, press: Sequence[ContactState], name: str, end: Contact
     """Return the trace of a named state: the press changed as the cylinders are, and scaled to the state itself."""
     if name == "uncharged":
         return trace(press, wavelength)
-    states = [_charged(scene, state, name, end.voltage) for state in press]
+    states = _charged(scene, press, name, end.voltage)
     law, now = scene.friction_law(), states[-1]
     shape = {key: _ratio(getattr(end, key), getattr(now, key)) for key in ("f_electrostatic", "contact_length")}
     shape["bone_height"] = _ratio(end.bone_height, now.bone_height)
@@ -100,17 +100,16 @@ def _scaled(scene: Scene, press: Sequence[ContactState], name: str, end: Contact
     return Trace(made.depth, made.columns | {"gross_width": width * made.columns["gross_width"]})
 
 
-def _charged(scene: Scene, state: ContactState, name: str, voltage: float) -> ContactState:
-    """Return a state of the press as the cylinders charge it to a voltage (V)."""
+def _charged(scene: Scene, press: Sequence[ContactState], name: str, voltage: float) -> list[ContactState]:
+    """Return the states of the press as the cylinders charge them to a voltage (V)."""
     if voltage == 0:
-        return state
-    length, ridges = {name: state.contact_length}, {name: state.ridges_in_contact}
-    for other in set(cylinders.STATES) - {name}:
-        length[other], ridges[other] = state.contact_length, state.ridges_in_contact
-    here = scene.model_copy(update={"f_ext": state.f_ext, "voltage": voltage})
-    footprint = cylinders.Footprint(length, ridges, False, "press of a run")
-    found = getattr(cylinders.solve(here, footprint), name)
-    return replace(state, f_electrostatic=found.f_electrostatic, contact_length=found.contact_length)
+        return list(press)
+    here = scene.model_copy(update={"voltage": voltage})
+    found = cylinders.over_forces(here, [state.f_ext for state in press], name, press)
+    return [
+        replace(state, f_electrostatic=charged.f_electrostatic, contact_length=charged.contact_length)
+        for state, charged in zip(press, found, strict=True)
+    ]
 
 
 def _ratio(value: float, of: float) -> float:

@@ -2,8 +2,8 @@
 
 The full model follows three histories. The finger is pressed without voltage. It is pressed lightly, charged and
 pressed on. It is pressed lightly, charged, slid to full slip and pressed on while it slides; every accepted step at
-full slip is then a point of the trace. The models "smooth" and "cylinders" solve one scene for each of :data:`FORCES`
-forces. A trace that ends before the force is reached is made again to a larger one.
+full slip is then a point of the trace. The model "cylinders" solves one scene for each of :data:`FORCES` forces. A
+trace that ends before the force is reached is made again to a larger one.
 """
 
 from collections.abc import Iterator
@@ -17,12 +17,11 @@ from fingerpad.io.folder import below
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
-from fingerpad.reduced.answer import TooLight
 from fingerpad.scene import Scene, SceneError
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
 from fingerpad.slices.profile import Profile, profile
-from fingerpad.slices.total import BeyondTrace, at_force
+from fingerpad.slices.total import BeyondTrace, Total, at_force
 from fingerpad.slices.trace import Trace, TraceError, trace
 from geometry.bounds import computed
 from variational.state import ContactState
@@ -33,7 +32,7 @@ if TYPE_CHECKING:
     Solve = Callable[[Scene, str], Result]
 
 FORCES = 8
-"""Points of a trace of the models "smooth" and "cylinders"."""
+"""Points of a trace of the model "cylinders"."""
 LIGHT = 1 / 30
 """Force under which a finger is charged, and slid to full slip, over the largest of its trace."""
 _SMALLEST, _LARGEST = 1e-3, 5e3  # N/m, of a scene
@@ -42,14 +41,16 @@ _TRIES = 4  # of a trace, each time to a larger force
 _MORE, _MARGIN = 1.8, 1.1  # factors on the largest force: of the next try, and beyond the expected one
 # A finger of the default's width bears some 0.53 N where its centre bears 75 N/m; forces grow as F^0.77.
 _LINE, _POINT, _POWER, _WIDTH = 75.0, 0.53, 0.77, 20e-3
-_WORDS = {"full": "traces of the full model", "smooth": "traces of the model 'smooth'"}
+_WORDS = {"full": "traces of the full model"}
 
 
 class Traced(NamedTuple):
-    """A trace, and the result that ends at its largest force."""
+    """A trace, the result that ends at its largest force, and the finger under the force on it."""
 
     trace: Trace
-    result: Result
+    result: Result | None
+    """None of the model "cylinders", whose trace is computed at once."""
+    total: Total | None = None
 
 
 def whole(scene: Scene, force: float, model: str, solve: "Solve") -> Result:
@@ -68,20 +69,19 @@ def whole(scene: Scene, force: float, model: str, solve: "Solve") -> Result:
     """
     refuse(scene)
     finger = profile(scene.slices)
-    finger.lowest()
+    scale = finger.centre_scale  # refuses a finger that is lowest at its end
     reach = _Reach(scene, finger, force, model, solve)
     try:
         found = {name: reach.follow(name) for name in _wanted(scene)}
     except _Stopped as stopped:
         return stopped.result
-    totals = {name: at_force(finger, each.trace, force, scene.slices.count) for name, each in found.items()}
-    ends = {name: each.result.named.get("charged" if name == "uncharged" else name) for name, each in found.items()}
-    known = {name: {errors.MESH: errors.discretisation(ends[name])} for name in totals}
+    totals = {name: each.total for name, each in found.items() if each.total is not None}
+    known = {name: {errors.MESH: errors.discretisation(_end(each, name))} for name, each in found.items()}
     source = f"{_WORDS.get(model, 'traces of charged cylinders, indentations without voltage')} to "
     source += ", ".join(f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
     last = list(found.values())[-1].result
-    if model != "full":
-        f_ext = list(totals.values())[-1].centre / finger.centre_scale()
+    if last is None or model != "full":
+        f_ext = list(totals.values())[-1].centre / scale
         if f_ext < _SMALLEST:
             raise SceneError(
                 f"force is {force:.4g} N, under which the centre of the finger bears {f_ext:.2g} N/m, and the model "
@@ -95,6 +95,12 @@ def whole(scene: Scene, force: float, model: str, solve: "Solve") -> Result:
     return replace(last, finger=WholeFinger(in_order(totals), source, known, states, scene.slices))
 
 
+def _end(traced: Traced, name: str) -> ContactState | None:
+    """Return the state at the largest force of a trace, None of a model without discretisation errors."""
+    named = {} if traced.result is None else traced.result.named
+    return named.get("charged" if name == "uncharged" else name)
+
+
 def _wanted(scene: Scene) -> Iterator[str]:
     """Yield the names of the traces, the last one that of the result."""
     yield "uncharged"
@@ -102,11 +108,6 @@ def _wanted(scene: Scene) -> Iterator[str]:
         yield "charged"
     if scene.friction_law() is not None:
         yield "full_slip"
-
-
-def scenes(scene: Scene) -> int:
-    """Return how many scenes a model without a path solves for a force, where no trace is made again."""
-    return FORCES * len(list(_wanted(scene))) + 1
 
 
 def refuse(scene: Scene) -> None:
@@ -153,17 +154,20 @@ class _Reach:
             try:
                 total = at_force(self._finger, made.trace, self._force, self._scene.slices.count)
             except BeyondTrace as error:
-                if made.result.failure or tries == _TRIES - 1 or top == _LARGEST:
-                    why = f": {made.result.failure}" if made.result.failure else ""
+                failure = "" if made.result is None else made.result.failure
+                if failure or tries == _TRIES - 1 or top == _LARGEST:
+                    why = f": {failure}" if failure else ""
                     raise SceneError(f"{error}{why}") from None
                 self._top *= _MORE
                 continue
-            self._top = total.centre / self._finger.centre_scale() * _MARGIN  # of the next trace
-            return made
+            self._top = total.centre / self._finger.centre_scale * _MARGIN  # of the next trace
+            return made._replace(total=total)
         raise AssertionError("every try returns or raises")
 
     def _made(self, name: str, top: float) -> Traced:
         scene = self._scene
+        if self._model == "cylinders":
+            return Traced(self._closed(name, top), None)
         if self._model != "full":
             return self._points(name, top)
         folder = "" if name == list(_wanted(scene))[-1] else name
@@ -176,22 +180,27 @@ class _Reach:
             why = f": {result.failure}" if result.failure else ""
             raise SceneError(f"the force on the finger is {self._force:.4g} N; {error}{why}") from None
 
+    def _closed(self, name: str, top: float) -> Trace:
+        """Return a trace of the model "cylinders", whose indentations are those without voltage."""
+        forces = [float(each) for each in np.geomspace(top * LIGHT, top, FORCES)]
+        kind = "full_slip" if name == "full_slip" else "charged"
+        scene = self._scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else self._scene
+        states = [
+            replace(state, bone_height=-cylinders.indentation(state.f_ext, kind))
+            for state in cylinders.over_forces(scene, forces, kind)
+        ]
+        return trace(states, scene.geometry.ridge_wavelength)
+
     def _points(self, name: str, top: float) -> Traced:
         """Return a trace of a model that solves one scene at a time."""
         voltage = 0.0 if name == "uncharged" else self._scene.voltage
         found, states = None, []
         for f_ext in np.geomspace(top * LIGHT, top, FORCES):
             scene = self._scene.model_copy(update={"f_ext": float(f_ext), "voltage": voltage})
-            try:
-                found = self._solve(scene, name)
-            except TooLight as error:
-                raise SceneError(f"force is {self._force:.4g} N, and in its trace {error}") from None
+            found = self._solve(scene, name)
             state = found.named.get("charged" if name == "uncharged" else name)
             if state is None:
                 raise SceneError(f"the model {self._model!r} has no {name.replace('_', ' ')} at {f_ext:.4g} N/m")
-            if np.isnan(state.bone_height):
-                kind = "full_slip" if name == "full_slip" else "charged"
-                state = replace(state, bone_height=-cylinders.indentation(float(f_ext), kind))
             states.append(state)
         assert found is not None
         return Traced(trace(states, self._scene.geometry.ridge_wavelength), found)
