@@ -142,7 +142,9 @@ class RoughnessKey(LawKey):
         if topography is not None:
             for name in ("h_rms", "wavelength"):
                 if name in table:
-                    raise fail(f"is {show(table[name])} and topography is given too, which has it; give one", name)
+                    raise fail(
+                        f"is {show(table[name])} and roughness.topography is given too, which has it; give one", name
+                    )
             try:
                 table |= Topography.model_validate(topography).roughness()
             except ValidationError as error:
