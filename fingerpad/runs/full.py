@@ -65,7 +65,7 @@ def run(scene: Scene, context: RunContext) -> Result:
             writer, clock, interrupt = Writer(place, comm), Clock(comm), Interrupt(comm)
             return _run(scene, Session(comm, writer, console, clock, interrupt, journal, outputs))
     except GeometryError as error:
-        what = "the finger cannot be meshed" if scene.laws.mesh is None else "mesh"
+        what = "the finger cannot be meshed" if scene.geometry.file is None else "mesh"
         raise SceneError(f"{what}: {error}") from error
 
 
