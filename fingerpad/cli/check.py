@@ -56,12 +56,12 @@ def _mesh(scene: Scene, needed: ModelOptions) -> "Section | None":
     Raises:
         SceneError: it cannot be made, or a run on it needs more memory than is allowed.
     """
-    if scene.laws.mesh is None and importlib.util.find_spec("gmsh") is None:
+    if scene.geometry.file is None and importlib.util.find_spec("gmsh") is None:
         return None
     from fingerpad.cli import section
 
     found = section.section(scene, needed)
-    if scene.laws.mesh is None:
+    if scene.geometry.file is None:
         try:
             refuse_mesh(len(found.points), len(found.triangles), FingerModel(by_rule(scene), needed))
         except GeometryError as error:
@@ -106,9 +106,9 @@ def _aims(load: Load) -> Iterator[str]:
 
 def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
     yield from (*remarks(scene), *leakage(scene))
-    if caution := scene.contact.law().caution:
+    if caution := scene.contact.law.caution:
         yield caution
-    if scene.laws.mesh is None:
+    if scene.geometry.file is None:
         size = scene.mesh
         sizes = {"in contact": size.contact, "at the Merkel sites": size.receptor, "elsewhere at most": size.coarsest}
         if not needed.receptors:
@@ -122,7 +122,8 @@ def _size(scene: Scene, mesh: "Section | None") -> Iterator[str]:
     if mesh is None:
         yield "not made, since gmsh is not installed"
         return
-    own, number = scene.laws.mesh is not None, unknowns(len(mesh.points), len(mesh.triangles), scene.numerics.element)
+    own = scene.geometry.file is not None
+    number = unknowns(len(mesh.points), len(mesh.triangles), scene.numerics.element)
     yield f"{len(mesh.triangles)} triangles of element {scene.numerics.element}, {number} unknowns"
     if own:
         yield f"the shortest edge is {_um(mesh.shortest)}, the lowest point {_um(mesh.lowest[1])} above the screen"

@@ -173,7 +173,7 @@ def meshed(model: FingerModel, comm: MPI.Comm, half: bool | None = None) -> mesh
         GeometryError: it cannot be meshed, or needs more memory than is allowed, for which no file is refused.
     """
     if model.mesh_file is not None:
-        return mesh.load(comm, meshfile.file(model.mesh_file, model.mesh_sha256))
+        return mesh.load(comm, meshfile.file(model.mesh_file, model.mesh_sha256 or ""))
     half = not model.options.both_halves if half is None else half
     refuse_sizes(model.geometry, model.mesh, model.numerics, model.options)
     build = partial(fingertip.build, model.geometry, model.mesh, model.options.receptors, half)
