@@ -14,7 +14,7 @@ from fingerpad.io.states import load_results, named
 from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.messages import clip
 
-_RESULTS = ("uncharged_", "normal_", "slip_", "load_")
+_RESULTS = ("uncharged_", "charged_", "full_slip_", "load_")
 _MODELS = ("full",)
 
 
