@@ -28,7 +28,7 @@ def state(f_ext, voltage, lost=0.0, ridges=10.0):
     steps = {name: np.array(values) for name, values in rows.items()} | {"mu_app": np.array(rows["f_t"]) / f_ext}
     touching = {0: np.arange(-5, 5), 2: np.arange(-4, 6)}
     gap = np.full(10, 2e-6 if f_ext < 100 else 1.6e-6)
-    return SimpleNamespace(steps=steps, normal=0, slip=2, on_ridges=lambda row, name: (touching[row], gap))
+    return SimpleNamespace(steps=steps, charged=0, full_slip=2, on_ridges=lambda row, name: (touching[row], gap))
 
 
 PATHS = {"rise_0": 0.02, "left_0": 1.0, "new_0": 1.0, "rise_200": 0.011, "left_200": 1.0, "new_200": 2.0}

@@ -40,7 +40,7 @@ def run_of(arrays, gaps=None, partial=None):
     steps = {"f_ext": np.full(4, 10.0), "contact_length": np.array([2.5, 2.0, 4.0, 5.0])}
     of_row = {0: gaps[0], 3: gaps[1]}
     return SimpleNamespace(
-        arrays=lambda _: arrays, steps=steps, normal=0, slip=3, scene=Scene(),
+        arrays=lambda _: arrays, steps=steps, charged=0, full_slip=3, scene=Scene(),
         on_ridges=lambda row, name: (RIDGES, np.array(of_row[row], dtype=float)),
     )  # fmt: skip
 
@@ -166,7 +166,7 @@ def charged(run_x, tag, before, after):
     finger = {"x": run_x, "u": np.zeros_like(run_x), "triangles": triangles, "tag": np.array(tag)}
     arrays = {"finger_press": finger | {"sed": np.array(before)}, "finger_charge": finger | {"sed": np.array(after)}}
     return SimpleNamespace(
-        arrays=arrays.__getitem__, normal=0, on_ridges=lambda row, name: (np.array([-1, 0, 1]), None), scene=Scene()
+        arrays=arrays.__getitem__, charged=0, on_ridges=lambda row, name: (np.array([-1, 0, 1]), None), scene=Scene()
     )
 
 
@@ -217,7 +217,7 @@ def mapped(normal, slip, sites=(1.0, 0.5), papillae=(1.0, 2.0), away=1.0):
     both = np.array([*[1.0] * 2, away])
     arrays = {"finger_press": finger(*about(0), *about(1)), "finger_charge": normal, "finger_slide": slip}
     return SimpleNamespace(
-        arrays=arrays.__getitem__, loads=["press", "charge", "slide"], pressed=0, normal=1, slip=2, scene=Scene(),
+        arrays=arrays.__getitem__, loads=["press", "charge", "slide"], pressed=0, charged=1, full_slip=2, scene=Scene(),
         receptors={
             "ridge": ridges,
             "merkel_sed": np.array([both, both * sites[0], both * sites[1]]),
@@ -291,7 +291,7 @@ def test_claim_is_judged_site_by_site():
     def run(sed, touching, papillae=1.0):
         receptors = {"ridge": np.array([-3, -2, -1, 0]), "merkel_sed": np.array([sed])}
         receptors |= {"meissner_left": np.ones((1, 4)), "meissner_right": np.full((1, 4), papillae)}
-        return SimpleNamespace(receptors=receptors, slip=0, on_ridges=lambda row, name: (touching, None))
+        return SimpleNamespace(receptors=receptors, full_slip=0, on_ridges=lambda row, name: (touching, None))
 
     found = fields.claim(run([9.0, 100.0, 200.0, 400.0], [-2, -1]), run([1.0, 80.0, 202.0, 400.0], [-1, 0], 1.4))
     assert found.numbers == pytest.approx({"median": 0.01, "largest": -0.2, "papillae": 0.2, "least": 0.0, "most": 0.4})

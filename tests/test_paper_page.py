@@ -45,7 +45,7 @@ def test_run_is_read(tmp_path):
         "step": [1, 2, 2, 4],
         "ridge": [0, 0, 1, 1],
         "d_eq": [3e-6, 2e-6, 2.5e-6, 2.6e-6],
-        "state": ["", "", "", ""],
+        "note": ["", "", "", ""],
     }
     receptors = {"step": [1, 1, 2, 2], "ridge": [0, 1, 0, 1], "merkel_sed": [1.0, 2.0, 3.0, 4.0]}
     leave(tmp_path, scene, {"steps": steps, "ridges": ridges, "receptors": receptors}, charged_step=2, full_slip_step=4)
