@@ -11,8 +11,10 @@ import pytest
 import fingerpad as fp
 from fingerpad.io.place import full_scene
 from fingerpad.model.simulation import Simulation
+from fingerpad.reduced.models import find
 from fingerpad.report import parameters, run_page
 from fingerpad.runs import solve
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import SceneError
 from fingerpad.slices import traces
 from fingerpad.slices.estimate import with_newtons
@@ -137,7 +139,7 @@ def test_points_of_the_traces_are_of_one_kind():
     """Each state of a trace is uncharged, charged at rest, or at full slip at the scene's voltage."""
     scene = small(**SMALL)
     for name in ("uncharged", "charged"):
-        found = points(solve.solved(history(scene, name, 1.0), "full"), name)
+        found = points(solve.solved(history(scene, name, 1.0), find("full"), RunContext()), name)
         assert len(found) > 1 and {state.voltage for state in found} == {0.0 if name == "uncharged" else scene.voltage}
         assert all(state.bone_x == 0 for state in found)
 
@@ -219,7 +221,7 @@ def test_least_force(tmp_path):
 
     for model in ("full", "cylinders"):
         with pytest.raises(Stop):
-            traces.whole(fp.Scene(), 1e-5, model, solve)
+            traces.whole(fp.Scene(), 1e-5, find(model), solve)
     assert all(load.f_ext >= 1e-3 for scene in given for load in scene.loads() if load.f_ext is not None)
     finger = fp.run(force=1e-5, model="cylinders").finger
     assert finger.states["full_slip"].totals["f_ext"] == pytest.approx(1e-5, rel=1e-9)
@@ -230,7 +232,7 @@ def test_least_force(tmp_path):
 
 def test_folder_of_other_results_is_refused_before_the_work(tmp_path, monkeypatch):
     fp.run(model="cylinders", out=tmp_path)
-    monkeypatch.setattr(traces.cylinders, "solve", None)
+    monkeypatch.setattr("fingerpad.reduced.cylinders.solve", None)
     with pytest.raises(SceneError, match="holds the results of another scene"):
         fp.run(force=0.5, model="cylinders", out=tmp_path)
 

@@ -42,7 +42,7 @@ class _Frame(NamedTuple):
 def frames(result: Result) -> dict[str, Any]:
     """Return the states that a folder has arrays of, ready for JSON; empty without any."""
     folder = result.folder
-    if folder is None or result.model != "full":
+    if folder is None:
         return {}
     found = [(frame, _skin(folder, frame)) for frame in _listed(result)]
     view = _view([skin for _, skin in found if skin])
