@@ -24,7 +24,7 @@ from variational.solvers.equations import Control
 from variational.solvers.transfer import StateSnapshot
 from variational.state import ContactState
 
-NOTHING = StateSnapshot(*(np.zeros(0) for _ in range(2)), {}, {}, {}, np.zeros(2), Control(), 0.0)
+NOTHING = StateSnapshot(*(np.zeros(0) for _ in range(2)), {}, {}, {}, {}, np.zeros(2), Control(), 0.0)
 EXACT = 0.5
 
 
