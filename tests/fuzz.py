@@ -40,23 +40,7 @@ from variational.attraction.cylinder import Cylinder, NoEquilibriumError
 
 SCENES = sorted((Path(__file__).parent.parent / "demos/scenes").glob("*.toml"))
 LONGEST = 300  # characters of a refusal
-_NUMBERS = (
-    "0",
-    "-1",
-    "1",
-    "nan",
-    "inf",
-    "-inf",
-    "1e308",
-    "5e-324",
-    "-0.0",
-    "1e-9",
-    "1e9",
-    "16",
-    "1.97",
-    "75e3",
-    "2e14",
-)
+_NUMBERS = tuple("0 -1 1 nan inf -inf 1e308 5e-324 -0.0 1e-9 1e9 16 1.97 75e3 2e14".split())
 _WHOLE = ("9" * 400, "0x" + "f" * 5000, "-" + "9" * 30, "9223372036854775808", "0b1", "1_000")
 _TEXTS = (
     '"200"', '"high"', '""', '"a/b"', '"../../etc"', '"/"', '"."', '".hidden"', '"CON"', '"a\\u0000b"', '"line\\nend"',
@@ -291,7 +275,7 @@ def _unready(scene: Scene) -> str:
     if not 0 < found.memory <= scene.numerics.memory:
         return f"memory {found.memory:g}"
     json.dumps(scene.parameters(), allow_nan=False)
-    closure = scene.roughness.bearing_area(scene.h_0)
+    closure = scene.closure()
     gaps = closure(np.geomspace(scene.roughness.p_floor, closure.full_pressure, 20)).d_eq
     if not (np.isfinite(gaps).all() and (gaps >= 0).all()):
         return f"air gaps {gaps}"

@@ -10,9 +10,9 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.accuracy import solves
-from fingerpad.accuracy.recompute import Solve, State
 from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.accuracy.rigid_screen import ORDER
+from fingerpad.accuracy.solves import Solve, State
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.touching import by_rule
 from fingerpad.richardson import MORE, ONCE

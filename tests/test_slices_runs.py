@@ -122,7 +122,7 @@ def test_report_of_a_force_repeats_it(traced):
     assert command.endswith("--force '0.002 N' --out results/again") and "f_ext=" not in command
     asked = {"force": 0.5, "parameters": fp.Scene(geometry={"ridge_profile": [1.0, -0.1]}).parameters()}
     code = html.unescape(parameters.again({}, "full", asked))
-    assert 'from_kept(json.load(open("summary.json"))["asked"]["parameters"])' in code and "force=0.5, out=" in code
+    assert 'fp.Scene(**json.load(open("summary.json"))["asked"]["parameters"])' in code and "force=0.5, out=" in code
 
 
 def test_section_at_the_centre_is_on_its_scale():
@@ -160,7 +160,7 @@ def test_run_has_newtons_for_nothing():
 
 def test_estimate_by_another_law_has_the_friction_of_the_run():
     """Its limit is per reference area, and the slices' forces are spread over current lengths."""
-    run = fp.run(small(f_ext=600.0, **SMALL), friction=fp.Derjaguin(0.1, 1e4))
+    run = fp.run(small(f_ext=600.0, friction=fp.Derjaguin(0.1, 1e4), **SMALL))
     assert run.finger.traces["full_slip"].columns["f_t"][-1] == pytest.approx(run.full_slip.f_t, rel=1e-12)
 
 

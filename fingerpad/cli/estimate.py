@@ -10,6 +10,7 @@ from fingerpad.io.quantities import PER_LENGTH
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinders, known
 from fingerpad.scene import Scene, from_data
+from fingerpad.scene.laws import coefficient, used
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import LEAKAGE, remarks
 
@@ -40,7 +41,8 @@ def main(argv: Sequence[str]) -> int:
     forces, voltages = (several(args, scene, key) for key in ("f_ext", "voltage"))
     rows, lost = grid(scene, forces, voltages)
     echo("Friction at full slip by a closed form, every ridge in contact the same charged cylinder.")
-    echo(f"Friction coefficient {scene.friction:g}.\n")
+    mu_0 = coefficient(scene)
+    echo(f"Friction coefficient {mu_0:g}.\n" if mu_0 is not None else f"Friction {used(scene)['friction']}.\n")
     echo(tables.text(_COLUMNS, rows))
     echo("\nmu_app is friction over force, at full slip; contact is the length of skin on the screen.")
     states = [row["state"] for row in rows if "state" in row]

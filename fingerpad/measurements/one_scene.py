@@ -10,7 +10,7 @@ from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.messages import clip, show
 
 _FREE = re.compile(
-    r"(history\[\d+\]\.)?(f_ext|voltage)"  # the conditions of a measurement,
+    r"(history\[\d+\]\.)?(f_ext|force|voltage)"  # the conditions of a measurement,
     r"|history\[\d+\]\.(bone_height|name)"  # the force by another control, and a word for it,
     r"|output\.(errors|each_load|receptors)|numerics\.memory"  # and what changes no value
 )
@@ -50,10 +50,10 @@ def folder(run: Result) -> str:
 
 
 def _conditions(run: Result) -> dict[str, Any]:
-    """Return the model of a run and every key of its scene, and its laws."""
+    """Return the model of a run and every key of its scene."""
     kept = run.record.get("asked", run.record).get("parameters") or run.scene.parameters()
     scene = as_kept(kept)
-    return {"model": run.model} | scene.model_dump(mode="json") | {"laws": kept.get("laws", {})}
+    return {"model": run.model} | scene.model_dump(mode="json")
 
 
 def _difference(one: Any, other: Any, key: str = "") -> _Difference | None:

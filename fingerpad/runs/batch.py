@@ -140,7 +140,7 @@ def sweep(
             start = time.monotonic()
             given = [str(place / "asked.json"), str(place), str(limit), model]
             given += [] if force is None else [repr(force)]
-            end = run("fingerpad.runs.batch", given, limit)
+            end = run("fingerpad.runs.batch", given, limit, scenes[name].law_folders())
             took.append(time.monotonic() - start)
             return end
 
@@ -173,9 +173,9 @@ def _one(scene: Path, folder: Path, model: str, force: float | None = None) -> N
     from fingerpad.reduced.models import find
     from fingerpad.runs.context import RunContext
     from fingerpad.runs.solve import solved
-    from fingerpad.scene import SceneError, from_kept
+    from fingerpad.scene import SceneError, from_data
 
-    asked, way = from_kept(json.loads(scene.read_text(encoding="utf-8"))), find(model)
+    asked, way = from_data(json.loads(scene.read_text(encoding="utf-8"))), find(model)
     context = RunContext(folder, lines=way.path, bar=way.path, report=False)
     try:
         try:

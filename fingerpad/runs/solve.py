@@ -3,7 +3,7 @@
 import os
 import signal
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -25,9 +25,6 @@ from variational.coefficients import LawError
 
 if TYPE_CHECKING:
     from fingerpad.startup import MPI
-    from variational.contact.friction import Friction
-    from variational.materials.material import Material
-    from variational.roughness.closure import Closure
 
 
 def run(
@@ -36,10 +33,6 @@ def run(
     out: str | Path | None = None,
     model: str = DEFAULT_MODEL,
     force: float | str | None = None,
-    closure: "Closure | None" = None,
-    materials: "Mapping[str, Material] | None" = None,
-    friction: "Friction | float | None" = None,
-    mesh: str | Path | None = None,
     comm: "MPI.Comm | None" = None,
     resume: bool = False,
     outputs: Sequence[Output] = (),
@@ -56,10 +49,6 @@ def run(
             (:mod:`fingerpad.slices.traces`): three runs of the full one, some 25 scenes of the closed form. States in
             N/m: for the full model, those at the end of its last trace; for the closed form, those under the force on
             the centre slice.
-        closure: microscale model in place of the bearing area model, see :mod:`variational.roughness.closure`.
-        materials: materials by layer (``{"dermis": NeoHooke(2.5e3)}``), see :mod:`variational.materials.material`.
-        friction: friction law, see :mod:`variational.contact.friction`.
-        mesh: file of a gmsh mesh in place of the finger's own, see :mod:`geometry.meshfile`.
         comm: communicator; by default of all ranks.
         resume: go on from where a run of the same scene in ``out`` was cut short; only of the full model.
         outputs: further quantities, each computed from every state: see :class:`fingerpad.io.quantities.Output`.
@@ -75,8 +64,6 @@ def run(
     scene, way = checked(scene), find(model)
     if out is not None and not isinstance(out, str | os.PathLike):
         raise SceneError(f"out is {show(out)}; it must be the path of a folder")
-    if closure is not None or materials or friction is not None or mesh is not None:
-        scene = scene.with_laws(closure=closure, materials=materials, friction=friction, mesh=mesh)
     if resume and (out is None or not way.resumes or force is not None):
         raise SceneError(
             f"resume is true, out is {show(out)}, model {show(model)} and force {show(force)}; "
@@ -122,7 +109,9 @@ def solved(scene: Scene, model: Model, context: RunContext, force: float | str |
         force: on the whole finger, as of :func:`run`.
     """
     checked_outputs(context.outputs)
-    scene.laws.refuse_kept()
+    scene = scene.resolved()
+    if context.resume:
+        scene.refuse_laws_of_program("a run that goes on")
     try:
         result = _solved(scene, model, context) if force is None else _whole(scene, force, model, context)
     except LawError as error:
@@ -156,14 +145,14 @@ def _solved(scene: Scene, model: Model, context: RunContext) -> Result:
 def _refuse_different(scene: Scene, comm: "MPI.Comm | Serial") -> None:
     """Refuse scenes that differ from rank to rank, whose solves would wait for each other for ever; collective.
 
-    Laws of one's own are left out: those without a source are another one in each process.
+    Hashes of laws are left out: those without a file are another one in each process.
 
     Raises:
         SceneError: the first key that differs, on every rank.
     """
     if isinstance(comm, Serial):
         return
-    first, *others = comm.allgather({k: v for k, v in flat(scene.parameters()).items() if not k.startswith("laws.")})
+    first, *others = comm.allgather({k: v for k, v in flat(scene.parameters()).items() if not k.endswith(".sha256")})
     for rank, other in enumerate(others, start=1):
         for key in sorted(first.keys() | other.keys()):
             if (one := first.get(key)) != (two := other.get(key)):

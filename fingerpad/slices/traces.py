@@ -119,8 +119,8 @@ def refuse(scene: Scene) -> None:
         raise SceneError(
             "history is given; a force in N is that of press, charge and slide alone, so give voltage instead"
         )
-    if scene.laws.mesh is not None:
-        raise SceneError("mesh is given; a force in N is that of fingers of the scene's own geometry alone")
+    if scene.geometry.file is not None:
+        raise SceneError("geometry.file is given; a force in N is that of fingers of the scene's own geometry alone")
 
 
 class _Stopped(Exception):  # noqa: N818
