@@ -220,7 +220,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     footprint = footprint or fitted(scene)
     found: dict[str, ContactState] = {}
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
-    errors = {} if footprint.charged else known.errors(Cylinders.name, scene)
+    errors = {} if footprint.charged else known.errors(scene)
     notes = footprint.source, exact, known.in_words(errors), "the bone's height is not in this model", *leakage(scene)
     cautions, states = [*remarks(scene), *([] if footprint.charged else known.cautions(scene))], {}
     for state in STATES:
