@@ -78,7 +78,7 @@ def grid(scene: Scene, forces: Sequence[float], voltages: Sequence[float]) -> tu
 
 def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
     """Return what is known of the error of these rows."""
-    bands = known.KNOWN_ERROR[cylinders.Cylinders.name]["full_slip"]
+    bands = known.KNOWN_ERROR["full_slip"]
     mu, length, pull = (f"within {100 * bands[key]:.1f} %" for key in ("mu_app", "contact_length", "f_electrostatic"))
     runs = f"{known.KNOWN_RUNS} full runs at {known.where()}"
     said = [f"Known error: mu_app and friction {mu}, attraction {pull}, contact {length} of {runs}."]

@@ -89,7 +89,9 @@ def times_left(took: Sequence[float], left: int, jobs: int) -> tuple[float, floa
 def _said(summary: Summary, force: float | None) -> str:
     """Return what became of a run that did not fail, in words."""
     of_finger = force is not None  # whose cross-section is at another force
-    mu_app = summary["finger"]["states"].get("full_slip", {}).get("mu_app") if of_finger else summary.get("slip_mu_app")
+    mu_app = (
+        summary["finger"]["states"].get("full_slip", {}).get("mu_app") if of_finger else summary.get("full_slip_mu_app")
+    )
     return "done" if mu_app is None else f"done, µ_app {mu_app:.4f}"
 
 
