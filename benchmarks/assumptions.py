@@ -2,7 +2,8 @@
 
 environment/run python3 -m benchmarks.assumptions [--jobs 2] [--draw]     half an hour
 
-Full runs at 75 N/m, most of them at a contact size of 10 um. Each row of the page is the command of one run. Writes docs/assumptions.json and docs/assumptions.md.
+Full runs at 75 N/m, most of them at a contact size of 10 um. Each row of the page is the command of one run. Writes
+docs/assumptions.json and docs/assumptions.md.
 """
 
 import argparse

@@ -49,7 +49,11 @@ def test_air_gaps_are_counted_by_the_range_of_the_paper():
 
 def test_run_that_failed_keeps_no_page(monkeypatch, tmp_path):
     """It is named; the numbers of an earlier page stay."""
-    monkeypatch.setattr(assumptions.harness, "run", lambda scenes, *_: {name: {"failure": "DIVERGED_MAX_IT"} if name == "[1] at 200 V" else {} for name in scenes})
+    monkeypatch.setattr(
+        assumptions.harness,
+        "run",
+        lambda scenes, *_: {name: {"failure": "DIVERGED_MAX_IT"} if name == "[1] at 200 V" else {} for name in scenes},
+    )
     args = argparse.Namespace(out=tmp_path / "traces", docs=tmp_path, jobs=1)
     with pytest.raises(SystemExit, match=r"\[1\] at 200 V failed"):
         assumptions.compute(args)
