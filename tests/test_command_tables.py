@@ -313,7 +313,7 @@ def test_compare_prints_keys_and_notes(capsys):
     [
         (["--ridges", "3"], "one of --contact-length and --ridges is given without the other"),
         (["--run", "none", "--model", "cylinders"], "none is not a folder of a finished run"),
-        (["--model", "smooth", "--ridges", "3"], "--ridges is given without the model cylinders"),
+        (["--model", "full", "--ridges", "3"], "--ridges is given without the model cylinders"),
     ],
 )
 def test_compare_refuses(argv, message, capsys):

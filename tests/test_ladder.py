@@ -135,7 +135,7 @@ def test_length_of_a_run(tmp_path, sign):
 @pytest.mark.parametrize(
     ("values", "sentence"),
     [
-        ({"model": "smooth"}, "is one of the model 'smooth'; give a full run"),
+        ({"model": "cylinders"}, "is one of the model 'cylinders'; give a full run"),
         ({"voltage": 50.0}, "is one at voltage 50 V"),
         ({"slip_contact_length": None}, "did not reach full slip"),
         (

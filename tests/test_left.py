@@ -178,9 +178,9 @@ def test_compare_in_quiet_has_models_that_print_nothing(tmp_path, monkeypatch, q
         return Result(scene, model, None, None, None, failure="none")
 
     monkeypatch.setattr(compare, "solved", solved)
-    main(["compare", "--model", "smooth", "full", "--out", str(tmp_path), *(["--quiet"] if quiet else [])])
+    main(["compare", "--model", "full", "--out", str(tmp_path), *(["--quiet"] if quiet else [])])
     shown = {"lines": not quiet, "bar": not quiet}
-    assert given == [("smooth", shown), ("full", shown)]
+    assert given == [("full", shown)]
 
 
 def test_sweep_in_quiet_prints_its_table_alone(tmp_path, write, capsys):

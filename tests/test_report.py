@@ -321,7 +321,7 @@ def data(page: str) -> dict:
     return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)[1])
 
 
-@pytest.mark.parametrize("model", ["full", "smooth"])
+@pytest.mark.parametrize("model", ["full", "cylinders"])
 def test_cautions_are_findings(folder, model):
     """The page is to be used with care where a limit of validity is reached."""
     found = trust.findings(replace(Result.load(folder), model=model, cautions=("the model ends here",)))

@@ -14,7 +14,7 @@ from fingerpad.scene.messages import SceneError
 
 _EXAMPLES = """
     fingerpad compare --set voltage=100
-    fingerpad compare scene.toml --model cylinders smooth full --out results/compare
+    fingerpad compare scene.toml --model cylinders full --out results/compare
 """
 
 
@@ -26,7 +26,7 @@ def main(argv: Sequence[str]) -> int:
         _EXAMPLES,
     )
     parser.add_scene()
-    parser.add_out("results", "folder of the full run and of the ridge's tables (default: results)")
+    parser.add_out("results", "folder of the full run (default: results)")
     parser.add_argument(
         "--model",
         nargs="+",

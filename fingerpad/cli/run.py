@@ -19,7 +19,7 @@ _OUT = Path("results")
 
 _EXAMPLES = """
     fingerpad run --set f_ext="50 N/m" --set voltage=150 --out results/mine
-    fingerpad run --force "0.5 N" --model smooth --out results/newtons
+    fingerpad run --force "0.5 N" --out results/newtons
     mpirun -n 2 fingerpad run scene.toml --out results/scene -fingerpad_snes_monitor
     fingerpad run --resume results/scene
 """
@@ -37,8 +37,7 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument(
         "--model",
         choices=MODELS,
-        help="every ridge (full), a smooth finger with the law of one ridge, or a closed form (default: full, or that "
-        "of the run whose scene.json is given)",
+        help="every ridge (full) or a closed form (default: full, or that of the run whose scene.json is given)",
     )
     parser.add_argument("--resume", type=path, metavar="DIR", help="go on with a run that was cut short in this folder")
     parser.add_argument(

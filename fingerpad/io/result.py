@@ -51,7 +51,7 @@ class Result:
 
     scene: Scene
     model: str
-    """``full``, ``smooth`` or ``cylinders``."""
+    """``full`` or ``cylinders``."""
     uncharged: ContactState | None
     """Uncharged normal contact; None where a history or a model does not have this state, as for the next two. All
     three are defined in :mod:`fingerpad.io.states`."""

@@ -15,10 +15,6 @@ STATES = ("charged", "full_slip")
 """For which they answer, by their names in :mod:`fingerpad.io.states`."""
 
 
-class TooLight(SceneError):  # noqa: N818
-    """A force under which a model has no answer; one sentence."""
-
-
 def at_rest(scene: Scene, contact: Mapping[str, float], error: Errors | None = None) -> ContactState:
     """Return normal contact; by symmetry there is no friction.
 

@@ -56,9 +56,7 @@ INDENTATIONS = {  # m, how far the bone is lowered
     "full_slip": (0.1452e-3, 0.2239e-3, 0.3893e-3, 0.5842e-3, 0.7345e-3, 0.8569e-3, 0.9417e-3, 1.0510e-3),
 }
 _SHAPING = ("geometry", "materials", "contact")  # tables of a scene of which these lengths are a matter
-_ELSE = (
-    "use the model 'smooth', or the command compare with --contact-length and --ridges, or with the --run of a folder"
-)
+_ELSE = "use the model 'full', or the command compare with --contact-length and --ridges, or with the --run of a folder"
 
 
 @dataclass(frozen=True)
@@ -312,6 +310,6 @@ def tip_radius(finger: Fingertip) -> float:
         what = f"{len(places)} crests" if len(places) > 1 else "a flat tip"
         raise SceneError(
             f"geometry.ridge_profile gives a ridge {what}; the model 'cylinders' takes ridges for cylinders, so use "
-            "the model 'smooth'"
+            "the model 'full'"
         )
     return step**2 / (2 * (high - low))

@@ -233,7 +233,7 @@ def _model(result: Result) -> str:
         "Never in the model: inertia, viscous skin, waves, leakage of charge, moisture, the deformation and roughness "
         "of the screen, and the direction along the finger (plane strain). See docs/model.md."
     )
-    kinds = {"full": "Every ridge of the cross-section", "smooth": "A smooth finger with the law of one ridge"}
+    kinds = {"full": "Every ridge of the cross-section"}
     first = f"{kinds.get(result.model, 'A closed form of charged cylinders')} (model {result.model!r})."
     unknowns = f" {result.cost.unknowns} unknowns." if result.cost.unknowns else ""
     left = html.items(omitted) if omitted else html.paragraph("Nothing of the scene was left out.")

@@ -14,7 +14,7 @@ from fingerpad.scene.messages import clip
 from variational.state import ContactState
 
 _RESULTS = ("uncharged_", "normal_", "slip_", "load_")
-_MODELS = ("full", "smooth")
+_MODELS = ("full",)
 
 
 @dataclass(frozen=True)

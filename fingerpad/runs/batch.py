@@ -108,7 +108,7 @@ def sweep(
         folder: of all results.
         jobs: processes at a time.
         limit: seconds of processor time for one scene.
-        model: ``"full"`` or ``"smooth"``.
+        model: one of :data:`fingerpad.runs.solve.MODELS`.
         quiet: whether to print nothing, and show no bar.
         forces: on the whole finger (N) by name, as of :func:`fingerpad.runs.solve.run`; of scenes that have one.
 
@@ -169,15 +169,14 @@ def _one(scene: Path, folder: Path, model: str, force: float | None = None) -> N
     start()
     from fingerpad.io.checkpoint import CheckpointError
     from fingerpad.io.place import PlaceError
-    from fingerpad.runs.solve import solved, tables_in
+    from fingerpad.runs.solve import solved
     from fingerpad.scene import SceneError, from_kept
 
     asked = from_kept(json.loads(scene.read_text(encoding="utf-8")))
 
     def solve(resume: bool) -> None:
-        tables = tables_in(folder.parent) if model == "smooth" else None  # of all points
         path = model == "full"  # the others are listed by the sweep alone
-        solved(asked, model, folder, lines=path, bar=path, report=False, force=force, resume=resume, tables=tables)
+        solved(asked, model, folder, lines=path, bar=path, report=False, force=force, resume=resume)
 
     try:
         try:

@@ -1,7 +1,6 @@
 """The models of one scene side by side, the cheapest first, with what each of them cost.
 
     cylinders   ridges as charged cylinders, for a contact length that is known (:mod:`fingerpad.reduced.cylinders`)
-    smooth      a smooth finger with one ridge's law as its contact (:mod:`fingerpad.reduced.smooth`)
     full        the whole cross-section with every ridge (:mod:`fingerpad.runs.full`)
 
 Where each model is good enough: ``docs/models.md``.

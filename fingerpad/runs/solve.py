@@ -1,9 +1,7 @@
 """Run a scene, or many: what ``import fingerpad`` gives for that."""
 
-import itertools
 import os
 import signal
-import tempfile
 import warnings
 from collections.abc import Mapping
 from dataclasses import replace
@@ -13,10 +11,8 @@ from typing import TYPE_CHECKING, Any
 from fingerpad.installed import needed_by, source, version
 from fingerpad.io import dataset, terminal
 from fingerpad.io.files import replace_json
-from fingerpad.io.folder import below
 from fingerpad.io.place import Place, Serial, on_rank_0
 from fingerpad.io.result import Result
-from fingerpad.io.states import WORDS
 from fingerpad.model.check import check
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import show
@@ -29,7 +25,7 @@ if TYPE_CHECKING:
     from variational.materials.material import Material
     from variational.roughness.closure import Closure
 
-MODELS = ("cylinders", "smooth", "full")
+MODELS = ("cylinders", "full")
 """The cheapest first; see :mod:`fingerpad.runs.compare`."""
 
 
@@ -51,13 +47,13 @@ def run(
     Args:
         scene: the scene; by default press, charge and slide of the default finger.
         out: folder for tables, pictures, fields and ``summary.json``; without it nothing is written.
-        model: ``"full"``, every ridge along the whole path (minutes); ``"smooth"``, a smooth finger with the law of
-            one ridge (seconds, half a minute the first time); ``"cylinders"``, a closed form (at once).
+        model: ``"full"``, every ridge along the whole path (minutes); ``"cylinders"``, a closed form (at
+            once).
         force: external force on the whole finger, in N, as a text such as ``"0.5 N"`` or as a quantity of pint, in
             place of the scene's ``f_ext``. The result's ``finger`` is then summed over traces of the model
-            (:mod:`fingerpad.slices.traces`): three runs of the full one, some 25 scenes of the others. States in N/m:
-            for the full model, those at the end of its last trace; for other models, those under the force on the
-            centre slice.
+            (:mod:`fingerpad.slices.traces`): three runs of the full one, some 25 scenes of the closed form. States in
+            N/m: for the full model, those at the end of its last trace; for the closed form, those under the force on
+            the centre slice.
         closure: microscale model in place of the bearing area model, see :mod:`variational.roughness.closure`.
         materials: materials by layer (``{"dermis": NeoHooke(2.5e3)}``), see :mod:`variational.materials.material`.
         friction: friction law, see :mod:`variational.contact.friction`.
@@ -122,7 +118,6 @@ def solved(
     report: bool = True,
     force: float | str | None = None,
     resume: bool = False,
-    tables: Path | None = None,
 ) -> Result:
     """Return what a model answers to a scene with all its laws; collective; arguments as of :func:`run`.
 
@@ -131,21 +126,20 @@ def solved(
         model: one of :data:`MODELS`.
         out: folder of results.
         comm: communicator.
-        lines: whether the full model prints its steps, and the smooth finger what it does.
-        bar: whether they show a progress bar.
+        lines: whether the full model prints its steps.
+        bar: whether it shows a progress bar.
         report: whether ``report.html`` is written beside the results.
         force: on the whole finger, as of :func:`run`.
         resume: whether the full model goes on from where a run in the folder was cut short.
-        tables: folder of the ridge's tables of the smooth finger; by default that of :func:`tables_in`.
     """
     if model not in MODELS:
         raise SceneError(f"model is {show(model)}; it must be {' or '.join(map(repr, MODELS))}")
     scene.laws.refuse_kept()
     try:
         if force is None:
-            result = _solved(scene, model, out, comm, lines, bar, resume, tables=tables)
+            result = _solved(scene, model, out, comm, lines, bar, resume)
         else:
-            result = _whole(scene, force, model, out, comm, lines, bar, tables)
+            result = _whole(scene, force, model, out, comm, lines, bar)
     except LawError as error:
         raise SceneError(str(error)) from error
     whole = not (result.interrupted and force is not None)  # a force without all of its traces is no result
@@ -166,7 +160,6 @@ def _solved(
     bar: bool,
     resume: bool = False,
     asked: Mapping[str, Any] | None = None,
-    tables: Path | None = None,
 ) -> Result:
     """Return what a model answers, its results written into a folder; collective; arguments as of :func:`solved`.
 
@@ -179,7 +172,6 @@ def _solved(
         bar: whether to show a bar.
         resume: whether to go on.
         asked: of which the scene is a trace, see :class:`fingerpad.io.place.Place`.
-        tables: as of :func:`solved`.
     """
     if model == "cylinders":
         from fingerpad.reduced import cylinders
@@ -193,21 +185,9 @@ def _solved(
         comm = comm or MPI.COMM_WORLD
         _refuse_different(scene, comm)
         check(scene)
-        if model == "full":
-            from fingerpad.runs import full
+        from fingerpad.runs import full
 
-            return full.run(scene, out, comm, lines, bar, resume, asked)
-        from fingerpad.io.console import Console
-        from fingerpad.io.provenance import provenance
-        from fingerpad.reduced import smooth
-
-        _refuse_other_results(scene, model, out, comm, asked)
-        console = Console(comm, lines, bar)
-        try:
-            found = with_versions(smooth.solve(scene, tables or tables_in(out), comm, console), provenance())
-            return kept(found, out, comm)
-        finally:
-            console.close()
+        return full.run(scene, out, comm, lines, bar, resume, asked)
 
 
 def _refuse_different(scene: Scene, comm: "MPI.Comm") -> None:
@@ -236,33 +216,21 @@ def _whole(
     comm: "MPI.Comm | None",
     lines: bool,
     bar: bool,
-    tables: Path | None = None,
 ) -> Result:
     """Return the result of a force on the whole finger, its sums written beside the files of the last trace."""
     from fingerpad.slices import traces
     from fingerpad.slices.force import newtons
 
-    value, number = newtons(force), itertools.count(1)
+    value = newtons(force)
     asked = {"force": value, "parameters": scene.parameters()}
     if model != "full":
         _refuse_other_results(scene, model, out, _ranks(comm), asked)
     own = out if model == "full" else None
-    tables = tables or (tables_in(out) if model == "smooth" else None)
-    told = lines and model == "smooth" and terminal.rank() == 0
 
     def solve(each: Scene, name: str) -> Result:
-        if told:
-            what = f"trace of {WORDS[name]}" if name else "centre of the finger"
-            print(f"scene {next(number)} of some {traces.scenes(scene)}: {what}, {each.f_ext:.4g} N/m", flush=True)
-        folder = traces.folder_of(own, name)
-        return _solved(each, model, folder, comm, lines and model == "full", bar, asked=asked, tables=tables)
+        return _solved(each, model, traces.folder_of(own, name), comm, lines and model == "full", bar, asked=asked)
 
-    try:
-        found = traces.whole(scene, value, model, solve)
-    except (KeyboardInterrupt, SystemExit):
-        if told:
-            print(f"Stopped. The same command starts the traces again, with the ridge's finished tables in {tables}.")
-        raise
+    found = traces.whole(scene, value, model, solve)
     if found.interrupted:
         return found
     found = replace(found, record={**found.record, "asked": asked})
@@ -328,16 +296,3 @@ def _written(result: Result, comm: "MPI.Comm | Serial") -> Result:
 
     missing = on_rank_0(comm, write)
     return replace(result, notes=(*result.notes, missing)) if missing else result
-
-
-def tables_in(out: Path | None) -> Path:
-    """Return the folder of the tables of ridges: inside that of the results, or else in the user's cache."""
-    if out is not None:
-        folder = below(out, "ridge_tables")
-    else:
-        folder = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "fingerpad" / "ridge_tables"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return Path(tempfile.mkdtemp(prefix="fingerpad-tables-"))
-    return folder

@@ -2,8 +2,8 @@
 
 The full model follows three histories. The finger is pressed without voltage. It is pressed lightly, charged and
 pressed on. It is pressed lightly, charged, slid to full slip and pressed on while it slides; every accepted step at
-full slip is then a point of the trace. The models "smooth" and "cylinders" solve one scene for each of :data:`FORCES`
-forces. A trace that ends before the force is reached is made again to a larger one.
+full slip is then a point of the trace. The model "cylinders" solves one scene for each of :data:`FORCES` forces. A
+trace that ends before the force is reached is made again to a larger one.
 """
 
 from collections.abc import Iterator
@@ -17,7 +17,6 @@ from fingerpad.io.folder import below
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
-from fingerpad.reduced.answer import TooLight
 from fingerpad.scene import Scene, SceneError
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
@@ -33,7 +32,7 @@ if TYPE_CHECKING:
     Solve = Callable[[Scene, str], Result]
 
 FORCES = 8
-"""Points of a trace of the models "smooth" and "cylinders"."""
+"""Points of a trace of the model "cylinders"."""
 LIGHT = 1 / 30
 """Force under which a finger is charged, and slid to full slip, over the largest of its trace."""
 _SMALLEST, _LARGEST = 1e-3, 5e3  # N/m, of a scene
@@ -42,7 +41,7 @@ _TRIES = 4  # of a trace, each time to a larger force
 _MORE, _MARGIN = 1.8, 1.1  # factors on the largest force: of the next try, and beyond the expected one
 # A finger of the default's width bears some 0.53 N where its centre bears 75 N/m; forces grow as F^0.77.
 _LINE, _POINT, _POWER, _WIDTH = 75.0, 0.53, 0.77, 20e-3
-_WORDS = {"full": "traces of the full model", "smooth": "traces of the model 'smooth'"}
+_WORDS = {"full": "traces of the full model"}
 
 
 class Traced(NamedTuple):
@@ -109,11 +108,6 @@ def _wanted(scene: Scene) -> Iterator[str]:
         yield "charged"
     if scene.friction_law() is not None:
         yield "full_slip"
-
-
-def scenes(scene: Scene) -> int:
-    """Return how many scenes a model without a path solves for a force, where no trace is made again."""
-    return FORCES * len(list(_wanted(scene))) + 1
 
 
 def refuse(scene: Scene) -> None:
@@ -203,10 +197,7 @@ class _Reach:
         found, states = None, []
         for f_ext in np.geomspace(top * LIGHT, top, FORCES):
             scene = self._scene.model_copy(update={"f_ext": float(f_ext), "voltage": voltage})
-            try:
-                found = self._solve(scene, name)
-            except TooLight as error:
-                raise SceneError(f"force is {self._force:.4g} N, and in its trace {error}") from None
+            found = self._solve(scene, name)
             state = found.named.get("charged" if name == "uncharged" else name)
             if state is None:
                 raise SceneError(f"the model {self._model!r} has no {name.replace('_', ' ')} at {f_ext:.4g} N/m")
