@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from numpy.polynomial.legendre import leggauss
 from pydantic import BaseModel, WrapValidator
 
 from fingerpad.io.states import WORDS
@@ -16,6 +17,8 @@ from fingerpad.reduced.known import KNOWN_ERROR, KNOWN_FORCES, KNOWN_RUNS, KNOWN
 from fingerpad.scene import Scene
 from fingerpad.scene.contradictions import LARGEST_GAP
 from fingerpad.scene.laws import skin_modulus
+from fingerpad.slices import traces
+from fingerpad.slices.force import NEWTONS
 from geometry.bounds import Range
 from geometry.parameters import Fingertip, MeshSize
 from variational.attraction.insulator import VACUUM_PERMITTIVITY
@@ -71,6 +74,12 @@ def fields() -> Iterator[Field]:
         yield Field(**asdict(field) | {"low": low, "high": high, "zero": allowed.zero, "value": value})
 
 
+def force() -> Field:
+    """Return the field of the force on the whole finger."""
+    words = "normal force F_ext on the whole finger"
+    return Field("force", words, "N", 1.0, (0.05, 1.0), "Load", NEWTONS.low, NEWTONS.high, False, 0.5)
+
+
 def contact() -> Iterator[Field]:
     """Yield the fields of a contact as given; the values shown first are the default finger's at full slip."""
     default, group = cylinders.solve(Scene()).full_slip, "Finger"
@@ -81,6 +90,13 @@ def contact() -> Iterator[Field]:
     ends = {type(end).__name__: end for end in Fingertip.model_fields["ridge_count"].metadata}
     low, high, ridges = float(ends["Ge"].ge), float(ends["Le"].le), float(default.ridges_in_contact)
     yield Field("ridges", "ridges in contact", "", 1.0, (1.0, 25.0), group, low, high, False, ridges, True)
+
+
+def every() -> list[Field]:
+    """Return all fields in their order."""
+    first = list(fields())
+    after = 1 + [field.key for field in first].index("f_ext")
+    return [*first[:after], force(), *first[after:], *contact()]
 
 
 def bounds(model: type[BaseModel], name: str) -> Range:
@@ -98,8 +114,9 @@ def _in_unit(value: float, per: float) -> float:
 def data() -> dict[str, Any]:
     """Return all numbers that the page has from Python, ready for JSON; SI units but for those of the fields."""
     scene, error = Scene(), KNOWN_ERROR["cylinders"]["full_slip"]
+    nodes, weights = (each.tolist() for each in leggauss(scene.slices.count))
     return {
-        "fields": [asdict(field) for field in (*fields(), *contact())],
+        "fields": [asdict(field) for field in every()],
         "eps_0": VACUUM_PERMITTIVITY,
         "sc_thickness": scene.geometry.sc_thickness,
         "tip_radius": cylinders.tip_radius(scene.geometry),
@@ -108,6 +125,10 @@ def data() -> dict[str, Any]:
         "forces": cylinders.FORCES,
         "lengths": cylinders.LENGTHS,
         "ridges": cylinders.RIDGES,
+        "indentations": cylinders.INDENTATIONS,
+        "wavelength": scene.geometry.ridge_wavelength,
+        "slices": {"radius": scene.slices.radius, "length": scene.slices.length, "nodes": nodes, "weights": weights},
+        "traces": traces.CONSTANTS,
         "words": {state: WORDS[state] for state in STATES},
         "known": {"error": error, "runs": KNOWN_RUNS, "forces": KNOWN_FORCES, "voltages": KNOWN_VOLTAGES},
     }

@@ -41,6 +41,12 @@ _TRIES = 4  # of a trace, each time to a larger force
 _MORE, _MARGIN = 1.8, 1.1  # factors on the largest force: of the next try, and beyond the expected one
 # A finger of the default's width bears some 0.53 N where its centre bears 75 N/m; forces grow as F^0.77.
 _LINE, _POINT, _POWER, _WIDTH = 75.0, 0.53, 0.77, 20e-3
+CONSTANTS = {
+    "light": LIGHT, "forces": FORCES, "margin": _MARGIN, "more": _MORE, "tries": _TRIES,
+    "shortest": _SHORTEST, "smallest": _SMALLEST, "largest": _LARGEST,
+    "start": {"line": _LINE, "point": _POINT, "power": _POWER},
+}  # fmt: skip
+"""All of these, for the copy of the calculator, of a finger of the default's width."""
 _WORDS = {"full": "traces of the full model"}
 
 
