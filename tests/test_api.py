@@ -335,8 +335,8 @@ def test_world_is_the_default(monkeypatch):
     """Without a communicator a run is of all ranks."""
     seen = []
 
-    def run(scene, out, comm, lines, bar, resume, asked):
-        seen.append(comm)
+    def run(scene, context):
+        seen.append(context.ranks)
         return fp.Result(scene, "full", None, None, None)
 
     monkeypatch.setattr(full, "run", run)

@@ -14,7 +14,6 @@ from geometry.bodies import block, ridge
 from geometry.mesh import load
 from variational.body import Body
 from variational.contact import formulation
-from variational.contact.formulation import History
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
 from variational.problem import Interface
@@ -209,7 +208,7 @@ def slide():
         solver.solve()
         state = observer.state()
         states.append((control, state, observer.ridge_loads(state), solver.reaction.copy(), observer.slip(state)))
-        solver.problem.set_history(History(state.anchor, state.p_n, state.x))
+        solver.problem.history.accept(state.history)
 
     step(Control(0.0, -0.001 * HEIGHT))
     step(Control(0.0, None, 2.0))

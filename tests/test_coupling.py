@@ -17,6 +17,7 @@ from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.model.touching import by_rule
 from fingerpad.runs import full
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene, from_data
 from geometry import tags
 from geometry.bodies import ridge
@@ -50,7 +51,7 @@ class Stub:
         self.stops, self.lost = [], lambda d: False  # how solves may end; air gaps at which there is no equilibrium
         self.problem = SimpleNamespace(
             interface=SimpleNamespace(formulation=SimpleNamespace(error=lambda *_: 0.0, tolerance=0.0), friction=None),
-            history=None,
+            history=SimpleNamespace(accepted={}),
             voltage=SimpleNamespace(value=FOLD_VOLTAGE),
             mesh=SimpleNamespace(comm=MPI.COMM_SELF),
             set_air_gaps=lambda d: setattr(self, "d", d),
@@ -297,7 +298,7 @@ def test_mean_pressure_is_over_the_length_chosen(by_gap):
 def finger(scene: Scene) -> tuple[Array, Array]:
     """Return pressures over the length under pressure (Pa) and air gaps (m) of a charged finger's ridges in contact."""
     loads = [{"name": "press", "f_ext": 1.0}, {"name": "charge", "voltage": 100.0}]
-    made = full.run(scene.replace(history=loads), None, MPI.COMM_SELF, lines=False)
+    made = full.run(scene.replace(history=loads), RunContext(comm=MPI.COMM_SELF))
     touching = made.charged.p_c > 0
     return made.charged.p_c[touching], made.charged.d_eq[touching]
 

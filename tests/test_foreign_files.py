@@ -17,9 +17,11 @@ from fingerpad.io.kept_drawing import finger_of, skin_of
 from fingerpad.io.place import Place, PlaceError, Serial, full_scene
 from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
+from fingerpad.reduced.models import find
 from fingerpad.report import run_page
 from fingerpad.report.page import picture
 from fingerpad.report.write import write
+from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene, SceneError
 
@@ -72,7 +74,7 @@ def test_json_that_never_ends(tmp_path):
 def answered(tmp_path_factory) -> Path:
     """The folder of a closed form, which has a summary as a run has."""
     folder = tmp_path_factory.mktemp("cylinders") / "out"
-    solved(Scene(), "cylinders", folder)
+    solved(Scene(), find("cylinders"), RunContext(folder))
     return folder
 
 

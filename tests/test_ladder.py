@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 
+from fingerpad.cli import compare
 from fingerpad.io.quantities import PLUS_MINUS
 from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
-from fingerpad.runs import compare
 from fingerpad.scene import SceneError, from_data
 from variational.contact.friction import Coulomb
 from variational.state import RESULTS

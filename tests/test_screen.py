@@ -26,11 +26,12 @@ def test_both_stiffnesses_are_doubled():
 def test_stiffer_springs_bear_the_same_friction():
     """Of the stuck skin: half the elastic slip of twice the stiffness; all else of the state stays."""
     line = np.array([0.0, 1e-6])
-    skin = SkinState(line, line, line, np.array([2e-7, -3e-8]), line, line)
-    state = StateSnapshot(line, line, {4: skin}, {4: 2e-6}, {4: 0.5}, line, Control(), 0.0)
+    history = {"anchor": np.array([2e-7, -3e-8]), "pressure": line}
+    skin = SkinState(line, line, line, line, history)
+    state = StateSnapshot(line, line, {4: skin}, {}, {4: 2e-6}, {4: 0.5}, line, Control(), 0.0)
     found = over_stiffer(state)
-    assert found.skin[4].elastic_slip.tolist() == [1e-7, -1.5e-8]
-    assert found.skin[4].pressure is line and found.u is line and found.gain == {4: 0.5}
+    assert found.skin[4].history["anchor"].tolist() == [1e-7, -1.5e-8]
+    assert found.skin[4].history["pressure"] is line and found.u is line and found.gain == {4: 0.5}
 
 
 @pytest.mark.parametrize("state", ["uncharged", "normal", "slip"])

@@ -11,8 +11,10 @@ import pytest
 import fingerpad as fp
 from fingerpad.io.place import full_scene
 from fingerpad.model.simulation import Simulation
+from fingerpad.reduced.models import find
 from fingerpad.report import parameters, run_page
 from fingerpad.runs import solve
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import SceneError
 from fingerpad.slices import traces
 from fingerpad.slices.estimate import with_newtons
@@ -137,7 +139,7 @@ def test_points_of_the_traces_are_of_one_kind():
     """Each state of a trace is uncharged, charged at rest, or at full slip at the scene's voltage."""
     scene = small(**SMALL)
     for name in ("uncharged", "charged"):
-        found = points(solve.solved(history(scene, name, 1.0), "full"), name)
+        found = points(solve.solved(history(scene, name, 1.0), find("full"), RunContext()), name)
         assert len(found) > 1 and {state.voltage for state in found} == {0.0 if name == "uncharged" else scene.voltage}
         assert all(state.bone_x == 0 for state in found)
 

@@ -70,8 +70,8 @@ def test_history_returns_on_its_own_mesh(bodies, reached):
     path = prepare(bodies[COARSE])
     restore(normal, path.coupling)
     back = take_snapshot(path.coupling, path.observer.state())
-    assert np.abs(normal.skin[0].elastic_slip).max() > 1e-8
-    np.testing.assert_allclose(back.skin[0].elastic_slip, normal.skin[0].elastic_slip, atol=1e-15)
+    assert np.abs(normal.skin[0].history["anchor"]).max() > 1e-8
+    np.testing.assert_allclose(back.skin[0].history["anchor"], normal.skin[0].history["anchor"], atol=1e-15)
 
 
 def test_displacement_returns_on_its_own_mesh(bodies, reached):
@@ -101,8 +101,8 @@ def test_skin_does_not_come_off_the_screen(bodies, reached, old, new):
     state, path = reached[old][0], prepare(bodies[new])
     restore(state, path.coupling)
     now, skin = path.observer.state(), state.skin[0]
-    own = np.abs(skin.position[..., 1].ravel()[skin.pressure > 0]).max()
-    middle = np.abs(now.x) < np.abs(skin.along[skin.pressure > 0]).max() / 2
+    own = np.abs(skin.position[..., 1].ravel()[skin.history["pressure"] > 0]).max()
+    middle = np.abs(now.x) < np.abs(skin.along[skin.history["pressure"] > 0]).max() / 2
     heights = np.concatenate(MPI.COMM_WORLD.allgather(now.y[middle]))
     assert own < 0.1e-6
     assert heights.max() < 2 * own

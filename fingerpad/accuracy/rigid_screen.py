@@ -34,7 +34,8 @@ ORDER = 0.75
 
 def over_stiffer(snapshot: StateSnapshot) -> StateSnapshot:
     """Return a state whose springs, of twice the stiffness, bear the same friction."""
-    skin = {j: replace(ridge, elastic_slip=ridge.elastic_slip / 2) for j, ridge in snapshot.skin.items()}
+    halved = {j: {**ridge.history, "anchor": ridge.history["anchor"] / 2} for j, ridge in snapshot.skin.items()}
+    skin = {j: replace(ridge, history=halved[j]) for j, ridge in snapshot.skin.items()}
     return replace(snapshot, skin=skin)
 
 

@@ -9,7 +9,6 @@ from fingerpad.cli.arguments import Parser, echo, refuse_twice, scene_of
 from fingerpad.io.quantities import PER_LENGTH
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinders, known
-from fingerpad.reduced.answer import refuse_others
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import LEAKAGE, remarks
@@ -44,7 +43,7 @@ def main(argv: Sequence[str]) -> int:
     refuse_twice(args, "f_ext", "--f-ext")
     refuse_twice(args, "voltage", "--voltage")
     scene = scene_of(args, meshed=False)
-    refuse_others(scene, "cylinders")
+    cylinders.Cylinders().check(scene)
     forces, voltages = (_axis(scene, key, getattr(args, key)) for key in ("f_ext", "voltage"))
     rows, lost = grid(scene, forces, voltages)
     echo("Friction at full slip by a closed form, every ridge in contact the same charged cylinder.")
@@ -96,7 +95,7 @@ def grid(scene: Scene, forces: Sequence[float], voltages: Sequence[float]) -> tu
 
 def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
     """Return what is known of the error of these rows."""
-    bands = known.KNOWN_ERROR["cylinders"]["full_slip"]
+    bands = known.KNOWN_ERROR[cylinders.Cylinders.name]["full_slip"]
     mu, length, pull = (f"within {100 * bands[key]:.1f} %" for key in ("mu_app", "contact_length", "f_electrostatic"))
     runs = f"{known.KNOWN_RUNS} full runs at {known.where()}"
     said = [f"Known error: mu_app and friction {mu}, attraction {pull}, contact {length} of {runs}."]

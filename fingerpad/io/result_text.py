@@ -5,6 +5,7 @@ import math
 from fingerpad.io.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import LoadResult, called
+from fingerpad.scene.reading import DEFAULT_MODEL
 
 _TITLES = {True: "Cross-section at the end of its last trace", False: "Cross-section at the centre of the finger"}
 
@@ -15,8 +16,8 @@ def text(result: Result) -> str:
     The whole finger follows; it comes first where the run was asked for a force in newtons.
     """
     asked, shown = result.asked_force is not None and result.finger is not None, result.named
-    lines = [_TITLES[result.model == "full"] if asked else "Result"]
-    lines[0] += f" (model '{result.model}')" if result.model != "full" else ""
+    lines = [_TITLES[bool(result.steps)] if asked else "Result"]
+    lines[0] += f" (model '{result.model}')" if result.model != DEFAULT_MODEL else ""
     if shown:
         heads = [called(name, state.voltage).split(" normal") for name, state in shown.items()]
         rows = [

@@ -20,16 +20,17 @@ class FullSlip:
         """Take the finger."""
         self._finger = finger
 
-    def slides_on(self, load: str, direction: float) -> bool:
+    def slides_on(self, load: str, direction: float, speed: float = 0.0) -> bool:
         """Return whether full slip is steady, and slide on by 0.2 mm for that; collective.
 
         Args:
             load: name of the load.
             direction: 1 or -1, the way the bone slides.
+            speed: of the bone (m/s); 0 where it takes no time.
         """
         path, solver = self._finger.continuation, self._finger.solver
         before, x = solver.reaction[0], solver.control.x
-        path.run(Target(load, bone_x=x + direction * SLIDE_ON))
+        path.run(Target(load, bone_x=x + direction * SLIDE_ON, duration=SLIDE_ON / speed if speed else 0.0))
         return path.slip[1] and self._unchanged(before, solver.reaction[0])
 
     def placed(self, states: Sequence[ContactState], state: ContactState, probe: bool) -> ContactState:

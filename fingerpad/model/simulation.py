@@ -1,5 +1,6 @@
 """The path of a finger's loads: from one load to the next, every accepted state checked and reported."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -9,7 +10,7 @@ from mpi4py import MPI
 from fingerpad.io.states import FIRST_TOUCH, SLIDE_ON
 from fingerpad.model.balance import refuse_strained
 from fingerpad.model.contact_zone import ContactZone, FingerExceeded
-from fingerpad.model.course import Course
+from fingerpad.model.course import targets
 from fingerpad.model.finger import Finger, Step
 from fingerpad.model.full_slip import FullSlip
 from fingerpad.model.half import HalfFinger
@@ -70,7 +71,9 @@ class Simulation:
             journal.follow(finger.continuation)
         self._load, self._loads_done = "", 0
         self._slip = FullSlip(finger)
-        self._course = Course(model.loads, model.numerics.step_scale)
+        self._timed = any(load.takes_time for load in model.loads)
+        self._began = self._seconds = 0.0  # when the present load began, and how long it takes (s)
+        self._over_time = False  # whether its voltage is over time
         count, file = model.geometry.ridge_count, model.mesh_file
         self._zone = ContactZone(finger.mesh, finger.observer, finger.ridges, count, file)
         self._restart: RestartRequired | None = None
@@ -97,6 +100,7 @@ class Simulation:
             for k, load in enumerate(loads):
                 if k == moves and half is not None:
                     self._half = None
+                    self.finger.continuation.time = half.path.time
                     half.free()
                 self._load, self._loads_done = load.name, k
                 self._follow(load)
@@ -112,18 +116,32 @@ class Simulation:
     def _follow(self, load: Load) -> None:
         """Reach a load, and slide on where it ends at full slip."""
         path, x = self.finger.continuation, float(self.finger.solver.control.x)
-        *before, target = self._course.targets(load, x)
+        *before, target = targets(load, x, self._model.numerics.step_scale)
         end = x if target.bone_x is None else target.bone_x
         direction = float(np.sign(end - x))
+        seconds = load.seconds(end - x)
+        speed = abs(end - x) / seconds if seconds else 0.0
+        self._began, self._seconds, self._over_time = self._time, seconds, load.wave is not None
         for piece in before:
             if self._restart is None:
                 (self._half or path).run(piece)
         self._reach(target)
         while direction and target.until_full_slip and path.slip[1] and self._restart is None:
-            steady = self._slip.slides_on(load.name, direction)
-            if steady or direction * (end - float(self.finger.solver.control.x)) <= 0:  # or at the end of the slide
+            steady = self._slip.slides_on(load.name, direction, speed)
+            left = direction * (end - float(self.finger.solver.control.x))
+            if steady or left <= 0:  # or at the end of the slide
                 break
-            self._reach(replace(target))  # another one for the course, whose time goes on from here
+            self._reach(replace(target, duration=left / speed if speed else 0.0))
+
+    @property
+    def _time(self) -> float:
+        """Time of the accepted state (s)."""
+        return (self.finger.continuation if self._half is None else self._half.path).time
+
+    def _done(self, part: float) -> float:
+        """Return the part of the present load that is done, in time where its voltage is over time."""
+        timed = self._over_time and self._seconds > 0
+        return min((self._time - self._began) / self._seconds, 1.0) if timed else part
 
     def _reach(self, target: Target) -> None:
         if self._restart is None:
@@ -201,11 +219,11 @@ class Simulation:
             where = f"step {finger.continuation.steps} ({self._load})"
             formulation = finger.problem.interface.formulation
             refuse_strained(where, record, self.states, finger.solver.force_scale, formulation)
-        probe = part >= 1 and not target.until_full_slip and not self._course.over_time
+        probe = part >= 1 and not target.until_full_slip and not self._over_time
         state = self._slip.placed(self.states, step.state, probe)
-        state = replace(state, record=record, time=self._course.time(target, part, state.bone_x))
+        state = replace(state, record=record, time=self._time if self._timed else math.nan)
         self.states.append(state)
-        part = 0.0 if touches else self._course.done(target, part)
+        part = 0.0 if touches else self._done(part)
         done = min((self._loads_done + part) / len(self._model.loads), 1.0)
         self.on_step(replace(step, state=state, touches=touches), done)
         try:

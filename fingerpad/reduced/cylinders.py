@@ -21,7 +21,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,15 +32,19 @@ from fingerpad.io.result import Cost, Result
 from fingerpad.io.states import PREFIXES, WORDS
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import known
-from fingerpad.reduced.answer import STATES, Stopwatch, at_rest, at_slip, refuse_others
+from fingerpad.reduced.model import STATES, Model, Stopwatch, at_rest, at_slip, refuse_others
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import skin_modulus, used
 from fingerpad.scene.messages import show
+from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import leakage, remarks
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState, hertz_modulus
 from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.runs.context import RunContext
 
 Array = NDArray[np.float64]
 # The default finger's full runs without voltage, contact size 10 um: f_ext (N/m), then contact length (m), ridges in
@@ -163,7 +167,7 @@ def from_run(scene: Scene, folder: Path) -> Footprint:
 def _of_summary(scene: Scene, folder: Path, summary: Mapping[str, Any]) -> Footprint:
     if "parameters" not in summary:  # a point of a sweep that was refused
         raise SceneError(f"run {folder} has no results: {summary.get('failure', 'summary.json is of another kind')}")
-    if (model := summary.get("model", "full")) != "full":
+    if (model := summary.get("model", DEFAULT_MODEL)) != DEFAULT_MODEL:
         raise SceneError(f"run {folder} is one of the model {show(model)}; give a full run")
     for name, unit in (("f_ext", "N/m"), ("voltage", "V")):
         if not np.isclose(abs(summary[name]), abs(getattr(scene, name)), rtol=1e-6, atol=1e-9):
@@ -188,6 +192,20 @@ def _finger(parameters: Mapping[str, Any]) -> dict[str, Any]:
     return dict(json.loads(json.dumps(shape | {"laws": own})))
 
 
+class Cylinders(Model):
+    """Every ridge in contact the same charged cylinder, over a footprint; without one it is the default finger's."""
+
+    name, words = "cylinders", "A closed form of charged cylinders"
+
+    def __init__(self, footprint: Footprint | None = None) -> None:
+        """Take the footprint."""
+        self._footprint = footprint
+
+    def solve(self, scene: Scene, context: "RunContext") -> Result:
+        """Return the answer of :func:`solve`."""
+        return solve(scene, self._footprint)
+
+
 def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     """Return the answer of the cylinders; without a footprint it is the default finger's.
 
@@ -195,11 +213,11 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         SceneError: a scene with a history, another finger than the footprint's, or ridges that do not stay.
     """
     clock = Stopwatch()
-    refuse_others(scene, "cylinders")
+    refuse_others(scene, Cylinders.name)
     footprint = footprint or fitted(scene)
     found: dict[str, ContactState] = {}
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
-    errors = {} if footprint.charged else known.errors("cylinders", scene)
+    errors = {} if footprint.charged else known.errors(Cylinders.name, scene)
     notes = footprint.source, exact, known.in_words(errors), "the bone's height is not in this model", *leakage(scene)
     cautions, states = [*remarks(scene), *([] if footprint.charged else known.cautions(scene))], {}
     for state in STATES:
@@ -213,7 +231,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     more |= {"laws": used(scene), "model_error": errors}
     cost = Cost(processor_seconds=clock.seconds())
     return Result(
-        scene, "cylinders", None, found["charged"], found["full_slip"],
+        scene, Cylinders.name, None, found["charged"], found["full_slip"],
         cost=cost, notes=notes, cautions=tuple(cautions), record=more,
     )  # fmt: skip
 

@@ -48,7 +48,7 @@ class _Frame(NamedTuple):
 def frames(result: Result) -> dict[str, Any]:
     """Return the states that a folder has arrays of, ready for JSON; empty without any."""
     folder = result.folder
-    if folder is None or result.model != "full":
+    if folder is None:
         return {}
     tables = {name: _ridges(folder / f"{name}.csv") for name in ("ridges", "ridges_final")}
     found = [(frame, _skin(folder, frame, tables)) for frame in _listed(result)]

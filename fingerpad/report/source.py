@@ -9,12 +9,13 @@ from fingerpad.io.files import read_object
 from fingerpad.io.place import TRACE
 from fingerpad.io.result import Result
 from fingerpad.io.states import load_results, named
+from fingerpad.reduced.models import MODELS
 from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.messages import clip
+from fingerpad.scene.reading import DEFAULT_MODEL
 from variational.state import ContactState
 
 _RESULTS = ("uncharged_", "normal_", "slip_", "load_")
-_MODELS = ("full",)
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Table:
     rows: tuple[dict[str, str], ...]
     parameters: dict[str, Any] | None
     """Every parameter of the scene that it varies; None of a sweep by an earlier version, whose folder has none."""
-    model: str = "full"
+    model: str = DEFAULT_MODEL
     version: str = ""
     """Of the program that made the table; empty where it is not known."""
     cautions: tuple[str, ...] = ()
@@ -51,8 +52,9 @@ def read(folder: Path) -> Result | Table:
         return _sweep(folder)
     if (folder / "steps.csv").exists():
         return _unfinished(folder)
-    done = sum(1 for model in _MODELS for _ in (folder / model).glob("*/summary.json"))
-    if done or any((folder / model).glob("*/asked.json") for model in _MODELS if (folder / model).is_dir()):
+    points = [folder / name for name, model in MODELS.items() if model.meshes and (folder / name).is_dir()]
+    done = sum(1 for place in points for _ in place.glob("*/summary.json"))
+    if done or any(any(place.glob("*/asked.json")) for place in points):
         raise SceneError(f"the sweep in {name} has not ended ({done} runs are there); give its command again to go on")
     if (folder / "scene.json").exists():
         raise SceneError(f"the run in {name} has no accepted step yet; make the report when it has one")
@@ -76,7 +78,7 @@ def _unfinished(folder: Path) -> Result:
     found = named(steps, [load.name for load in scene.loads()])
     return Result(
         scene,
-        "full",
+        DEFAULT_MODEL,
         found.get("uncharged"),
         found.get("charged"),
         found.get("full_slip"),

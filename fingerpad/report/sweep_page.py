@@ -12,6 +12,7 @@ from fingerpad.report import parameters
 from fingerpad.report.source import Table
 from fingerpad.runs.sweep_columns import FORCE, LOAD, in_time, loads, shown, text
 from fingerpad.runs.sweep_dataset import described
+from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.slices import solid
 
 _CHARTS = ("mu_app", "f_t", "contact_length", "contact_area")
@@ -200,7 +201,7 @@ def _cite(table: Table) -> str:
     given = {} if table.parameters is None else parameters.changed(table.parameters)
     kept = {key: value for key, value in given.items() if not (key in table.axes or "[" in key or value is None)}
     options = [parameters.option_of(key, value) for key, value in kept.items()]
-    options += [f"--model {table.model}"] if table.model != "full" else []
+    options += [f"--model {table.model}"] if table.model != DEFAULT_MODEL else []
     values = {key: list(dict.fromkeys(row[key] for row in table.rows)) for key in table.axes}
     if all(_read(value) is not None for each in values.values() for value in each):
         over = [parameters.option_of(key, ",".join(each), "--over") for key, each in values.items()]

@@ -27,6 +27,7 @@ from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene
 from fingerpad.scene.laws import coefficient, used
+from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import leakage, remarks
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.startup import MPI
@@ -169,7 +170,7 @@ class Attempt:
         more |= {"restarts": restarts.table, "laws": used(scene), "provenance": provenance()}
         result = Result(
             scene,
-            "full",
+            DEFAULT_MODEL,
             named.get("uncharged"),
             named.get("charged"),
             named.get("full_slip"),

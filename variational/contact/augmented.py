@@ -15,7 +15,7 @@ The slip of a step counts from the accepted place :math:`x_n`, so that
 :math:`a = x_n + \lambda_t / \epsilon_t`.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -55,12 +55,12 @@ class AugmentedLagrangian(Formulation):
 
     def error(self, state: SurfaceState, history: History, friction: Friction | None) -> float:
         """Return the largest depth, or opening under pressure, and elastic slip at this rank's points (m)."""
-        depth = np.abs(state.p_n - history.pressure) / self.eps_n
+        depth = np.abs(state.p_n - history["pressure"]) / self.eps_n
         limit = np.zeros_like(state.p_n) if friction is None else friction.limit(state.p_n)
         sticking = (state.p_n > 0) & (np.abs(state.t_t) < limit * (1 - CONE_ROUNDOFF))
-        slip = np.where(sticking, np.abs(state.x - history.x), 0.0)
+        slip = np.where(sticking, np.abs(state.x - history["x"]), 0.0)
         return float(max(depth.max(initial=0.0), slip.max(initial=0.0)))
 
     def corrected(self, state: SurfaceState, history: History) -> History:
         """Return the history with the tractions of a solve as multipliers; the accepted place stays."""
-        return replace(history, pressure=state.p_n, anchor=state.anchor - (state.x - history.x))
+        return {**history, "pressure": state.p_n, "anchor": state.anchor - (state.x - history["x"])}

@@ -16,8 +16,8 @@ The history variable of friction is the anchor s, see :mod:`~variational.contact
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -124,16 +124,10 @@ def _limit(friction: Friction, p_n):
         ) from error
 
 
-@dataclass(frozen=True)
-class History:
-    """What a step leaves at this rank's Gauss points, shape (facets, points) each."""
-
-    anchor: Array
-    """Anchor of friction (m)."""
-    pressure: Array
-    """Contact pressure (Pa of reference area)."""
-    x: Array
-    """Current abscissa (m)."""
+History = Mapping[str, Array]
+"""Values of the fields of :mod:`variational.history`. Formulations read three of them, at this rank's Gauss points:
+``anchor`` of friction (m), contact ``pressure`` (Pa of reference area) and current abscissa ``x`` (m), each of shape
+(facets, points)."""
 
 
 @dataclass(frozen=True)
@@ -150,6 +144,8 @@ class SurfaceState:
     p_el: Array
     area_x: Array
     area_y: Array
+    history: History = field(default_factory=dict)
+    """What the state leaves in the fields of the skin when it is accepted."""
 
 
 class Formulation(ABC):
@@ -180,7 +176,7 @@ class Formulation(ABC):
     @classmethod
     def parameters(cls) -> dict[str, Any]:
         """Return the defaults of the formulation's parameters by name."""
-        return {field.name: field.default for field in fields(cls)}  # type: ignore[arg-type]
+        return {each.name: each.default for each in fields(cls)}  # type: ignore[arg-type]
 
     @abstractmethod
     def springs(self, skin: Skin) -> Springs:

@@ -4,8 +4,8 @@ A step that fails is halved. Where the loop over the scales cycles there may be 
 :mod:`~variational.solvers.coupling`), which halved steps approach and never cross; so a longer step over that range is
 tried first.
 
-History (friction anchors, contact multipliers, air gaps, displacement) is accepted in :meth:`Continuation.accept`
-and nowhere else; a rejected attempt restores the last accepted state.
+The fields of :mod:`variational.history` are accepted in :meth:`Continuation.accept` and nowhere else; a rejected
+attempt restores the last accepted state.
 """
 
 from collections.abc import Callable
@@ -16,7 +16,6 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from variational.contact.formulation import History
 from variational.solvers.accepted import AcceptedState
 from variational.solvers.coupling import Coupling
 from variational.solvers.equations import Control
@@ -49,6 +48,8 @@ class Target:
     continues: bool = False
     """A short piece of a longer way: the bone moves on as before, and the voltage changes as little as the piece is
     short. It is reached in one step where that is possible."""
+    duration: float = 0.0
+    """How long the load takes (s), of which each step has its part as ``Problem.dt``; 0 where it changes at once."""
 
 
 # How far one step may go: parts of sqrt(f_ext) and of U^2, and metres of the bone.
@@ -138,6 +139,7 @@ class Continuation:
         solve: solves at a load, see :meth:`variational.solvers.coupling.Coupling.solve`.
         surface_state: the skin in the accepted state, as solved, before its friction history moved on.
         slip: part of its contact points at the friction cone, and whether all slip one way.
+        time: of the accepted state (s), the durations of all targets so far.
     """
 
     def __init__(
@@ -160,7 +162,7 @@ class Continuation:
         self.solve: Callable[[bool], None] = lambda pseudo_transient: coupling.solve(pseudo_transient)
         self.problem, self.observer = self.solver.problem, coupling.observer
         self.on_accept, self.touch_depth, self.step_scale = on_accept, touch_depth, step_scale
-        self.steps, self.slip = 0, (0.0, False)
+        self.steps, self.slip, self.time = 0, (0.0, False), 0.0
         self.surface_state = self.observer.state()
         self._now = AcceptedState.of(self.coupling)
 
@@ -172,8 +174,8 @@ class Continuation:
         """Accept the present state, an equilibrium; collective."""
         self.surface_state = self.observer.state()
         self.slip = self.observer.slip(self.surface_state)
-        s = self.surface_state
-        self.problem.set_history(History(s.anchor, s.p_n, s.x))
+        history = self.problem.history
+        history.accept(history.updated(self.surface_state.history))
         self._now = AcceptedState.of(self.coupling)
         self.steps += 1
         PETSc.garbage_cleanup(self.problem.mesh.comm)  # objects that several ranks have dropped wait for this
@@ -225,7 +227,7 @@ class Continuation:
         # A slide begins with a shorter step: under a light load it may be over within one.
         slides = way.length != 0 and not target.continues
         part, step, uncut, cut, jumps = 0.0, largest / 2 if slides else largest, 0, 0, False
-        first, most = self.steps, _FEW_STEPS + int(np.ceil(_MANY_STEPS / largest))
+        begin, first, most = self.time, self.steps, _FEW_STEPS + int(np.ceil(_MANY_STEPS / largest))
         while part < 1:
             if self.steps - first >= most:
                 slow = NotConverged(f"TOO_SMALL_STEPS, {most} of them, do not get to the end of the load", False)
@@ -239,7 +241,7 @@ class Continuation:
                 # jump, which no step is small enough for. One jump comes after the other: of facets, of ridges.
                 pseudo_transient = jumps or len(attempt.cutbacks) > 1 or cut >= _CUT
                 try:
-                    self._try(way.at(part + step), attempt, pseudo_transient)
+                    self._try(way.at(part + step), attempt, pseudo_transient, step * target.duration)
                     break
                 except NotConverged as failure:
                     self._restore()
@@ -254,6 +256,7 @@ class Continuation:
                 step -= return_to_onset(self.solver, self.observer, way.length) / abs(way.length)
             self.accept()
             part += step
+            self.time = begin + part * target.duration
             if self.on_accept(target, part, attempt) is True:
                 return False
             if target.until_full_slip and self.slip[1]:
@@ -332,8 +335,16 @@ class Continuation:
             self.problem.guess.value, self.coupling.gain = guess, gain
 
     # -- one step --------------------------------------------------------------------------------------
-    def _try(self, load: tuple[Control, float], attempt: Attempt, pseudo_transient: bool, on_cone: bool = True) -> None:
+    def _try(
+        self,
+        load: tuple[Control, float],
+        attempt: Attempt,
+        pseudo_transient: bool,
+        dt: float = 0.0,
+        on_cone: bool = True,
+    ) -> None:
         counts = self.solver.counts
+        self.problem.dt.value = dt
         newton, factorisations, shifted = counts.newton, counts.factorisations, counts.pseudo_transient
         moves = load[0].x != self._now.control.x
         self.solver.new_load(*load, slipping=moves and self.slip[0] > _MANY, on_cone=on_cone)

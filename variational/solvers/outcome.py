@@ -16,14 +16,12 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from variational.contact.formulation import History
 from variational.solvers.coupling import Coupling, CouplingHistory
 from variational.solvers.failure import NotConverged
 
 Array = NDArray[np.float64]
 _SAME = 1e-9  # m, within which two places are one
 _KIND = 1.0  # m, by which the places of displacements in x and y and of pressures in each layer are set apart
-_HISTORY = ("anchor", "pressure", "x")
 
 
 class OtherBody(ValueError):
@@ -59,6 +57,7 @@ class Taken:
             OtherBody: they are of another mesh; on every rank.
         """
         self._coupling, self._comm = coupling, coupling.solver.layout.comm
+        self._names = [field.name for field in coupling.solver.problem.history.skin]
         self._own = {"unknowns": _unknowns(coupling), "points": _points(coupling)}
         self.places = {name: self._together(own) for name, own in self._own.items()}
         self._order: dict[str, NDArray[np.int64]] = {}
@@ -97,7 +96,7 @@ class Taken:
             return Outcome(facts)
         facts |= {"floor": solver.floor, "guess": float(solver.problem.guess.value)}
         arrays = {"unknowns": self._together(solver.x.array_r.copy())}
-        arrays |= {name: self._together(getattr(solver.problem.imposed, name).ravel()) for name in _HISTORY}
+        arrays |= {name: self._together(solver.problem.history.imposed[name].ravel()) for name in self._names}
         arrays |= {"d_eq": self._coupling.d_eq.copy(), "gain": self._coupling.gain.copy()}
         return Outcome(facts, arrays)
 
@@ -127,8 +126,8 @@ class Taken:
         coupling.set_air_gaps(arrays["d_eq"].copy())
         coupling.gain = arrays["gain"].copy()
         points = self._order["points"]
-        shape = solver.problem.imposed.x.shape
-        solver.problem.correct_history(History(*(arrays[name][points].reshape(shape) for name in _HISTORY)))
+        history = solver.problem.history
+        history.impose({n: arrays[n][points].reshape(history.imposed[n].shape) for n in self._names})
         solver.x.array_w[:] = arrays["unknowns"][self._order["unknowns"]]
         solver.equations.residual(solver.x, solver.iteration.f)
         solver.iteration.floor = facts["floor"]

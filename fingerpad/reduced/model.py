@@ -1,18 +1,59 @@
-"""What the reduced models have in common: a scene in, normal contact and full slip out, as a full run has them.
+"""A model of a scene, and what reduced ones have in common: normal contact and full slip, as a full run has them.
 
-A quantity that is not part of a model is NaN in its states, and a note names it.
+A quantity that is not part of a model is NaN in its states, and a note names it. Your own model is a class with one
+method, :meth:`Model.solve`, and a line in :data:`fingerpad.reduced.models.MODELS`.
 """
 
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
+from fingerpad.io.result import Result
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import show
 from variational.state import ContactState, Errors
 
+if TYPE_CHECKING:
+    from fingerpad.runs.context import RunContext
+
 STATES = ("charged", "full_slip")
-"""For which they answer, by their names in :mod:`fingerpad.io.states`."""
+"""For which reduced models answer, by their names in :mod:`fingerpad.io.states`."""
+
+
+class Model(ABC):
+    """A way from a scene to its result; what a model can do is an attribute here, and no module compares its name."""
+
+    name: ClassVar[str]
+    """In commands, folders and tables."""
+    words: ClassVar[str]
+    """What it is made of, a sentence without its full stop."""
+    meshes: ClassVar[bool] = False
+    """Whether it solves on a mesh: it takes PETSc's options, and each point of a sweep is a process of its own."""
+    path: ClassVar[bool] = False
+    """Whether it follows the loads step by step and writes its own files: steps, fields and pictures of the skin."""
+    resumes: ClassVar[bool] = False
+    """Whether it goes on from the checkpoint of a run that was cut short."""
+
+    def check(self, scene: Scene) -> None:
+        """Refuse a scene before the work, in one sentence; by default one with a history or a mesh of its own.
+
+        Raises:
+            SceneError: the model has no answer to the scene.
+        """
+        refuse_others(scene, self.name)
+
+    @abstractmethod
+    def solve(self, scene: Scene, context: "RunContext") -> Result:
+        """Return the result of a scene; collective.
+
+        Args:
+            scene: a scene that :meth:`check` has taken.
+            context: ranks, folder and console. The summary of a model without a path is written by its caller.
+
+        Raises:
+            SceneError: the scene has no result, in one sentence.
+        """
 
 
 def at_rest(scene: Scene, contact: Mapping[str, float], error: Errors | None = None) -> ContactState:
