@@ -18,7 +18,6 @@ from fingerpad.scene import Scene
 from fingerpad.scene.contradictions import LARGEST_GAP
 from fingerpad.scene.laws import skin_modulus
 from fingerpad.slices import traces
-from fingerpad.slices.force import NEWTONS
 from geometry.bounds import Range
 from geometry.parameters import Fingertip, MeshSize
 from variational.attraction.insulator import VACUUM_PERMITTIVITY
@@ -47,9 +46,11 @@ class Field:
     """Whether only whole numbers are allowed."""
 
 
+_FORCE = 0.5  # N, of the field that a scene has no default of
 _SHOWN = (
     Field("voltage", "voltage U", "V", 1.0, (0.0, 250.0), "Load"),
     Field("f_ext", "normal force f_ext, per metre of finger", "N/m", 1.0, (5.0, 150.0), "Load"),
+    Field("force", "normal force F_ext on the whole finger", "N", 1.0, (0.05, 1.0), "Load"),
     Field("friction", "friction coefficient µ_0 without voltage", "", 1.0, (0.05, 1.0), "Load"),
     Field("electric.d_i", "thickness d_i", "µm", 1e6, (0.1, 10.0), "Coating of the screen"),
     Field("electric.eps_i", "relative permittivity ε_i", "", 1.0, (1.0, 30.0), "Coating of the screen"),
@@ -69,15 +70,9 @@ def fields() -> Iterator[Field]:
         model, _, name = field.key.rpartition(".")
         table: Any = getattr(Scene(), model) if model else Scene()
         allowed = bounds(type(table), name)
-        value = _in_unit(getattr(table, name), field.per)
+        value = _in_unit(_FORCE if name == "force" else getattr(table, name), field.per)
         low, high = (_in_unit(end, field.per) for end in (allowed.low, allowed.high))
         yield Field(**asdict(field) | {"low": low, "high": high, "zero": allowed.zero, "value": value})
-
-
-def force() -> Field:
-    """Return the field of the force on the whole finger."""
-    words = "normal force F_ext on the whole finger"
-    return Field("force", words, "N", 1.0, (0.05, 1.0), "Load", NEWTONS.low, NEWTONS.high, False, 0.5)
 
 
 def contact() -> Iterator[Field]:
@@ -90,13 +85,6 @@ def contact() -> Iterator[Field]:
     ends = {type(end).__name__: end for end in Fingertip.model_fields["ridge_count"].metadata}
     low, high, ridges = float(ends["Ge"].ge), float(ends["Le"].le), float(default.ridges_in_contact)
     yield Field("ridges", "ridges in contact", "", 1.0, (1.0, 25.0), group, low, high, False, ridges, True)
-
-
-def every() -> list[Field]:
-    """Return all fields in their order."""
-    first = list(fields())
-    after = 1 + [field.key for field in first].index("f_ext")
-    return [*first[:after], force(), *first[after:], *contact()]
 
 
 def bounds(model: type[BaseModel], name: str) -> Range:
@@ -116,7 +104,7 @@ def data() -> dict[str, Any]:
     scene, error = Scene(), KNOWN_ERROR[cylinders.Cylinders.name]["full_slip"]
     nodes, weights = (each.tolist() for each in leggauss(scene.slices.count))
     return {
-        "fields": [asdict(field) for field in every()],
+        "fields": [asdict(field) for field in (*fields(), *contact())],
         "eps_0": VACUUM_PERMITTIVITY,
         "sc_thickness": scene.geometry.sc_thickness,
         "tip_radius": cylinders.tip_radius(scene.geometry),

@@ -15,7 +15,6 @@ from fingerpad.measurements.one_scene import folder, refuse_mixed
 from fingerpad.measurements.table import Measured
 from fingerpad.report.source import Table
 from fingerpad.report.source import read as content
-from fingerpad.runs.sweep_columns import FORCE
 from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.slices.finger import WholeFinger
@@ -190,8 +189,8 @@ def _of_finger(run: Result, finger: WholeFinger, table: Measured) -> dict[str, f
 
 def _of_sweep(sweep: Table, table: Measured) -> pd.DataFrame:
     """Return the values in the table of a sweep."""
-    force = FORCE if table.whole else "f_ext"
-    if (FORCE in sweep.axes) is not table.whole:
+    force = "force" if table.whole else "f_ext"
+    if sweep.whole is not table.whole:
         mine, other = ("N", "N/m") if table.whole else ("N/m", "N")
         raise SceneError(
             f"{_place(sweep)} is over forces in {other}, and {table.name} has forces in {mine}; sweep {force}, or give "

@@ -51,15 +51,13 @@ def all_of(parameters: Mapping[str, Any], varied: Container[str] = ()) -> str:
     return folded(f"All {len(rows)} parameters", paragraph(note), table(heads, rows, "parameters"))
 
 
-def again(parameters: Mapping[str, Any], model: str, asked: Mapping[str, Any] | None = None) -> str:
+def again(parameters: Mapping[str, Any], model: str) -> str:
     """Return how a run is repeated.
 
     Args:
         parameters: of its scene.
         model: that was used.
-        asked: of a force on the whole finger, ``force`` (N) and the ``parameters`` of the scene that was given.
     """
-    parameters, force = (asked["parameters"], asked["force"]) if asked else (parameters, None)
     if parameters.get("laws", {}).keys() - {"mesh"}:
         return paragraph(
             f"The scene has laws of its own, written in Python ({parameters['laws']}); run the program that made them."
@@ -67,17 +65,13 @@ def again(parameters: Mapping[str, Any], model: str, asked: Mapping[str, Any] | 
     given = {key: value for key, value in changed(parameters).items() if key != "model"}
     option = "" if model == DEFAULT_MODEL else f" --model {model}"
     if any("[" in key or isinstance(value, list) or value is None for key, value in given.items()):
-        kept, more = 'open("scene.json"))', ""
-        if asked:
-            kept, more = 'open("summary.json"))["asked"]["parameters"]', f", force={force!r}"
         code = (
             "import json\nimport fingerpad as fp\nfrom fingerpad.scene import from_kept\n\n"
-            f"scene = from_kept(json.load({kept})  # in this folder\n"
-            f'fp.run(scene, model="{model}"{more}, out="results/again")'
+            'scene = from_kept(json.load(open("scene.json")))  # in this folder\n'
+            f'fp.run(scene, model="{model}", out="results/again")'
         )
         return f"<pre><code>{text(code)}</code></pre>"
-    options = "".join(f" {option_of(key, value)}" for key, value in given.items() if not (asked and key == "f_ext"))
-    option += f" --force '{force!r} N'" if asked else ""
+    options = "".join(f" {option_of(key, value)}" for key, value in given.items())
     return f"<pre><code>{text(f'fingerpad run{options}{option} --out results/again')}</code></pre>"
 
 

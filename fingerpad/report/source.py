@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.io.files import read_object
-from fingerpad.io.place import TRACE
 from fingerpad.io.result import Result
 from fingerpad.io.states import load_results, named
 from fingerpad.reduced.models import MODELS
@@ -35,6 +34,17 @@ class Table:
     """Limits of validity that points reach."""
     notes: tuple[str, ...] = ()
     """Remarks on the points."""
+
+    @property
+    def whole(self) -> bool:
+        """Whether forces are those on the whole finger."""
+        return "force" in self.axes or "force" in (self.parameters or {})
+
+    def forces(self) -> list[float]:
+        """Return the forces on the whole finger (N)."""
+        if "force" in self.axes:
+            return [float(row["force"]) for row in self.rows]
+        return [float((self.parameters or {})["force"])] if self.whole else []
 
 
 def read(folder: Path) -> Result | Table:
@@ -65,7 +75,7 @@ def _unfinished(folder: Path) -> Result:
     """Return the steps that a run has written so far."""
     try:
         parameters = read_object(folder / "scene.json")
-        scene = as_kept({key: value for key, value in parameters.items() if key != TRACE})
+        scene = as_kept(parameters)
         with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
             rows = [row for row in csv.DictReader(file) if None not in row.values()]  # the last may be cut short
         steps = tuple(ContactState.from_row(row) for row in rows)

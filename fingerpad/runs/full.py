@@ -59,7 +59,7 @@ def run(scene: Scene, context: RunContext) -> Result:
     try:
         with context.console() as console, context.place(scene, DEFAULT_MODEL) as place:
             journal = None
-            if place is not None and context.asked is None:
+            if place is not None:
                 journal = Journal(comm, _checkpoint(scene, place.folder), context.resume)
             return _run(scene, Writer(place, comm), comm, console, journal)
     except GeometryError as error:

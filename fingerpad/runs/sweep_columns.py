@@ -2,7 +2,7 @@
 
 A load over time, such as a drive waveform, has no named state: ``load_NAME_mu_app_max`` is the largest coefficient in
 it, ``load_NAME_f_t_amplitude`` the largest amplitude in the spectrum of friction and ``load_NAME_f_t_frequency`` the
-frequency of that. A sweep over the force in newtons has columns of the whole finger alone.
+frequency of that. Under a force on the whole finger there are columns of that alone.
 """
 
 import math
@@ -20,8 +20,6 @@ SHOWN = ("mu_app", "f_t", "contact_length", "f_electrostatic", "ridges_in_contac
 """Quantities of a named state."""
 LOAD = "load"
 """Beginning of the columns of a load over time."""
-FORCE = "force"
-"""Axis of the force on the whole finger (N), which is no key of a scene."""
 _WHOLE = ("mu_app", "f_t", "f_electrostatic", "contact_area", "gross_area")
 _FRICTION = ("mu_app", "f_t")  # at full slip alone
 _NEWTONS = ("f_ext", *_WHOLE, "indentation")
@@ -29,14 +27,9 @@ _IN_TIME = ("mu_app", "f_t", "contact_length")
 _ENDS = {"min": "least", "max": "largest", "mean": "mean"}
 
 
-def row(result: Result, whole: bool = False) -> dict[str, Any]:
-    """Return the values of a point in SI units by column, and its failure.
-
-    Args:
-        result: of the point.
-        whole: whether it is one of several forces in newtons of a run, whose cross-section is of none of them.
-    """
-    if whole:
+def row(result: Result) -> dict[str, Any]:
+    """Return the values of a point in SI units by column, and its failure."""
+    if result.scene.force is not None:
         return (_newtons(result.finger) if result.finger is not None else {}) | {"failure": result.failure}
     values = result.values()
     names = [f"{PREFIXES[state]}_{key}" for state in STATES for key in SHOWN]
@@ -81,7 +74,7 @@ def shown(columns: Iterable[str], whole: bool) -> tuple[str, dict[str, Quantity]
 
     Args:
         columns: of the sweep.
-        whole: whether it is over the force in newtons.
+        whole: whether forces are those on the whole finger.
 
     Returns:
         Full slip. Without friction a whole finger has none, and it is the last state before.

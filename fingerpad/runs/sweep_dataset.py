@@ -11,9 +11,7 @@ from fingerpad.io import dataset
 from fingerpad.io.load_variables import loads
 from fingerpad.io.states import STATES
 from fingerpad.io.variables import Variables
-from fingerpad.runs.sweep_columns import FORCE
 from fingerpad.scene.keys import Key, every
-from fingerpad.slices.force import NEWTONS
 
 if TYPE_CHECKING:
     import xarray
@@ -106,9 +104,7 @@ def _places(mine: Any, labels: Sequence[Any]) -> list[int]:
 
 
 def described(key: str) -> Key | None:
-    """Return what is known of a dotted key of a scene, or of the force on the whole finger; None of a table."""
-    if key == FORCE:
-        return Key(FORCE, "N", None, f"{NEWTONS.low:g} to {NEWTONS.high:g} N", "external force on the whole finger")
+    """Return what is known of a dotted key of a scene; None of a table."""
     return next((each for each in every() if each.name == re.sub(r"\[\d+\]", "[]", key)), None)
 
 

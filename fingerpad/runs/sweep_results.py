@@ -18,7 +18,7 @@ from fingerpad.io.quantities import PER_LENGTH, QUANTITIES
 from fingerpad.io.result import Result
 from fingerpad.io.states import STATES, WORDS
 from fingerpad.runs import sweep_dataset
-from fingerpad.runs.sweep_columns import FORCE, head, newtons_of, printed, row, shown, tables
+from fingerpad.runs.sweep_columns import head, newtons_of, printed, row, shown, tables
 from fingerpad.slices import solid
 from fingerpad.slices.finger import QUANTITIES as OF_FINGER
 from variational.state import CONDITIONS, RESULTS
@@ -58,8 +58,8 @@ class Sweep:
 
     @property
     def whole(self) -> bool:
-        """Whether the sweep is over the force on the whole finger; its results have their ``finger`` under it."""
-        return FORCE in self.axes
+        """Whether forces are those on the whole finger; results have their ``finger`` under it."""
+        return any(result.scene.force is not None for result in self.results)
 
     def points(self) -> list[dict[str, Any]]:
         """Return the values of the axes at each point, in order."""
@@ -92,9 +92,13 @@ class Sweep:
             values = [np.nan if each is None else float(getattr(each, quantity)) for each in found]
         return np.array(values).reshape([len(values) for values in self.axes.values()])
 
+    def _forces(self) -> list[float]:
+        """Return the forces on the whole finger (N)."""
+        return list(dict.fromkeys(each.scene.force for each in self.results if each.scene.force is not None))
+
     def rows(self) -> list[dict[str, Any]]:
         """Return a flat row for each point in SI units: axes, :mod:`~fingerpad.runs.sweep_columns`, and failure."""
-        return [point | row(result, self.whole) for point, result in zip(self.points(), self.results, strict=True)]
+        return [point | row(result) for point, result in zip(self.points(), self.results, strict=True)]
 
     def cautions(self) -> list[str]:
         """Return why numbers may be further off than their errors say, each with how many points it is of.
@@ -149,7 +153,7 @@ class Sweep:
         lines = [f"{'Whole finger, at' if self.whole else 'At'} {WORDS[state]}", *_aligned(table)]
         for name, over_time in tables(rows, axes):
             lines += [f"Over time, in the load {name}", *_aligned(over_time)]
-        notes = solid.remarks(self.axes[FORCE]) if self.whole else [PER_LENGTH]
+        notes = solid.remarks(self._forces()) if self.whole else [PER_LENGTH]
         return "\n".join([*lines, *notes, *(f"! {caution}" for caution in self.cautions()), *self.notes])
 
     __repr__ = __str__

@@ -116,7 +116,7 @@ def first_error(error: ValidationError, root: type[BaseModel]) -> str:
     if kind == "too_long":
         return f"{key} has too many entries; it must have at most {context['max_length']}"
     if kind == NO_QUANTITY and key == "f_ext" and _newtons(first["input"]):
-        return f"{key} is {given}; it must be in N/m; a force on the whole finger is given by run --force {given}"
+        return f"{key} is {given}; it must be in N/m; a force on the whole finger is the key force"
     if kind in ("int_type", "int_from_float") and isinstance(first["input"], float):
         given = repr(first["input"])  # 5.0, which show writes as 5
     if kind in _TYPES:
@@ -161,11 +161,6 @@ def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
 def _instead(root: type[BaseModel], loc: tuple[int | str, ...]) -> str:
     """Return what may have been meant by an unknown key: the nearest key of all tables, or those of its own."""
     table, name = key_of(loc[:-1]), str(loc[-1])
-    if (table, name.lower()) == ("", "force"):
-        return (
-            "a force on the whole finger in newtons is asked of a run (fingerpad run --force, or fp.run(force=…)), or "
-            "swept (fingerpad sweep --over force=…)"
-        )
     own = list(getattr(_model_at(root, loc[:-1]), "model_fields", ()))
     wanted = clip(name, _MOST_KEY).lower().replace("-", "_")
     keys = [(table, key, _NEAR) for key in own]

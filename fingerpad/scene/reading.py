@@ -27,7 +27,6 @@ _AFTER_VALUE = "Expected newline or end of document after a statement"  # tomlli
 _NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
 _FILES = r"geometry\.file|roughness\.topography\.file|history\[\d+\]\.voltage\.file"
 _LAWS = "laws of its own, which are no part of a scene; run it from Python"
-_FORCE = "a force on the whole finger, which is no part of a scene; its report.html has the command"
 _QUOTED = re.compile(
     r'''#[^\n]*|"""(?:[^\\]|\\.)*?(?:"""|\Z)|\'{3}.*?(?:\'{3}|\Z)|"(?:[^"\\\n]|\\.)*"?|'[^'\n]*'?''', re.DOTALL
 )  # comments and texts of TOML
@@ -101,9 +100,8 @@ def _of_run(path: Path) -> dict[str, Any]:
     """Return the data of the scene of a run's folder; a mesh of its own is the key ``geometry.file``."""
     name, data = f"scene file {clip(str(path), _PATH)}", _kept(path)
     laws = data.pop("laws", {})
-    more = [words for words, there in ((_LAWS, set(laws) - {"mesh"}), (_FORCE, "trace" in data)) if there]
-    if more:
-        raise SceneError(f"{name} is of a run with {more[0]}")
+    if set(laws) - {"mesh"}:
+        raise SceneError(f"{name} is of a run with {_LAWS}")
     if laws:
         file, shape = laws["mesh"]["path"], data.pop("geometry")
         try:
