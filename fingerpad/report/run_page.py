@@ -122,7 +122,12 @@ def _numbers(result: Result) -> str:
         length = f"the contact length by {_MM * slip.penalty.contact_length:+.2g} mm"
         notes.append(f"Contact is a penalty: a rigid screen would change {friction}, and {length}.")
     heads = ("", *(called(name, state.voltage) for name, state in result.named.items()))
-    return html.section("numbers", "Key numbers" if result.finger is None else _SECTION, html.table(heads, rows, "numbers"), html.items(notes))
+    return html.section(
+        "numbers",
+        "Key numbers" if result.finger is None else _SECTION,
+        html.table(heads, rows, "numbers"),
+        html.items(notes),
+    )
 
 
 def _newtons(result: Result) -> str:
