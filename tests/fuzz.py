@@ -231,7 +231,7 @@ def fault(case: Mutant, folder: Path) -> tuple[str, str]:
     if case.file is not None:
         (folder / "scene.toml").write_bytes(case.file)
     argv = [word.replace("{folder}", str(folder)) for word in case.argv]
-    parser = Parser("fingerpad run", "Press, charge and slide a finger.", "fingerpad run")
+    parser = Parser("run", "fingerpad run")
     parser.add_scene()
     parser.add_out("results", "folder of the results")
     out, err = io.StringIO(), io.StringIO()

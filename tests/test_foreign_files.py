@@ -102,9 +102,11 @@ def test_program_s_error_in_a_report_is_not_hidden(answered, monkeypatch):
 
 def test_value_that_is_no_number_is_named(answered, tmp_path):
     copy = Path(shutil.copytree(answered, tmp_path / "copy"))
-    summary = json.loads((copy / "summary.json").read_text()) | {"slip_f_t": [1]}
+    summary = json.loads((copy / "summary.json").read_text())
+    summary["states"]["full_slip"]["f_t"] = [1]
+    (copy / "result.nc").unlink()
     (copy / "summary.json").write_text(json.dumps(summary))
-    with pytest.raises(SceneError, match="not of a run .slip_f_t is no number"):
+    with pytest.raises(SceneError, match="not of a run .f_t of full_slip is no number"):
         Result.load(copy)
 
 

@@ -23,6 +23,7 @@ class Block(Model):
     def solve(self, scene, context) -> Result:
         """Return normal contact and full slip."""
         contact = {"f_contact": scene.f_ext, "f_electrostatic": 0.0, "contact_length": LENGTH, "ridges_in_contact": 1}
+        contact["bone_height"] = -1e-5 * scene.f_ext
         return Result(scene, self.name, None, at_rest(scene, contact), at_slip(scene, contact))
 
 
@@ -68,6 +69,13 @@ def test_compare(tmp_path, capsys):
     """Beside the closed form, with its own column."""
     assert main(["compare", "--model", "block", "cylinders", "--out", str(tmp_path), "--quiet"]) == 0
     assert capsys.readouterr().out.split("\n")[0].split() == ["cylinders", "block"]
+
+
+def test_newtons():
+    """A force on the whole finger sums slices over its points; the coefficient of all is that of each."""
+    found = fp.run(Scene(friction=0.3, voltage=0.0), model="block", force=0.5)
+    assert found.finger.values("full_slip")["mu_app"] == pytest.approx(0.3, rel=1e-9)
+    assert "traces over the force" in str(found.finger)
 
 
 def test_what_it_cannot_do_is_refused(tmp_path):

@@ -268,13 +268,13 @@ def test_refused_options(tmp_path):
         fp.run(resume=True)
     with pytest.raises(SceneError, match="only a full run in a folder, of one scene, can go on"):
         fp.run(out=tmp_path, model="cylinders", resume=True)
-    for words in (["scene.toml"], ["--set", "voltage=1"], ["--model", "smooth"], ["--out", "x"], ["--force", "1 N"]):
+    for words in (["scene.toml"], ["--set", "voltage=1"], ["--model", "cylinders"], ["--out", "x"], ["--force", "1 N"]):
         with pytest.raises(SceneError, match="and --resume are given"):
             command.main([*words, "--resume", str(tmp_path)])
     with pytest.raises(SceneError, match=r"has no scene.json of a run, and so no run to go on with"):
         command.main(["--resume", str(tmp_path)])
     for kept, match in (
-        ('{"model": "smooth"}', "only a full one can go on"),
+        ('{"model": "cylinders"}', "only a full one can go on"),
         ('{"laws": {"friction": {}}}', "resume=True"),
         ('{"trace": 5}', "has no scene.json of a run"),
         ('{"laws": {"mesh": []}}', "has no scene.json of a run"),

@@ -11,6 +11,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
+from fingerpad.cli import COMMANDS
 from fingerpad.io import terminal
 from fingerpad.model.check import check
 from fingerpad.scene import Scene, load, override
@@ -38,18 +39,18 @@ PICTURE = Kind("a picture", (".png", ".pdf", ".svg", ".jpg", ".jpeg", ".eps", ".
 class Parser(argparse.ArgumentParser):
     """A parser that refuses by :class:`SceneError` and prints on rank 0 alone."""
 
-    def __init__(self, program: str, description: str, examples: str) -> None:
+    def __init__(self, command: str, examples: str) -> None:
         """Start with the options that all subcommands have.
 
         Args:
-            program: what is typed before the options.
-            description: a line or two on what it does.
+            command: name of the subcommand; its description is that of :data:`fingerpad.cli.COMMANDS`.
             examples: command lines, one a line.
         """
         lines = "\n".join(f"  {line.strip()}" for line in examples.strip().splitlines())
+        what = COMMANDS.get(command, "")
         super().__init__(
-            prog=program,
-            description=description,
+            prog=f"fingerpad {command}",
+            description=f"{what[:1].upper()}{what[1:]}.",
             epilog=f"examples:\n{lines}",
             formatter_class=argparse.RawDescriptionHelpFormatter,
             allow_abbrev=False,

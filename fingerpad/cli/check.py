@@ -28,9 +28,7 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Describe a run; return the exit code."""
-    parser = Parser(
-        "fingerpad check", "Compute what a run contains, omits and costs, and draw its mesh; solve nothing.", _EXAMPLES
-    )
+    parser = Parser("check", _EXAMPLES)
     parser.add_scene()
     parser.add_out("results", "folder of the picture mesh.png (default: results)")
     args = parser.read(argv)

@@ -28,11 +28,7 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Compare models; return the exit code."""
-    parser = Parser(
-        "fingerpad compare",
-        "Compute a scene by several models; print their results and their cost side by side.",
-        _EXAMPLES,
-    )
+    parser = Parser("compare", _EXAMPLES)
     parser.add_scene()
     parser.add_out("results", "folder of the full run (default: results)")
     parser.add_argument(
@@ -53,9 +49,9 @@ def main(argv: Sequence[str]) -> int:
     scene = scene_of(args)
     check_folder(args.out)
     models = MODELS | {Cylinders.name: Cylinders(_footprint(scene, args.contact_length, args.ridges, args.run))}
-    from fingerpad import startup
+    from fingerpad.startup import start
 
-    startup.start(petsc)
+    start(petsc)
     import fingerpad.runs.full  # noqa: F401  # before Ctrl-C raises
 
     def answer_or_refusal(model: Model) -> Result:

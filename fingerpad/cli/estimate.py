@@ -30,11 +30,7 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Estimate friction over a grid; return the exit code."""
-    parser = Parser(
-        "fingerpad estimate",
-        "Compute friction at full slip by a closed form: every ridge in contact is the same charged cylinder.",
-        _EXAMPLES,
-    )
+    parser = Parser("estimate", _EXAMPLES)
     parser.add_scene()
     parser.add_argument("--f-ext", metavar="RANGE", help="forces (N/m): 75, or 20,50,75 or 20:75:3, or with units")
     parser.add_argument("--voltage", metavar="RANGE", help="voltages (V), written likewise")

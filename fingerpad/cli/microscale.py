@@ -33,11 +33,7 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Print the microscale over pressure; return the exit code."""
-    parser = Parser(
-        "fingerpad microscale",
-        "Compute air gap, attraction and real area of contact of a rough ridge over its mean contact pressure.",
-        _EXAMPLES,
-    )
+    parser = Parser("microscale", _EXAMPLES)
     parser.add_scene()
     parser.add_argument("--voltage", metavar="RANGE", help="voltages (V): 200, or 0,100, or 0:200:5, or with units")
     parser.add_argument("--p", metavar="RANGE", default=_PRESSURES, help=f"pressures (Pa); default {_PRESSURES}")

@@ -28,11 +28,7 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Run a scene; return the exit code."""
-    parser = Parser(
-        "fingerpad run",
-        "Compute contact and friction of a finger that is pressed, charged and slid: tables, pictures, fields.",
-        _EXAMPLES,
-    )
+    parser = Parser("run", _EXAMPLES)
     parser.add_scene()
     parser.add_out(str(_OUT), "folder of the results (default: results)")
     parser.add_argument(

@@ -26,11 +26,7 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Run a study; return the exit code."""
-    parser = Parser(
-        "fingerpad sweep",
-        "Compute a scene over values of its keys; runs that are in the folder are not repeated.",
-        _EXAMPLES,
-    )
+    parser = Parser("sweep", _EXAMPLES)
     parser.add_scene()
     words = "values of a key: 0,50 or first:last:count, with a unit at the end or on each value; or words"
     parser.add_argument("--over", action="append", default=[], metavar="KEY=RANGE", help=words)

@@ -7,9 +7,10 @@ from typing import Any
 
 from mpi4py import MPI
 
-from fingerpad.io import columns, dataset
+from fingerpad.io import dataset
 from fingerpad.io.files import Table, replace_json
 from fingerpad.io.place import Place
+from fingerpad.io.quantities import FIELDS
 from fingerpad.io.result import Result
 from variational.output import Fields
 from variational.problem import Problem
@@ -60,8 +61,8 @@ class Writer:
         """Write the present fields under the number of their step, and the load's name and units beside; collective."""
         if self._fields is not None:
             self._fields.write(float(step))
-            for name, column in columns.FIELDS.items():
-                about = {"unit": column.unit, "meaning": column.meaning}
+            for name, field in FIELDS.items():
+                about = {"unit": field.si, "meaning": field.meaning}
                 self.row("fields", {"file": f"{name}.bp", "variable": name, "time": step, "load": load} | about)
 
     def summary(self, found: Mapping[str, Any]) -> None:

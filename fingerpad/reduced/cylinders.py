@@ -17,8 +17,8 @@ voltage. ``docs/models.md`` has its errors.
 """
 
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -196,6 +196,7 @@ class Cylinders(Model):
     """Every ridge in contact the same charged cylinder, over a footprint; without one it is the default finger's."""
 
     name, words = "cylinders", "A closed form of charged cylinders"
+    traces = "traces of charged cylinders, indentations without voltage"
 
     def __init__(self, footprint: Footprint | None = None) -> None:
         """Take the footprint."""
@@ -204,6 +205,13 @@ class Cylinders(Model):
     def solve(self, scene: Scene, context: "RunContext") -> Result:
         """Return the answer of :func:`solve`."""
         return solve(scene, self._footprint)
+
+    def over_forces(
+        self, scene: Scene, f_ext: Sequence[float], state: str, solve: Callable[[Scene], Result]
+    ) -> list[ContactState]:
+        """Return the states computed together, with the indentations of the default finger without voltage."""
+        states = over_forces(scene, f_ext, state)
+        return [replace(each, bone_height=-indentation(each.f_ext, state)) for each in states]
 
 
 def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
@@ -250,7 +258,7 @@ def over_forces(
     Raises:
         SceneError: as :func:`solve`, but for what is wrong with the other state alone.
     """
-    refuse_others(scene, "cylinders")
+    refuse_others(scene, Cylinders.name)
     if press:
         length = np.array([each.contact_length for each in press])
         ridges = np.array([each.ridges_in_contact for each in press])

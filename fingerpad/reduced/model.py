@@ -6,7 +6,7 @@ method, :meth:`Model.solve`, and a line in :data:`fingerpad.reduced.models.MODEL
 
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from fingerpad.io.result import Result
@@ -35,6 +35,9 @@ class Model(ABC):
     resumes: ClassVar[bool] = False
     """Whether it goes on from the checkpoint of a run that was cut short."""
 
+    traces: ClassVar[str] = "traces over the force"
+    """What a force in newtons is summed over, in words."""
+
     def check(self, scene: Scene) -> None:
         """Refuse a scene before the work, in one sentence; by default one with a history or a mesh of its own.
 
@@ -54,6 +57,28 @@ class Model(ABC):
         Raises:
             SceneError: the scene has no result, in one sentence.
         """
+
+    def over_forces(
+        self, scene: Scene, f_ext: Sequence[float], state: str, solve: Callable[[Scene], Result]
+    ) -> list[ContactState]:
+        """Return a state of a scene under each of several external forces, for a force in newtons.
+
+        Args:
+            scene: with the voltage of all.
+            f_ext: external forces (N/m).
+            state: ``charged`` or ``full_slip``.
+            solve: solves one scene by this model.
+
+        Raises:
+            SceneError: the model has no such state of one of them.
+        """
+        found = [solve(scene.model_copy(update={"f_ext": each})).named.get(state) for each in f_ext]
+        states = [each for each in found if each is not None]
+        if len(states) < len(f_ext):
+            raise SceneError(
+                f"the model {self.name!r} has no {state.replace('_', ' ')} at {f_ext[found.index(None)]:.4g} N/m"
+            )
+        return states
 
 
 def at_rest(scene: Scene, contact: Mapping[str, float], error: Errors | None = None) -> ContactState:

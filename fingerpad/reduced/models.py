@@ -18,6 +18,7 @@ class Full(Model):
     """The whole cross-section with every ridge, along the path of its loads (:mod:`fingerpad.runs.full`)."""
 
     name, words = DEFAULT_MODEL, "Every ridge of the cross-section"
+    traces = "traces of the full model"
     meshes = path = resumes = True
 
     def check(self, scene: Scene) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.io.kept_drawing import arrays_of
-from fingerpad.io.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, cell
+from fingerpad.io.quantities import PER_LENGTH, PLUS_MINUS, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import before_sliding, called
 from fingerpad.reduced.models import MODELS
@@ -100,15 +100,8 @@ def _cell(reached: list[Any]) -> str:
 def _numbers(result: Result) -> str:
     if not result.named:
         return html.section("numbers", "Key numbers", html.paragraph("The run has no named state."))
-    rows = []
-    for key, quantity in QUANTITIES.items():
-        cells = [
-            "–" if key in ("mu_app", "f_t") and name != "full_slip" else cell(key, value, error)
-            for name, state in result.named.items()
-            for value, error in [(getattr(state, key), getattr(state.error, key, math.nan))]
-        ]
-        if set(cells) - {"–"}:
-            rows.append((quantity.title, *cells))
+    every = [(quantity.title, *result.cells(key)) for key, quantity in result.printed.items()]
+    rows = [row for row in every if set(row[1:]) - {"–"}]
     slip = result.full_slip
     notes = []
     if result.scene.force is not None:

@@ -6,13 +6,14 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.io.files import read_object
-from fingerpad.io.result import Result
+from fingerpad.io.quantities import Output
+from fingerpad.io.quantities import read as read_outputs
+from fingerpad.io.result import Result, steps_of
 from fingerpad.io.states import load_results, named
 from fingerpad.reduced.models import MODELS
 from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.messages import clip
 from fingerpad.scene.reading import DEFAULT_MODEL
-from variational.state import ContactState
 
 _RESULTS = ("uncharged_", "normal_", "slip_", "load_")
 
@@ -34,6 +35,8 @@ class Table:
     """Limits of validity that points reach."""
     notes: tuple[str, ...] = ()
     """Remarks on the points."""
+    outputs: tuple[Output, ...] = ()
+    """Of the points, computed from a state."""
 
     @property
     def whole(self) -> bool:
@@ -76,9 +79,7 @@ def _unfinished(folder: Path) -> Result:
     try:
         parameters = read_object(folder / "scene.json")
         scene = as_kept(parameters)
-        with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
-            rows = [row for row in csv.DictReader(file) if None not in row.values()]  # the last may be cut short
-        steps = tuple(ContactState.from_row(row) for row in rows)
+        steps = steps_of(folder)
     except (OSError, ValueError, KeyError, TypeError, AttributeError, csv.Error) as error:
         raise SceneError(f"the unfinished run in {clip(str(folder), 80)} cannot be read: {error}") from None
     if not steps:
@@ -116,8 +117,9 @@ def _sweep(folder: Path) -> Table:
     try:
         asked = read_object(folder / "sweep.json")
         more = str(asked["model"]), str(asked.get("version", ""))
-        said = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
-        return Table(folder, axes, rows, dict(asked["parameters"]), *more, *said)
+        cautions, notes = (tuple(map(str, asked.get(name, ()))) for name in ("cautions", "notes"))
+        outputs = read_outputs(asked.get("outputs", ()))
+        return Table(folder, axes, rows, dict(asked["parameters"]), *more, cautions, notes, outputs)
     except FileNotFoundError:
         return Table(folder, axes, rows, None)
     except (OSError, ValueError, KeyError, TypeError) as error:

@@ -1,5 +1,6 @@
 """One attempt at a run: the path of its loads on one mesh, and the errors of its states."""
 
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -12,6 +13,7 @@ from fingerpad.io.interrupt import Interrupt, Interrupted
 from fingerpad.io.left import in_words
 from fingerpad.io.over_time import NOTE, long_steps
 from fingerpad.io.provenance import provenance
+from fingerpad.io.quantities import Output, valued
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
 from fingerpad.model import cautions
@@ -55,15 +57,17 @@ class Attempt:
         clock: Clock,
         interrupt: Interrupt,
         journal: Journal | None = None,
+        outputs: Sequence[Output] = (),
     ) -> None:
         """Mesh the finger; collective."""
+        self._outputs = outputs
         self._model, self._journal = model, journal
         self._comm, self._interrupt = comm, interrupt
         self._writer, self._console, self._clock = writer, console, clock
         console.phase("meshing the finger and setting up its equations")
         with clock.phase("setup"):
             self.simulation = Simulation(model, comm, self._on_step, self._on_load, journal)
-        self.report = Report(self.simulation, model.omitted, writer, console, clock)
+        self.report = Report(self.simulation, model.omitted, writer, console, clock, outputs)
         self._recorder = StateRecorder(self.simulation) if model.options.errors else None
         self._refinement: Refinement | None = None
         self._ended: dict[str, str] = {}
@@ -154,6 +158,7 @@ class Attempt:
             unknowns, more["accuracy"] = refinement.base.unknowns, refinement.summary()
             notes += refinement.notes
             self.report.final(final)
+        named = {name: valued(state, self._outputs) for name, state in named.items()}
         self.report.load_reached()
         failure = self._ended.get("failure", "" if refinement is None else refinement.failure)
         mu_0 = coefficient(scene)
@@ -188,6 +193,7 @@ class Attempt:
             record=more,
             folder=self._writer.folder,
             drawing=drawing,
+            outputs=tuple(self._outputs),
         )
         result = with_newtons(result)
         if result.failure:

@@ -161,9 +161,7 @@ def sweep(
 
 
 def _one(scene: Path, folder: Path, model: str) -> None:
-    from fingerpad.startup import start
-
-    start()
+    import fingerpad.startup  # noqa: F401  # before any other import of libraries
     from fingerpad.io.checkpoint import CheckpointError
     from fingerpad.io.place import PlaceError
     from fingerpad.reduced.models import find

@@ -1,12 +1,14 @@
 """What a run has beside its scene: ranks, folder, console, report, and where it goes on."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fingerpad.io import terminal
 from fingerpad.io.place import Place, Serial
+from fingerpad.io.quantities import Output
 from fingerpad.scene import Scene
 
 if TYPE_CHECKING:
@@ -30,12 +32,16 @@ class RunContext:
     """Whether ``report.html`` is written beside the results."""
     resume: bool = False
     """Whether the run goes on from the checkpoint in its folder."""
+    outputs: Sequence[Output] = ()
+    """Further quantities, each computed from every state."""
 
     @property
     def ranks(self) -> "MPI.Comm | Serial":
         """Communicator of the run: of all ranks by default, and of this process alone where there is no MPI."""
         if self.comm is not None:
             return self.comm
+        if not terminal.launched():  # nor do the libraries of finite elements start
+            return Serial()
         try:
             from fingerpad.startup import MPI
         except ImportError:

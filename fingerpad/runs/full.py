@@ -2,15 +2,17 @@
 
 import json
 import signal
+from collections.abc import Sequence
 from pathlib import Path
 
-import fingerpad.started  # noqa: F401
+import fingerpad.startup  # noqa: F401
 from fingerpad.io import petsc_options
 from fingerpad.io.abort import all_together, no_room
 from fingerpad.io.checkpoint import Checkpoint
 from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt
 from fingerpad.io.provenance import provenance
+from fingerpad.io.quantities import Output, checked
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
 from fingerpad.model import expected
@@ -54,6 +56,7 @@ def run(scene: Scene, context: RunContext) -> Result:
         DiskFull: there is no more room for results; on the ranks that found out, which end the others.
     """
     comm = context.comm or MPI.COMM_WORLD
+    outputs = checked(context.outputs)
     all_together(comm)
     petsc_options.check(comm, scene.numerics.element)
     try:
@@ -61,7 +64,7 @@ def run(scene: Scene, context: RunContext) -> Result:
             journal = None
             if place is not None:
                 journal = Journal(comm, _checkpoint(scene, place.folder), context.resume)
-            return _run(scene, Writer(place, comm), comm, console, journal)
+            return _run(scene, Writer(place, comm), comm, console, journal, outputs)
     except GeometryError as error:
         what = "the finger cannot be meshed" if scene.laws.mesh is None else "mesh"
         raise SceneError(f"{what}: {error}") from error
@@ -73,7 +76,14 @@ def _checkpoint(scene: Scene, folder: Path) -> Checkpoint:
     return Checkpoint(folder, scene.parameters(), {"source": versions["source"], "dolfinx": versions["dolfinx"]})
 
 
-def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console, journal: Journal | None) -> Result:
+def _run(
+    scene: Scene,
+    writer: Writer,
+    comm: MPI.Comm,
+    console: Console,
+    journal: Journal | None,
+    outputs: Sequence[Output],
+) -> Result:
     """Run a scene until nothing must be added to its model."""
     writer.log.info("scene %s", json.dumps(scene.parameters()))
     clock, restarts = Clock(comm), Restarts(writer.log, console)
@@ -87,7 +97,7 @@ def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console, journal
         with Interrupt(comm) as interrupt:
             while True:
                 _expect(scene, model, comm, console)
-                attempt = Attempt(model, comm, writer, console, clock, interrupt, journal)
+                attempt = Attempt(model, comm, writer, console, clock, interrupt, journal, outputs)
                 if model.mesh_file is not None:
                     _expect(scene, model, comm, console, attempt.simulation.finger.unknowns)
                 restart = attempt.follow()

@@ -3,7 +3,7 @@
 import os
 import signal
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +13,8 @@ from fingerpad.io import dataset, terminal
 from fingerpad.io.files import replace_json
 from fingerpad.io.folder import below
 from fingerpad.io.place import Serial, on_rank_0
+from fingerpad.io.quantities import Output
+from fingerpad.io.quantities import checked as checked_outputs
 from fingerpad.io.result import Result
 from fingerpad.reduced.model import Model
 from fingerpad.reduced.models import find
@@ -40,6 +42,7 @@ def run(
     mesh: str | Path | None = None,
     comm: "MPI.Comm | None" = None,
     resume: bool = False,
+    outputs: Sequence[Output] = (),
 ) -> Result:
     """Return what a model answers to a scene; collective.
 
@@ -54,6 +57,7 @@ def run(
         mesh: file of a gmsh mesh in place of the finger's own, see :mod:`geometry.meshfile`.
         comm: communicator; by default of all ranks.
         resume: go on from where a run of the same scene in ``out`` was cut short; only of the full model.
+        outputs: further quantities, each computed from every state: see :class:`fingerpad.io.quantities.Output`.
 
     Returns:
         The result. A load that could not be reached is its ``failure``, with a warning; the states before are in it.
@@ -72,7 +76,8 @@ def run(
         raise SceneError(
             f"resume is true, out is {show(out)} and model {show(model)}; only a full run in a folder can go on"
         )
-    result = solved(scene, way, RunContext(None if out is None else Path(out), comm, resume=resume))
+    context = RunContext(None if out is None else Path(out), comm, resume=resume, outputs=outputs)
+    result = solved(scene, way, context)
     if result.interrupted:
         raise _ended(result)
     if result.failure and terminal.rank() == 0:
@@ -109,6 +114,7 @@ def solved(scene: Scene, model: Model, context: RunContext) -> Result:
         model: one of :data:`fingerpad.reduced.models.MODELS`.
         context: all else.
     """
+    checked_outputs(context.outputs)
     scene.laws.refuse_kept()
     try:
         result = _solved(scene, model, context) if scene.force is None else _whole(scene, model, context)
@@ -127,15 +133,17 @@ def _solved(scene: Scene, model: Model, context: RunContext) -> Result:
     """Return what a model answers, its results written into a folder; collective; arguments as of :func:`solved`."""
     with needed_by(f"the model {model.name!r}"):
         if model.meshes:
-            import fingerpad.started  # noqa: F401  # with the configuration of the user alone, before any other import
+            from fingerpad.startup import MPI  # before any other import of the libraries that it starts
 
+            context = replace(context, comm=context.comm or MPI.COMM_WORLD)
             _refuse_different(scene, context.ranks)
         model.check(scene)
         result = model.solve(scene, context)
     if model.path:
         return result
     versions = {"versions": {"fingerpad": version(), "source": source()}}
-    return kept(replace(result, record={**result.record, "provenance": versions}), context)
+    result = replace(result, record={**result.record, "provenance": versions})
+    return kept(result.with_outputs(context.outputs), context)
 
 
 def _refuse_different(scene: Scene, comm: "MPI.Comm | Serial") -> None:
@@ -176,7 +184,7 @@ def _whole(scene: Scene, model: Model, context: RunContext) -> Result:
             print(f"\nTrace of the cross-section, {name.replace('_', ' ')}", flush=True)
         return _gone_on(each, model, replace(context, folder=context.folder and below(context.folder, name)))
 
-    found = traces.whole(scene, model.path, solve)
+    found = traces.whole(scene, model, solve)
     return found if found.interrupted else kept(found, context)
 
 

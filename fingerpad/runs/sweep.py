@@ -15,20 +15,21 @@ from fingerpad.installed import source, version
 from fingerpad.io import terminal
 from fingerpad.io.files import replace_json
 from fingerpad.io.folder import below, check_folder
+from fingerpad.io.quantities import Output
+from fingerpad.io.quantities import checked as checked_outputs
 from fingerpad.io.result import Result
 from fingerpad.reduced.model import Model
 from fingerpad.reduced.models import MODELS, find
 from fingerpad.report.write import attempt
-from fingerpad.runs import sweep_dataset
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import checked, solved
-from fingerpad.runs.sweep_results import Sweep
+from fingerpad.runs.sweep_results import FILE, Sweep
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import clip, show
 from fingerpad.scene.reading import DEFAULT_MODEL, plain, put
 from fingerpad.scene.remarks import leakage
 
-FILES = ("table.csv", sweep_dataset.FILE, "report.html", "sweep.json")
+FILES = ("table.csv", FILE, "report.html", "sweep.json")
 """What a sweep writes into its folder beside its points."""
 _MOST = 10_000  # points
 _LIMIT = 4 * 3600.0  # s of processor time for one point
@@ -41,6 +42,7 @@ def sweep(
     jobs: int = 1,
     model: str = DEFAULT_MODEL,
     quiet: bool = False,
+    outputs: Sequence[Output] = (),
     **axes: Sequence[Any],
 ) -> Sweep:
     """Return what a model answers to a scene over values of some of its keys.
@@ -55,6 +57,7 @@ def sweep(
         jobs: points that are run at a time.
         model: as of :func:`fingerpad.runs.solve.run`.
         quiet: whether to print no line for each point, and show no progress bar.
+        outputs: as of :func:`fingerpad.runs.solve.run`; the folders of the points do not have them.
         **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``.
             With ``force`` tables and arrays are of the whole finger.
 
@@ -71,6 +74,7 @@ def sweep(
         raise SceneError(f"jobs is {show(jobs)}; it must be a whole number, at least 1")
     if not isinstance(out, str | os.PathLike):
         raise SceneError(f"out is {show(out)}; it must be the path of a folder")
+    checked_outputs(outputs)
     _refuse_axes(scene, axes)
     scenes = _scenes(scene, axes)
     values = _values(scenes, axes)
@@ -81,14 +85,15 @@ def sweep(
         found = _in_processes(points, folder, jobs, way, quiet)
     else:
         found = [_here(point, way) for point in points]
-    done = Sweep(values, tuple(found), folder)
+    done = Sweep(values, tuple(each.with_outputs(outputs) for each in found), folder)
     for name in FILES[:-1]:  # else that of an earlier sweep may stay beside this one's
         (folder / name).unlink(missing_ok=True)
     asked = {"version": version(), "model": model, "parameters": scene.parameters()}
+    asked |= {"outputs": [each.to_dict() for each in done.outputs]}
     leaks = next((note for each in done for note in leakage(each.scene)), "")
     replace_json(folder / FILES[-1], asked | {"cautions": done.cautions(), "notes": [leaks] if leaks else []})
     done.to_csv(folder / FILES[0])
-    notes = tuple(filter(None, (leaks, sweep_dataset.save(done), _older(done, folder / model))))
+    notes = tuple(filter(None, (leaks, done.save(), _older(done, folder / model))))
     attempt(folder)
     return replace(done, notes=notes)
 

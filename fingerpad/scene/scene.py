@@ -38,8 +38,9 @@ class Scene(Part):
     the same coarse start where an accuracy is asked for, and the same refusals. NumPy's numbers and arrays are taken
     as Python's, and a table may also be one of the classes here, such as ``MeshSize``.
 
-    Without ``history`` the bone is pressed with ``f_ext``, or the whole finger with ``force``, the voltage is switched on, and the bone slides until
-    every ridge slips. With ``history`` the loads say it all and the three keys of the default one are refused.
+    Without ``history`` the bone is pressed with ``f_ext``, or the whole finger with ``force``, the voltage is switched
+    on, and the bone slides until every ridge slips. With ``history`` the loads say it all and the keys of the default
+    one are refused.
     """
 
     f_ext: Annotated[Finite, within(1e-3, 5e3, "N/m")] = 75.0

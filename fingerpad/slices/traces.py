@@ -2,8 +2,8 @@
 
 The full model follows three histories. The finger is pressed without voltage. It is pressed lightly, charged and
 pressed on. It is pressed lightly, charged, slid to full slip and pressed on while it slides; every accepted step at
-full slip is then a point of the trace. The closed form is computed at :data:`FORCES` forces. A trace that ends before
-the force is reached is made again to a larger one.
+full slip is then a point of the trace. A model without a path has :data:`FORCES` points. A trace that ends before the
+force is reached is made again to a larger one.
 """
 
 from collections.abc import Callable, Iterable
@@ -14,7 +14,7 @@ import numpy as np
 
 from fingerpad.io.result import Cost, Result
 from fingerpad.io.states import WORDS
-from fingerpad.reduced import cylinders
+from fingerpad.reduced.model import Model
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.slices import LINE, POINT, POWER
 from fingerpad.slices import errors
@@ -28,7 +28,7 @@ from variational.state import ContactState, Errors
 Solve = Callable[[Scene, str], Result]
 """Returns the result of a scene; takes a name for the folder of its files."""
 FORCES = 8
-"""Points of a trace of the closed form."""
+"""Points of a trace of a model without a path."""
 LIGHT = 1 / 30
 """Force under which a finger is charged, and slid to full slip, over the largest of its trace."""
 _SMALLEST, _LARGEST = 1e-3, 5e3  # N/m, of a scene
@@ -50,18 +50,18 @@ class Traced(NamedTuple):
     states: list[ContactState]
     """Its points, and those that it leaves out."""
     result: Result | None = None
-    """That ends at its largest force; None of the closed form."""
+    """That ends at its largest force; None of a model without a path."""
     total: Total | None = None
     """The finger under the force, once it was found on the trace."""
 
 
-def whole(scene: Scene, path: bool, solve: Solve) -> Result:
+def whole(scene: Scene, model: Model, solve: Solve) -> Result:
     """Return the result of a force on the whole finger; collective.
 
     Args:
         scene: with a force.
-        path: whether the model follows a path of loads, as the traces of the full one; else traces are the closed form.
-        solve: solves a scene without a force on the whole finger.
+        model: that solves.
+        solve: solves a scene without a force on the whole finger by it.
 
     Returns:
         The whole finger, and the section at its centre as named states. A trace that was interrupted is returned as it
@@ -71,11 +71,11 @@ def whole(scene: Scene, path: bool, solve: Solve) -> Result:
         SceneError: a profile that does not fit, or a force that no trace reached.
     """
     try:
-        found = _followed(scene, solve if path else None)
+        found = _followed(scene, model, solve)
     except _Stopped as stopped:
         return stopped.result
-    finger = _summed(scene, found)
-    if path:
+    finger = _summed(scene, model, found)
+    if model.path:
         return _of_path(scene, finger, found)
     centre = list(found.values())[-1].total.centre / profile(scene.slices).centre_scale  # type: ignore[union-attr]
     if centre < _SMALLEST:
@@ -84,11 +84,6 @@ def whole(scene: Scene, path: bool, solve: Solve) -> Result:
             f"bear at least {_SMALLEST:g} N/m; give a larger force or a shorter finger"
         )
     return replace(solve(scene.replace(f_ext=centre), ""), scene=scene, finger=finger)
-
-
-def closed(scene: Scene) -> WholeFinger:
-    """Return the whole finger of a scene with a force by the closed form; raises as :func:`whole` does."""
-    return _summed(scene, _followed(scene, None))
 
 
 def history(scene: Scene, name: str, top: float) -> Scene:
@@ -125,11 +120,10 @@ def points(result: Result, name: str) -> list[ContactState]:
     return [state for state in result.steps if state.load in ("charge", "raise") and state.voltage == voltage]
 
 
-def _followed(scene: Scene, solve: Solve | None) -> dict[str, Traced]:
-    """Return the traces of a scene by state, that of the result last; without ``solve`` of the closed form."""
-    finger, name = profile(scene.slices), "uncharged"
-    reach = _Reach(scene, finger, solve)
-    found = {name: reach.follow(name)}
+def _followed(scene: Scene, model: Model, solve: Solve) -> dict[str, Traced]:
+    """Return the traces of a scene by state, that of the result last; arguments as of :func:`whole`."""
+    reach = _Reach(scene, profile(scene.slices), model, solve)
+    found = {"uncharged": reach.follow("uncharged")}
     if scene.voltage:
         found["charged"] = reach.follow("charged")
     if scene.friction_law() is not None:
@@ -137,17 +131,16 @@ def _followed(scene: Scene, solve: Solve | None) -> dict[str, Traced]:
     return found
 
 
-def _summed(scene: Scene, found: dict[str, Traced]) -> WholeFinger:
+def _summed(scene: Scene, model: Model, found: dict[str, Traced]) -> WholeFinger:
     """Return the finger on its traces."""
     totals = {name: each.total for name, each in found.items() if each.total is not None}
     known = {name: {errors.MESH: errors.discretisation(_end(each, name))} for name, each in found.items()}
-    states, of_runs = {name: each.trace for name, each in found.items()}, found["uncharged"].result is not None
-    source = "traces of the full model" if of_runs else "traces of charged cylinders, indentations without voltage"
+    states = {name: each.trace for name, each in found.items()}
     tops = (f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
     if not scene.voltage:  # normal contact is one state then, with two names
         for values in (totals, known, states):
             values["charged"] = values["uncharged"]  # type: ignore[assignment]
-    return WholeFinger(in_order(totals), f"{source} to {', '.join(tops)}", known, states, scene.slices)
+    return WholeFinger(in_order(totals), f"{model.traces} to {', '.join(tops)}", known, states, scene.slices)
 
 
 def _of_path(scene: Scene, finger: WholeFinger, found: dict[str, Traced]) -> Result:
@@ -164,6 +157,7 @@ def _of_path(scene: Scene, finger: WholeFinger, found: dict[str, Traced]) -> Res
     return replace(
         runs[-1],
         scene=scene,
+        record={key: value for key, value in runs[-1].record.items() if key != "steps"},
         **{name: named.get(name) for name in WORDS},  # type: ignore[arg-type]
         steps=(),
         loads=(),
@@ -234,9 +228,10 @@ class _Stopped(Exception):  # noqa: N818
 class _Reach:
     """Follows traces to forces that are large enough."""
 
-    def __init__(self, scene: Scene, finger: Profile, solve: Solve | None) -> None:
+    def __init__(self, scene: Scene, finger: Profile, model: Model, solve: Solve) -> None:
         assert scene.force is not None
-        self._scene, self._finger, self._force, self._solve = scene.replace(force=None), finger, scene.force, solve
+        self._scene, self._force = scene.replace(force=None), scene.force
+        self._finger, self._model, self._solve = finger, model, solve
         self._scale = finger.centre_scale  # refuses a finger that is lowest at its end
         self._top = scene.centre_force * _MARGIN
 
@@ -248,7 +243,7 @@ class _Reach:
         """
         for tries in range(_TRIES):
             top = min(max(self._top, _SHORTEST), _LARGEST)
-            made = self._closed(name, top) if self._solve is None else self._run(name, top, tries)
+            made = self._run(name, top, tries) if self._model.path else self._points(name, top)
             try:
                 total = at_force(self._finger, made.trace, self._force, self._scene.slices.count)
             except BeyondTrace as error:
@@ -264,7 +259,6 @@ class _Reach:
 
     def _run(self, name: str, top: float, tries: int) -> Traced:
         """Return a trace of a run; each try has a folder of its own, from which another command goes on."""
-        assert self._solve is not None
         result = self._solve(history(self._scene, name, top), f"{name}_{tries + 1}" if tries else name)
         if result.interrupted:
             raise _Stopped(result, name)
@@ -275,13 +269,10 @@ class _Reach:
             why = f": {result.failure}" if result.failure else ""
             raise SceneError(f"the force on the finger is {self._force:.4g} N; {error}{why}") from None
 
-    def _closed(self, name: str, top: float) -> Traced:
-        """Return a trace of the closed form, whose indentations are those without voltage."""
+    def _points(self, name: str, top: float) -> Traced:
+        """Return a trace of a model without a path."""
         forces = [float(each) for each in np.geomspace(top * LIGHT, top, FORCES)]
         kind = "full_slip" if name == "full_slip" else "charged"
         scene = self._scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else self._scene
-        states = [
-            replace(state, bone_height=-cylinders.indentation(state.f_ext, kind))
-            for state in cylinders.over_forces(scene, forces, kind)
-        ]
+        states = self._model.over_forces(scene, forces, kind, lambda each: self._solve(each, name))
         return Traced(trace(states, scene.geometry.ridge_wavelength), states)
