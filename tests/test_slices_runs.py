@@ -137,7 +137,7 @@ def test_report_of_a_force_repeats_it(traced):
     page = html.unescape(run_page.page(traced))
     assert "0.002 N on the whole finger." in page
     command = page.partition("<code>fingerpad run ")[2].partition("</code>")[0]
-    assert " --set force=0.002 " in command and "f_ext=" not in command
+    assert "--set force=0.002 " in command and "f_ext=" not in command
 
 
 def test_section_at_the_centre_is_on_its_scale():
@@ -248,7 +248,7 @@ def test_least_force(tmp_path):
 
 def test_folder_of_other_results_is_refused_before_the_work(tmp_path, monkeypatch):
     fp.run(model="cylinders", out=tmp_path)
-    monkeypatch.setattr(traces.cylinders, "solve", None)
+    monkeypatch.setattr(traces, "whole", None)
     with pytest.raises(SceneError, match="holds the results of another scene"):
         fp.run(fp.Scene(force=0.5), model="cylinders", out=tmp_path)
 

@@ -8,7 +8,7 @@ force is reached is made again to a larger one.
 
 from collections.abc import Callable, Iterable
 from dataclasses import fields, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -179,7 +179,7 @@ def _section(traced: Traced, name: str, depth: float) -> ContactState:
         name: of the state.
         depth: indentation of the section (m).
     """
-    at = {key: float(values[0]) for key, values in traced.trace.at(np.array([depth])).items()}
+    at: dict[str, Any] = {key: float(values[0]) for key, values in traced.trace.at(np.array([depth])).items()}
     near = min(traced.states, key=lambda state: abs(state.bone_height + depth))
     mu_app = at["f_t"] / at["f_ext"]
     shares, end = errors.discretisation(_end(traced, name)), _end(traced, name)
