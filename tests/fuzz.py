@@ -30,7 +30,7 @@ from pydantic import BaseModel
 
 from fingerpad.cli import refuse
 from fingerpad.cli.arguments import Parser, scene_of
-from fingerpad.io.folder import check_folder
+from fingerpad.io.files import check_folder
 from fingerpad.model import options
 from fingerpad.model.memory import estimate
 from fingerpad.reduced.cylinders import tip_radius

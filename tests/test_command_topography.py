@@ -50,12 +50,13 @@ def test_topography_whatever_the_separator(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("text", "options", "message"),
     [
-        ("1 2 3 4\n" * 4, ["--size", "1", "1"], "holds numbers without a unit; give --unit"),
+        ("1 2 3 4\n" * 4, ["--size", "1 um", "1 um"], "holds numbers without a unit; give --unit"),
         ("1 2 3 4\n" * 4, ["--unit", "um"], "has no size; give --size or --pixel"),
-        ("1 2 3 4\n" * 4, ["--unit", "um", "--size", "1", "4 V"], "--size: 4 V is not allowed; its unit is not"),
+        ("1 2 3 4\n" * 4, ["--unit", "um", "--size", "1", "4 V"], "--size[0] is 1 m; it must be from 1e-10 to 0.1 m"),
         ("1 2 nan nan\n" * 4, ["--unit", "um", "--size", "1 um", "1 um"], "8 of 16 heights are missing or infinite"),
         ("1 2 3 4\n" * 4, ["--unit", "um", "--size", "1 um", "1 um", "--missing", "E"], "without its curvature"),
-        ("1 0 0 0\n" * 4, ["--unit", "um", "--size", "1", "1"], "is 1 m x 1 m large, at most 0.1 m is allowed"),
+        ("1 0 0 0\n" * 4, ["--unit", "um", "--pixel", "1 um", "4 V"], "--pixel[1] is '4 V'; its unit is not a unit of"),
+        ("1 0 0 0\n" * 4, ["--unit", "inch"], "--unit is 'inch'; it must be 'm', 'cm', 'mm'"),
     ],
 )
 def test_topography_refuses(text, options, message, tmp_path, capsys):
@@ -207,10 +208,11 @@ def test_map_smaller_than_the_longest_waves_is_told(tmp_path, capsys, width, tol
 
 
 def test_map_wider_than_any_skin_is_refused(tmp_path, capsys):
-    """160 m, as of lengths in m that are in um."""
+    """64 pixels of 2.5 mm."""
     np.save(tmp_path / "map.npy", SelfAffine().surface((64, 64), (160e-6, 160e-6), 3).heights)
-    words = "map.npy is 160 m x 160 m large, at most 0.1 m is allowed; check the unit"
-    assert words in refused(capsys, "topography", str(tmp_path / "map.npy"), "--unit", "m", "--size", "160", "160")
+    words = "map.npy is 0.16 m x 0.16 m large, at most 0.1 m is allowed; check the unit"
+    given = ("--unit", "m", "--pixel", "2.5e-3", "2.5 mm")
+    assert words in refused(capsys, "topography", str(tmp_path / "map.npy"), *given)
 
 
 def test_laws_of_ones_own_have_no_remark():

@@ -11,10 +11,10 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
-from fingerpad.cli import COMMANDS
+from fingerpad.cli import COMMANDS, ranges
 from fingerpad.io import terminal
 from fingerpad.model.check import check
-from fingerpad.scene import Scene, load, override
+from fingerpad.scene import Scene, from_data, load, override
 from fingerpad.scene.keys import every
 from fingerpad.scene.messages import SceneError, clip, ends
 from geometry.units import to_si
@@ -77,6 +77,20 @@ class Parser(argparse.ArgumentParser):
         self.add_argument(
             "--set", action="append", default=[], metavar="KEY=VALUE", help="a key of the scene; one --set for each key"
         )
+
+    def add_ranges(self, *keys: str) -> None:
+        """Add an option for several values of each of these keys, which :func:`several` reads."""
+        for key in every():
+            if key.name in keys:
+                what = f"{key.meaning.partition('. ')[0].rstrip('.')}; several as 0,100 or 0:200:5, also with a unit"
+                self.add_argument(f"--{key.name.replace('_', '-')}", metavar="RANGE", help=what)
+
+    def add_table(self, table: str) -> None:
+        """Add an option for each optional key of a table of a scene."""
+        for key in every():
+            if key.name.startswith(f"{table}.") and not key.required:
+                pair: dict[str, Any] = {"nargs": 2, "metavar": ("X", "Y")} if key.allowed.startswith("list") else {}
+                self.add_argument(f"--{key.name.removeprefix(table)[1:]}", **pair, help=key.meaning)
 
     def add_out(self, default: str, what: str) -> None:
         """Add the folder that results go to."""
@@ -170,6 +184,19 @@ def changes(given: Sequence[str]) -> dict[str, Any]:
                 raise SceneError(f"--set {clip(short)} is given {twice}; give one value")
         found[key] = value
     return found
+
+
+def several(args: argparse.Namespace, scene: Scene, key: str) -> list[float]:
+    """Return the values of an option of :meth:`Parser.add_ranges`; the scene's own without it.
+
+    Raises:
+        SceneError: a value that the key cannot have, or the key is given by ``--set`` too.
+    """
+    option, text = f"--{key.replace('_', '-')}", getattr(args, key)
+    refuse_twice(args, key, option)
+    if text is None:
+        return [getattr(scene, key)]
+    return [getattr(from_data({key: value}), key) for value in ranges.read(option, text)]
 
 
 def refuse_twice(args: argparse.Namespace, key: str, option: str) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fingerpad.cli.arguments import Parser, echo, scene_of
-from fingerpad.io.folder import check_folder
+from fingerpad.io.files import check_folder
 from fingerpad.io.left import about, between
 from fingerpad.model import expected as cost
 from fingerpad.model.memory import MEASURED, Budget, estimate

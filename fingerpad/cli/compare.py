@@ -6,7 +6,7 @@ from pathlib import Path
 
 from fingerpad.cli.arguments import Parser, echo, length, path, positive, scene_of
 from fingerpad.ctrl_c import raises
-from fingerpad.io.folder import below, check_folder
+from fingerpad.io.files import below, check_folder
 from fingerpad.io.quantities import PLUS_MINUS, QUANTITIES, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import called

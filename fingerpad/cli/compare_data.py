@@ -11,7 +11,7 @@ import numpy as np
 from fingerpad.cli import tables
 from fingerpad.cli.arguments import Parser, echo, path
 from fingerpad.io.states import WORDS
-from fingerpad.io.titles import plain
+from fingerpad.io.style import plain
 from fingerpad.scene.messages import SceneError, clip
 
 if TYPE_CHECKING:

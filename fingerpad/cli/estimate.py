@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from fingerpad.cli import ranges, tables
-from fingerpad.cli.arguments import Parser, echo, refuse_twice, scene_of
+from fingerpad.cli import tables
+from fingerpad.cli.arguments import Parser, echo, scene_of, several
 from fingerpad.io.quantities import PER_LENGTH
 from fingerpad.io.result import Result
 from fingerpad.model.cautions import on_states
@@ -48,24 +48,15 @@ def main(argv: Sequence[str]) -> int:
     """Estimate friction over a grid; return the exit code."""
     parser = Parser("estimate", _EXAMPLES)
     parser.add_scene()
-    parser.add_argument("--force", metavar="RANGE", help="forces on the whole finger (N): 0.5, or 0.1:1:10")
-    parser.add_argument(
-        "--f-ext",
-        metavar="RANGE",
-        help="forces per metre at its centre (N/m): 75, or 20,50,75 or 20:75:3, or with units",
-    )
-    parser.add_argument("--voltage", metavar="RANGE", help="voltages (V), written likewise")
+    parser.add_ranges("force", "f_ext", "voltage")
     tables.add_files(parser, _COLUMNS, "picture: one curve a force")
     args = parser.read(argv)
     if args.force is not None and args.f_ext is not None:
         raise SceneError("--force is given and --f-ext too; give newtons on the whole finger or N/m at its centre")
-    refuse_twice(args, "force", "--force")
-    refuse_twice(args, "f_ext", "--f-ext")
-    refuse_twice(args, "voltage", "--voltage")
     scene = scene_of(args, meshed=False)
     cylinders.Cylinders().check(scene)
     key = "force" if args.force is not None or (scene.force is not None and args.f_ext is None) else "f_ext"
-    forces, voltages = (_axis(scene, each, getattr(args, each)) for each in (key, "voltage"))
+    forces, voltages = (several(args, scene, each) for each in (key, "voltage"))
     rows, lost = grid(scene, forces, voltages, key)
     columns = _COLUMNS if key == "f_ext" else _NEWTONS
     of = "Friction" if key == "f_ext" else "Friction of the whole finger"
@@ -75,10 +66,8 @@ def main(argv: Sequence[str]) -> int:
     if key == "f_ext":
         echo("\nmu_app is friction over force, at full slip; contact is the length of skin on the screen.")
     else:
-        echo(
-            "\nmu_app is friction over force of the whole finger, at full slip; the last two columns are of the section at"
-        )
-        echo("at the centre of the finger.")
+        echo("\nmu_app is friction over force of the whole finger, at full slip; the last two columns are of the")
+        echo("section at the centre of the finger.")
     states = [row["state"] for row in rows if "state" in row]
     limits = (f"{text[0].upper()}{text[1:]}." for text in on_states(states, scene.closure()))
     said = (*([LEAKAGE] if any(voltages) else []), *(f"{text}." for text in remarks(scene)), *limits)
@@ -87,18 +76,6 @@ def main(argv: Sequence[str]) -> int:
         echo(note)
     tables.write_files(args, columns, rows, draw)
     return 0
-
-
-def _axis(scene: Scene, key: str, text: str | None) -> list[float]:
-    """Return the values of a key, checked; the scene's own if none are given."""
-    if text is None:
-        return [getattr(scene, key)]
-    values = ranges.read(f"--{key.replace('_', '-')}", text)
-    return [getattr(_with(scene, **{key: value}), key) for value in values]
-
-
-def _with(scene: Scene, **values: float | str) -> Scene:
-    return scene.replace(**values)
 
 
 def grid(
@@ -120,7 +97,7 @@ def grid(
         for voltage in voltages:
             row: dict[str, Any] = {key: force, "voltage": voltage}
             try:
-                found = solved(_with(scene, **{key: force, "voltage": voltage}), model, RunContext())
+                found = solved(scene.replace(**{key: force, "voltage": voltage}), model, RunContext())
                 row |= _row(found)
             except SceneError as error:
                 lost.append(f"At {force:g} {unit} and {voltage:g} V: {error}.")

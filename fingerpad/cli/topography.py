@@ -7,12 +7,15 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from fingerpad.cli.arguments import PICTURE, Parser, echo, length, path
-from fingerpad.io.titles import plain
-from fingerpad.scene import Scene, from_data
-from fingerpad.scene.messages import SceneError, clip
+from pydantic import ValidationError
+
+from fingerpad.cli.arguments import PICTURE, Parser, echo, path
+from fingerpad.io.style import plain
+from fingerpad.scene import Scene, from_data, override
+from fingerpad.scene.materials import Topography
+from fingerpad.scene.messages import SceneError, clip, first_error
 from fingerpad.scene.remarks import missing_waves, ridges_as_roughness
-from variational.roughness.heightfile import UNITS, Found, scan
+from variational.roughness.heightfile import Found, scan
 from variational.roughness.spectrum import HURST, Fit, power_spectrum, roughness_table
 from variational.roughness.topography import distribution
 
@@ -26,15 +29,7 @@ def main(argv: Sequence[str]) -> int:
     """Print the table of roughness that a height map gives; return the exit code."""
     parser = Parser("topography", _EXAMPLES)
     parser.add_argument("file", type=path, metavar="FILE", help="matrix of heights, or a file of an instrument")
-    units = ", ".join(unit for unit in UNITS if unit.isascii())
-    parser.add_argument("--unit", choices=[*UNITS], metavar="UNIT", help=f"of the heights: {units}")
-    sizes = parser.add_mutually_exclusive_group()
-    lengths: dict[str, Any] = {"nargs": 2, "type": length, "metavar": ("X", "Y")}
-    words = "lengths of the map (m, or with a unit): X from the first line of a matrix to the last, Y along a line"
-    sizes.add_argument("--size", **lengths, help=words)
-    sizes.add_argument("--pixel", **lengths, help="lengths of a pixel instead")
-    words = "mark of missing pixels, beside nan and empty places; nan if there are no others"
-    parser.add_argument("--missing", metavar="MARK", help=words)
+    parser.add_table("roughness.topography")
     parser.add_file("--plot", PICTURE, "picture of map, heights and spectrum")
     args = parser.read(argv)
     found = _scan(args)
@@ -57,10 +52,16 @@ def _scan(args: argparse.Namespace) -> Found:
     Raises:
         SceneError: it cannot be read.
     """
+    given: dict[str, Any] = {name: getattr(args, name, None) for name in Topography.model_fields}
+    for name in ("size", "pixel"):
+        if given[name] is not None:
+            given[name] = [override(f"{name}={length}")[1] for length in given[name]]
     try:
-        return scan(args.file, args.unit, args.size, args.pixel, args.missing)
+        return scan(**dict(Topography.model_validate(given | {"file": str(args.file)})))
     except OSError as error:
         raise SceneError(f"{clip(str(args.file), 80)} cannot be read: {error.strerror or error}") from None
+    except ValidationError as error:
+        raise SceneError(f"--{first_error(error, Topography)}") from None
     except (ValueError, ImportError) as error:
         raise SceneError(re.sub(r"'(unit|size|pixel|missing)'", r"--\1", str(error))) from None
 

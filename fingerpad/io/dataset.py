@@ -7,7 +7,7 @@ SciPy: every program for NetCDF reads it, and it loads no HDF5 beside that of do
 
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -31,8 +31,8 @@ FILE = "result.nc"
 COORDINATES = ("step", "load", "state", "ridge", "side", "iteration", "harmonic")
 Variables = dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]
 """Dimensions, values, and attributes by name."""
-_OF_RIDGES = {name: "length" if name == "contact_length" else name for name in RIDGES}
-_OF_SITES = {"merkel_sed": "merkel", "meissner_left": "left", "meissner_right": "right"}
+OF_RIDGES = {name: "length" if name == "contact_length" else name for name in RIDGES}
+OF_SITES = {"merkel_sed": "merkel", "meissner_left": "left", "meissner_right": "right"}
 """Attribute of :class:`RidgeStates`, and of :class:`Sites`, by quantity."""
 
 
@@ -165,7 +165,7 @@ def _of_states(
         about = known.get(name, Output(name, "")).about()
         found["load_name" if prefix + name == "load" else prefix + name] = (dim,), values.astype(kind), about
     place = {number: k for k, number in enumerate(numbers)}
-    groups = (("ridges", f"{prefix}ridge_", RIDGES, _OF_RIDGES), ("sites", prefix, SITES, _OF_SITES))
+    groups = (("ridges", f"{prefix}ridge_", RIDGES, OF_RIDGES), ("sites", prefix, SITES, OF_SITES))
     for group, start, outputs, names in groups:
         given = [(k, each) for k, s in enumerate(states) if s is not None and (each := getattr(s, group)) is not None]
         for name, output in outputs.items() if given else ():
@@ -297,23 +297,6 @@ def _finger(whole: "WholeFinger | None") -> Variables:
     return found
 
 
-def ridge_rows(state: ContactState) -> Iterator[dict[str, Any]]:
-    """Yield the row of each ridge in contact, as ``ridges.csv`` has it."""
-    if (ridges := state.ridges) is None:
-        return
-    for k in np.flatnonzero(ridges.length > 0):
-        values = {name: getattr(ridges, attribute) for name, attribute in _OF_RIDGES.items()}
-        yield {"ridge": int(ridges.number[k])} | {name: each[k] if len(each) else "" for name, each in values.items()}
-
-
-def site_rows(state: ContactState) -> Iterator[dict[str, Any]]:
-    """Yield the row of each ridge's receptor sites, as ``receptors.csv`` has it."""
-    if (sites := state.sites) is None:
-        return
-    for k, number in enumerate(sites.number):
-        yield {"ridge": int(number)} | {name: getattr(sites, each)[k] for name, each in _OF_SITES.items()}
-
-
 # -- reading -----------------------------------------------------------------------------------------------
 def _state(arrays: Mapping[str, NDArray[Any]], prefix: str, k: int, own: Sequence[str]) -> ContactState:
     """Return the state at a place of the dimension whose variables begin with a prefix.
@@ -329,7 +312,7 @@ def _state(arrays: Mapping[str, NDArray[Any]], prefix: str, k: int, own: Sequenc
     more: dict[str, Any] = {}
     number = arrays.get("ridge", np.arange(0))
     if f"{prefix}ridge_contact_length" in arrays:
-        columns = {_OF_RIDGES[name]: arrays[f"{prefix}ridge_{name}"][k] for name in RIDGES}
+        columns = {OF_RIDGES[name]: arrays[f"{prefix}ridge_{name}"][k] for name in RIDGES}
         there = np.isfinite(columns["length"])
         values = {name: column[there] for name, column in columns.items()}
         more["ridges"] = RidgeStates(number[there].astype(int), **values | {"note": tuple(map(str, values["note"]))})

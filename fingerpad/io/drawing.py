@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fingerpad.io import finger_picture, history_picture, skin_picture, time_picture, titles
+from fingerpad.io import finger_picture, history_picture, skin_picture, style
 from fingerpad.io.files import replace
 from fingerpad.io.over_time import without_parts_of_jumps
 from fingerpad.io.skin_picture import SurfaceProfile
@@ -138,13 +138,13 @@ class Drawing:
         if not self._slides():
             raise ValueError("the run has no history of sliding; the bone never moved sideways with skin on the screen")
         shown = [state.row() for state in self.states[len(before_sliding(self.states)) - 1 :]]
-        conditions = _joined(titles.conditions_of(shown, self.mu_0), self._path_note())
+        conditions = _joined(style.conditions_of(shown, self.mu_0), self._path_note())
         return history_picture.history(path, shown, conditions, self.mu_0, self.named)
 
     def _skin(
         self, path: Path | None, profiles: Mapping[str, SurfaceProfile], states: Sequence[ContactState]
     ) -> Figure:
-        conditions = titles.conditions_of([state.row() for state in states], self.mu_0)
+        conditions = style.conditions_of([state.row() for state in states], self.mu_0)
         return skin_picture.surface(path, list(profiles.values()), conditions)
 
     def _surface(self, path: Path, profiles: Mapping[str, SurfaceProfile], states: Sequence[ContactState]) -> None:
@@ -172,8 +172,8 @@ class Drawing:
         states = self._timed()
         if not states:
             raise ValueError("the run has no load over time; give one a speed, a duration or a waveform")
-        conditions = titles.conditions_of([state.row() for state in states], self.mu_0)
-        return time_picture.over_time(path, states, _joined(conditions, self._path_note()))
+        conditions = style.conditions_of([state.row() for state in states], self.mu_0)
+        return history_picture.over_time(path, states, _joined(conditions, self._path_note()))
 
     def _path_note(self) -> str:
         return "" if self.starting_size is None else _note(_PATH, self.starting_size)
@@ -212,11 +212,11 @@ class Drawing:
         note: str,
         ridges: Mapping[int, float],
     ) -> Figure:
-        conditions = titles.conditions(state.f_ext, state.voltage, self.mu_0, state.bone_x)
+        conditions = style.conditions(state.f_ext, state.voltage, self.mu_0, state.bone_x)
         snapshots = [end.snapshot for end in self.ends.values()]
         snapshots += [view.snapshot for view in self.finer.values() if view.snapshot is not None]
         highest = max(map(finger_picture.highest_density, snapshots))
-        words = _joined(f"{titles.plain(title)}: {conditions}", note)
+        words = _joined(f"{style.plain(title)}: {conditions}", note)
         return finger_picture.finger(path, snapshot, sites, words, ridges, highest)
 
     def _shown(self) -> "dict[str, tuple[str, ContactState, View | None]]":

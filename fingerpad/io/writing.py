@@ -2,9 +2,10 @@
 
 import logging
 import logging.handlers
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
 from mpi4py import MPI
 
 from fingerpad.io import dataset
@@ -14,6 +15,7 @@ from fingerpad.io.quantities import FIELDS
 from fingerpad.io.result import Result
 from variational.output import Fields
 from variational.problem import Problem
+from variational.state import ContactState
 
 
 class Writer:
@@ -126,3 +128,20 @@ def _send(log: logging.Logger, file: logging.Handler) -> None:
             memory.setTarget(file)
             memory.flush()
     log.handlers = [file]
+
+
+def ridge_rows(state: ContactState) -> Iterator[dict[str, Any]]:
+    """Yield the row of each ridge in contact, as ``ridges.csv`` has it."""
+    if (ridges := state.ridges) is None:
+        return
+    for k in np.flatnonzero(ridges.length > 0):
+        values = {name: getattr(ridges, attribute) for name, attribute in dataset.OF_RIDGES.items()}
+        yield {"ridge": int(ridges.number[k])} | {name: each[k] if len(each) else "" for name, each in values.items()}
+
+
+def site_rows(state: ContactState) -> Iterator[dict[str, Any]]:
+    """Yield the row of each ridge's receptor sites, as ``receptors.csv`` has it."""
+    if (sites := state.sites) is None:
+        return
+    for k, number in enumerate(sites.number):
+        yield {"ridge": int(number)} | {name: getattr(sites, each)[k] for name, each in dataset.OF_SITES.items()}

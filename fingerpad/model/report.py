@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from fingerpad.io import dataset, states
+from fingerpad.io import states
 from fingerpad.io.console import Console
 from fingerpad.io.drawing import End, View
 from fingerpad.io.quantities import Output, valued
-from fingerpad.io.writing import Writer
+from fingerpad.io.writing import Writer, ridge_rows, site_rows
 from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Step
 from fingerpad.model.options import Omission
@@ -85,7 +85,7 @@ class Report:
 
     def _tables(self, end: str, first: Mapping[str, Any], state: ContactState, size: float) -> None:
         """Write the rows of ridges in contact and of receptor sites of a state."""
-        for name, rows in (("ridges", dataset.ridge_rows(state)), ("receptors", dataset.site_rows(state))):
+        for name, rows in (("ridges", ridge_rows(state)), ("receptors", site_rows(state))):
             for row in rows:
                 self._writer.row(f"{name}{end}", {**first, **row, "mesh_contact": size})
 

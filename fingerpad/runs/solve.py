@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 from fingerpad.installed import needed_by, source, version
 from fingerpad.io import dataset, terminal
-from fingerpad.io.files import replace_json
-from fingerpad.io.folder import below
+from fingerpad.io.files import below, replace_json
 from fingerpad.io.place import Serial, on_rank_0
 from fingerpad.io.quantities import Output
 from fingerpad.io.quantities import checked as checked_outputs

@@ -13,8 +13,7 @@ import numpy as np
 
 from fingerpad.installed import source, version
 from fingerpad.io import terminal
-from fingerpad.io.files import replace_json
-from fingerpad.io.folder import below, check_folder
+from fingerpad.io.files import below, check_folder, replace_json
 from fingerpad.io.quantities import Output
 from fingerpad.io.quantities import checked as checked_outputs
 from fingerpad.io.result import Result
