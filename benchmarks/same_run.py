@@ -66,7 +66,7 @@ def scene(case: dict[str, Any], folder: Path) -> dict[str, Any]:
         more["force"] = case["force"]
     out = folder / "out" if case.get("folder") else None
     result = fp.run(given, out=out, **more, **laws)
-    found = {"failure": result.failure}
+    found: dict[str, Any] = {"failure": result.failure}
     if "force" not in case:  # with one a program has steps and states of its own choice beside the finger's slices
         found |= {"steps": result.steps, "loads": result.loads, "named": result.named}
     if result.finger is not None:

@@ -47,7 +47,7 @@ def whole() -> str:
 def sets() -> list[dict[str, float]]:
     """Return values by field, in the units of the fields: each alone at its ends and beyond, corners, and others."""
     found: list[dict[str, float]] = [{}]
-    scene = [key for key in FIELDS if key not in ("length", "ridges")]
+    scene = [key for key in FIELDS if key not in ("length", "ridges", "force")]
     for key in scene:
         found += [{key: end} for end in FIELDS[key].slider]
     corner = ("voltage", "f_ext", "electric.d_i", "roughness.h_rms")
@@ -151,12 +151,11 @@ def test_whole_finger_is_that_of_python(tmp_path):
     answers = by_script(program, tmp_path)
     assert [isinstance(found, str) for found in answers] == [False] * 7 + [True] * 2
     for scene, found in zip(scenes, answers, strict=True):
-        data = {key: value for key, value in scene.items() if key != "force"}
         if isinstance(found, str):
             with pytest.raises(SceneError):
-                fp.run(Scene(**data), model="cylinders", force=scene["force"])
+                fp.run(Scene(**scene), model="cylinders")
             continue
-        result = fp.run(Scene(**data), model="cylinders", force=scene["force"])
+        result = fp.run(Scene(**scene), model="cylinders")
         expected = result.finger.values("full_slip")
         names = ("mu_app", "f_t", "f_electrostatic", "contact_area", "gross_area", "indentation")
         assert {name: found[name] for name in names} == pytest.approx(

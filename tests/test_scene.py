@@ -145,7 +145,6 @@ def test_scene_of_a_run_s_folder_is_a_scene(tmp_path):
             given.parameters() | {"laws": {"friction": {}}},
             "is of a run with laws of its own, which are no part of a scene",
         ),
-        (given.parameters() | {"trace": {"force": 0.5}}, "is of a run with a force on the whole finger"),
         (
             given.parameters() | {"laws": {"mesh": {"path": "gone.msh", "sha256": ""}}},
             "'gone.msh', which is gone or was",

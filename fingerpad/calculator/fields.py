@@ -5,7 +5,7 @@ What is said here of a field is how it is shown: its words, its unit and the end
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, get_args
 
 from numpy.polynomial.legendre import leggauss
 from pydantic import BaseModel, WrapValidator
@@ -90,7 +90,8 @@ def contact() -> Iterator[Field]:
 def bounds(model: type[BaseModel], name: str) -> Range:
     """Return the range of a key of a table."""
     field = model.model_fields[name]
-    parts = (*field.metadata, *getattr(field.annotation, "__metadata__", ()))
+    choices = (field.annotation, *get_args(field.annotation))  # of a key that may be left out, too
+    parts = (*field.metadata, *(part for each in choices for part in getattr(each, "__metadata__", ())))
     return next(p.func for p in parts if isinstance(p, WrapValidator) and isinstance(p.func, Range))
 
 
