@@ -291,7 +291,7 @@ def _unready(scene: Scene) -> str:
     if not 0 < found.memory <= scene.numerics.memory:
         return f"memory {found.memory:g}"
     json.dumps(scene.parameters(), allow_nan=False)
-    closure = scene.roughness.bearing_area(scene.h_0)
+    closure = scene.closure()
     gaps = closure(np.geomspace(scene.roughness.p_floor, closure.full_pressure, 20)).d_eq
     if not (np.isfinite(gaps).all() and (gaps >= 0).all()):
         return f"air gaps {gaps}"

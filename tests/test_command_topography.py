@@ -11,6 +11,7 @@ from fingerpad.scene import from_data, load
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import remarks
 from tests.commands import refused
+from tests.test_laws import Held
 from variational.roughness.selfaffine import SelfAffine
 
 
@@ -218,7 +219,7 @@ def test_map_wider_than_any_skin_is_refused(tmp_path, capsys):
 def test_laws_of_ones_own_have_no_remark():
     """They do not read the roughness of the scene."""
     scene = load(None, {"roughness.wavelength": 532e-6})
-    assert remarks(scene) and not remarks(scene.with_laws(closure=scene.closure()))
+    assert remarks(scene) and not remarks(scene.replace(roughness=Held()))
 
 
 def test_values_that_a_scene_refuses_are_told(tmp_path, capsys):

@@ -18,6 +18,7 @@ from fingerpad.slices.errors import MESH
 from fingerpad.slices.finger import WholeFinger
 from fingerpad.slices.total import Total
 from tests.commands import refused
+from variational.contact.friction import Derjaguin
 from variational.state import ContactState, Errors
 
 
@@ -193,12 +194,8 @@ def test_runs_of_other_models_are_refused(tmp_path):
 
 
 def test_runs_of_other_laws_are_refused():
-    """Laws from Python are kept by their text."""
-    runs = [
-        Result(Scene(), "full", None, None, None, record={"parameters": Scene().parameters() | {"laws": law}})
-        for law in ({}, {"friction": "Mine(2)"})
-    ]
-    with pytest.raises(SceneError, match="laws.friction is not given in a run and 'Mine.2.' in a run"):
+    runs = [Result(Scene(friction=Derjaguin(0.3, tau)), "full", None, None, None) for tau in (1e3, 2e3)]
+    with pytest.raises(SceneError, match="friction.tau_0 is 1000 in a run and 2000 in a run"):
         one_scene.refuse_mixed(runs)
 
 

@@ -8,8 +8,8 @@ from fingerpad.reduced import cylinders, known
 from fingerpad.report import trust
 from fingerpad.scene import Scene, from_data
 from tests.commands import kept
-from variational.contact.friction import Coulomb
-from variational.roughness.bam import BearingArea
+from tests.test_laws import Held
+from variational.contact.friction import Derjaguin
 
 
 def test_known_error_is_that_of_the_kept_runs():
@@ -50,8 +50,8 @@ def test_band_is_named_where_the_runs_are():
         from_data({"geometry": {"ridge_count": 21}}),
         from_data({"materials": {"dermis": {"poisson": 0.49}}}),
         from_data({"contact": {"eps_n": 2e12}}),
-        Scene().with_laws(friction=Coulomb(0.3)),
-        Scene().with_laws(closure=BearingArea(Scene().h_0)),
+        Scene(friction=Derjaguin(0.25, 1e3)),
+        Scene(roughness=Held()),
     ],
     ids=str,
 )

@@ -12,7 +12,8 @@ from fingerpad.io.states import PREFIXES
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.model import STATES
 from fingerpad.scene import SceneError, from_data
-from variational.contact.friction import Coulomb
+from tests.test_laws import Held
+from variational.contact.friction import Derjaguin
 from variational.state import RESULTS
 
 
@@ -78,8 +79,8 @@ def test_other_screen_than_the_runs_is_said():
     found = cylinders.solve(scene(friction=0.3, electric={"d_i": 2e-6}))
     assert any("known with the default friction, electric, and not here" in text for text in found.cautions)
     assert not cylinders.solve(scene(friction=0.3), cylinders.given(1.5e-3, 16)).cautions, "its length is given"
-    own = scene().with_laws(closure=scene().closure(), friction=Coulomb(0.3))
-    assert any("the default friction, closure, and not here" in text for text in cylinders.solve(own).cautions)
+    own = scene().replace(roughness=Held(), friction=Derjaguin(0.3, 1e3))
+    assert any("the default friction, roughness, and not here" in text for text in cylinders.solve(own).cautions)
 
 
 def test_state_past_the_end_of_the_closure_is_said():

@@ -275,8 +275,7 @@ def test_refused_options(tmp_path):
         command.main(["--resume", str(tmp_path)])
     for kept, match in (
         ('{"model": "cylinders"}', "only a full one can go on"),
-        ('{"laws": {"friction": {}}}', "resume=True"),
-        ('{"laws": {"mesh": []}}', "has no scene.json of a run"),
+        ('{"friction": {"law": "__main__:Mine"}}', "known to the program that made it alone; put it into a module"),
         ('{"mesh": ' * 100_000 + "0" + "}" * 100_000, "has no scene.json of a run"),
     ):
         (tmp_path / "scene.json").write_text(kept, encoding="utf-8")

@@ -175,7 +175,7 @@ def test_run_has_newtons_for_nothing():
 
 def test_estimate_by_another_law_has_the_friction_of_the_run():
     """Its limit is per reference area, and the slices' forces are spread over current lengths."""
-    run = fp.run(small(f_ext=600.0, **SMALL), friction=fp.Derjaguin(0.1, 1e4))
+    run = fp.run(small(f_ext=600.0, friction=fp.Derjaguin(0.1, 1e4), **SMALL))
     assert run.finger.traces["full_slip"].columns["f_t"][-1] == pytest.approx(run.full_slip.f_t, rel=1e-12)
 
 

@@ -29,6 +29,7 @@ from benchmarks.measured.verdict import (
 )
 from benchmarks.runs import FORCES, VOLTAGES
 from fingerpad.scene import Scene
+from fingerpad.scene.laws import coefficient
 
 Array = NDArray[np.float64]
 Numbers = dict[str, float]
@@ -244,7 +245,7 @@ def _without_numbers(verdict: str) -> Row:
 
 def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, Row]:
     """Return our numbers and the verdict of every row, by its key, in the order of ``rows.csv``."""
-    mu_0 = Scene().friction
+    mu_0 = coefficient(Scene()) or 0.0
     low, high = (1e6 * each for each in g.gaps)
     of_load = _friction_load(g)
     return {

@@ -6,6 +6,8 @@ from numpy.typing import NDArray
 from benchmarks.paper.statement import HALF, Statement, statement
 from benchmarks.runs import Array, Run
 from fingerpad.scene import Scene
+from fingerpad.scene.laws import coefficient
+from variational.roughness.bam import BearingArea
 
 Which = NDArray[np.bool_]
 Ridge = tuple[Array, Array, Array, Array]
@@ -58,7 +60,7 @@ def _tension(ridges: list[Ridge], scale: float) -> Statement:
 
 
 def _slips(run: Run, x: Array, p: Array, p_el: Array, t: Array) -> Which:
-    return np.abs(t) >= run.scene.friction * p * _CONE
+    return np.abs(t) >= (coefficient(run.scene) or 0.0) * p * _CONE
 
 
 def _central(run: Run) -> Statement:
@@ -96,7 +98,7 @@ def _leading(x: Array, slips: Which) -> Statement:
 def microscale() -> list[Statement]:
     """Return the statements on the least air gap and on the threshold of stickiness, in both readings."""
     scene = Scene()
-    bam = scene.roughness.bearing_area(scene.h_0)
+    bam = BearingArea(scene.h_0)
     least, estimate, exact = float(bam.air_gap(0.0)), bam.threshold(approximate=True), bam.threshold()
     near = abs(estimate / 155 - 1) < 0.01 and abs(exact / 155 - 1) < 0.1
     return [

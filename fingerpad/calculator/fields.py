@@ -16,11 +16,13 @@ from fingerpad.reduced.known import KNOWN_ERROR, KNOWN_FORCES, KNOWN_RUNS, KNOWN
 from fingerpad.reduced.model import STATES
 from fingerpad.scene import Scene
 from fingerpad.scene.contradictions import LARGEST_GAP
+from fingerpad.scene.law_keys import keys_of
 from fingerpad.scene.laws import skin_modulus
 from fingerpad.slices import traces
 from geometry.bounds import Range
 from geometry.parameters import Fingertip, MeshSize
 from variational.attraction.insulator import VACUUM_PERMITTIVITY
+from variational.contact.friction import Coulomb
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ def fields() -> Iterator[Field]:
     for field in _SHOWN:
         model, _, name = field.key.rpartition(".")
         table: Any = getattr(Scene(), model) if model else Scene()
-        allowed = bounds(type(table), name)
+        allowed = bounds(type(table), name) if field.key != "friction" else bounds(Coulomb, "mu_f")
         value = _in_unit(_FORCE if name == "force" else getattr(table, name), field.per)
         low, high = (_in_unit(end, field.per) for end in (allowed.low, allowed.high))
         yield Field(**asdict(field) | {"low": low, "high": high, "zero": allowed.zero, "value": value})
@@ -87,8 +89,10 @@ def contact() -> Iterator[Field]:
     yield Field("ridges", "ridges in contact", "", 1.0, (1.0, 25.0), group, low, high, False, ridges, True)
 
 
-def bounds(model: type[BaseModel], name: str) -> Range:
-    """Return the range of a key of a table."""
+def bounds(model: type, name: str) -> Range:
+    """Return the range of a key of a table, or of a law."""
+    if not issubclass(model, BaseModel):
+        return Range(*keys_of(model)[name].metadata["range"])
     field = model.model_fields[name]
     choices = (field.annotation, *get_args(field.annotation))  # of a key that may be left out, too
     parts = (*field.metadata, *(part for each in choices for part in getattr(each, "__metadata__", ())))

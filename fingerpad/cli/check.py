@@ -55,7 +55,7 @@ def main(argv: Sequence[str]) -> int:
 
 def _own_mesh(scene: Scene, needed: ModelOptions) -> "Section | None":
     """Return the mesh of a scene's file, checked; None where it has none."""
-    if scene.laws.mesh is None:
+    if scene.geometry.file is None:
         return None
     from fingerpad.cli import section  # gmsh
 
@@ -87,7 +87,7 @@ def _model(scene: Scene, needed: ModelOptions) -> Iterator[str]:
     yield from (*remarks(scene), *leakage(scene))
     found, touching = estimate(scene, needed), by_rule(scene)
     ridges = touching_ridges(touching.geometry, touching.mesh)
-    if caution := scene.contact.law().caution:
+    if caution := scene.contact.law.caution:
         yield caution
     given = scene.mesh.touching_half_arc is not None
     how = "as mesh.touching_half_arc gives" if given else "by a rule of thumb; a run takes more where they come near"

@@ -13,6 +13,7 @@ from fingerpad.reduced import cylinders, known
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
+from fingerpad.scene.laws import coefficient, used
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import LEAKAGE, remarks
 from fingerpad.slices import solid
@@ -61,7 +62,8 @@ def main(argv: Sequence[str]) -> int:
     columns = _COLUMNS if key == "f_ext" else _NEWTONS
     of = "Friction" if key == "f_ext" else "Friction of the whole finger"
     echo(f"{of} at full slip by a closed form, every ridge in contact the same charged cylinder.")
-    echo(f"Friction coefficient {scene.friction:g}.\n")
+    mu_0 = coefficient(scene)
+    echo(f"Friction coefficient {mu_0:g}.\n" if mu_0 is not None else f"Friction {used(scene)['friction']}.\n")
     echo(tables.text(columns, rows))
     if key == "f_ext":
         echo("\nmu_app is friction over force, at full slip; contact is the length of skin on the screen.")

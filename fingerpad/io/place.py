@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 from fingerpad.io.files import lock_file, read_object, remove, replace_json
-from fingerpad.scene import Scene, SceneError, from_kept
+from fingerpad.scene import Scene, SceneError, from_data
 from fingerpad.scene.messages import ends
 from fingerpad.scene.reading import DEFAULT_MODEL
 
@@ -189,8 +189,8 @@ def full_scene(folder: Path) -> Scene:
     """Return the scene whose full run is in a folder.
 
     Raises:
-        PlaceError: there is none, or it is of another model, or has laws of its own.
-        SceneError: its mesh is gone or was changed.
+        PlaceError: there is none, or it is of another model.
+        SceneError: its mesh, or the file of a law of one's own, is gone or was changed.
     """
     try:
         kept = _whole(read_object(folder / "scene.json"))
@@ -198,34 +198,26 @@ def full_scene(folder: Path) -> Scene:
         raise PlaceError(f"{ends(folder)} has no scene.json of a run, and so no run to go on with") from None
     if "model" in kept:
         raise PlaceError(f"{ends(folder)} has a run of the model {kept['model']!r}; only a full one can go on")
-    if kept.get("laws", {}).keys() - {"mesh"}:
-        raise PlaceError(
-            f"the run in {ends(folder)} has laws of its own; go on with it from Python, by fp.run with the same ones "
-            "and resume=True"
-        )
-    return from_kept(kept)
+    return from_data(kept)
 
 
 def _whole(parameters: Any) -> dict[str, Any]:
-    """Return parameters of a scene that a file holds, whose laws are as a run writes them.
+    """Return parameters of a scene that a file holds.
 
     Raises:
         ValueError: they are something else.
     """
-    found = parameters if isinstance(parameters, dict) else {"laws": None}
-    laws = found.get("laws", {})
-    mesh = laws.get("mesh", {"path": "", "sha256": ""}) if isinstance(laws, dict) else None
-    if not (isinstance(mesh, dict) and all(isinstance(mesh.get(key), str) for key in ("path", "sha256"))):
+    if not isinstance(parameters, dict):
         raise ValueError("no parameters of a scene")
-    return found
+    return parameters
 
 
 def identity(parameters: Mapping[str, Any]) -> dict[str, Any]:
     """Return what results depend on: the scene's parameters without the place of a mesh file, whose hash stays."""
-    laws = dict(parameters.get("laws", {}))
-    if "mesh" in laws:
-        laws["mesh"] = {key: value for key, value in laws["mesh"].items() if key != "path"}
-    return {**parameters, "laws": laws} if laws else dict(parameters)
+    shape = parameters.get("geometry")
+    if not isinstance(shape, dict) or "file" not in shape:
+        return dict(parameters)
+    return {**parameters, "geometry": {key: value for key, value in shape.items() if key != "file"}}
 
 
 def difference(old: Mapping[str, Any], new: Mapping[str, Any], table: str = "") -> str:

@@ -47,10 +47,10 @@ def folder(run: Result) -> str:
 
 
 def _conditions(run: Result) -> dict[str, Any]:
-    """Return the model of a run and every key of its scene, and its laws."""
+    """Return the model of a run and every key of its scene."""
     kept = run.record.get("parameters") or run.scene.parameters()
     scene = as_kept(kept)
-    return {"model": run.model} | scene.model_dump(mode="json") | {"laws": kept.get("laws", {})}
+    return {"model": run.model} | scene.model_dump(mode="json")
 
 
 def _difference(one: Any, other: Any, key: str = "") -> _Difference | None:

@@ -17,13 +17,9 @@ def check(scene: Scene) -> None:
 
     Raises:
         SceneError: layers touch or cross, ridges do not fit, the bone touches the skin, elements are too large, or so
-            many that they need more memory than the scene allows; or an accuracy is asked of a mesh of a file.
+            many that they need more memory than the scene allows.
     """
-    if scene.laws.mesh is not None:  # checked when it is read
-        if scene.accuracy is not None:
-            raise SceneError(
-                "accuracy is given and the mesh is of a file, which cannot be refined; leave one of the two out"
-            )
+    if scene.geometry.file is not None:  # checked when it is read
         return
     try:
         sizing.check(scene.geometry, scene.mesh)

@@ -141,7 +141,7 @@ def assembled(
     """
     numerics = model.numerics
     if model.mesh_file is not None:
-        tagged = mesh.load(comm, meshfile.file(model.mesh_file, model.mesh_sha256))
+        tagged = mesh.load(comm, meshfile.file(model.mesh_file, model.mesh_sha256 or ""))
     else:
         build = partial(fingertip.build, model.geometry, model.mesh, model.options.receptors, half)
         tagged = mesh.load(comm, build, tags.LAYERS.values())

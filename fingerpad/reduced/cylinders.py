@@ -87,7 +87,7 @@ def fitted(scene: Scene) -> Footprint:
     source = "uncharged contact length interpolated between full runs of the default finger"
     if not FORCES[0] <= scene.f_ext <= FORCES[-1]:
         source = f"uncharged contact length extrapolated from full runs at {FORCES[0]:g} to {FORCES[-1]:g} N/m"
-    if scene.friction_law() != default.friction_law():
+    if scene.friction != default.friction:
         source += f"; that of full slip with a friction coefficient of {default.friction:g}"
     length = {state: float(_lengths(scene.f_ext, state)) for state in STATES}
     return Footprint(length, {state: int(_ridges(scene.f_ext, state)) for state in STATES}, False, source)
@@ -98,11 +98,6 @@ _default = cache(Scene)
 
 def _refuse_other(scene: Scene, default: Scene) -> None:
     """Refuse a finger other than the default one."""
-    if scene.laws.materials:
-        raise SceneError(
-            f"materials are given for {', '.join(scene.laws.materials)}, and a contact length is known of the default "
-            f"finger alone; {_ELSE}"
-        )
     for name in _SHAPING:
         if getattr(scene, name) != getattr(default, name):
             raise SceneError(f"{name} is not that of the default finger, whose contact length is known; {_ELSE}")

@@ -39,11 +39,8 @@ def outside(f_ext: float, voltage: float) -> bool:
 
 def changed(scene: Scene) -> list[str]:
     """Return the tables and keys of a scene that those runs have at their defaults, and the scene has not."""
-    default = Scene()
-    found = [] if scene.friction_law() == default.friction_law() else ["friction"]
-    found += [name for name in _TABLES if getattr(scene, name) != getattr(default, name)]
-    found += ["materials"] if scene.laws.materials and "materials" not in found else []
-    return found + ([] if scene.laws.closure is None else ["closure"])
+    given, default = scene.parameters(), Scene().parameters()
+    return [name for name in ("friction", *_TABLES) if given[name] != default[name]]
 
 
 def errors(model: str, scene: Scene) -> Bands:

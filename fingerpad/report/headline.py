@@ -7,6 +7,7 @@ from fingerpad.io.result import Result
 from fingerpad.io.states import LoadResult, called
 from fingerpad.report import page as html
 from fingerpad.report import trust
+from fingerpad.scene.laws import coefficient
 
 MARKS = {trust.GOOD: "✓ holds", trust.CARE: "! care", trust.BAD: "✗ fails"}
 """Verdicts as they are shown."""
@@ -48,8 +49,7 @@ def head(result: Result) -> str:
     elif slip is not None:
         value = cell("mu_app", slip.mu_app, slip.error.mu_app)
         number = f"µ<sub>app</sub> = {html.text(value)}"
-        given = result.record.get("parameters") or result.scene.parameters()
-        friction = result.scene.friction if "laws" not in given else None
+        friction = coefficient(result.scene)
         factor = f", {abs(slip.mu_app) / friction:.2f} times the {friction:.3g} without attraction" if friction else ""
         of = "of the section at the centre of the finger " if result.finger is not None else ""
         said = f"apparent friction coefficient {of}at full slip{factor}; {conditions(result)}"

@@ -133,7 +133,7 @@ def sweep(
             replace_json(place / "asked.json", scenes[name].parameters())
             start = time.monotonic()
             given = [str(place / "asked.json"), str(place), str(limit), model]
-            end = run("fingerpad.runs.batch", given, limit)
+            end = run("fingerpad.runs.batch", given, limit, scenes[name].law_folders())
             took.append(time.monotonic() - start)
             return end
 
@@ -166,9 +166,9 @@ def _one(scene: Path, folder: Path, model: str) -> None:
     from fingerpad.reduced.models import find
     from fingerpad.runs.context import RunContext
     from fingerpad.runs.solve import solved
-    from fingerpad.scene import SceneError, from_kept
+    from fingerpad.scene import SceneError, from_data
 
-    asked, way = from_kept(json.loads(scene.read_text(encoding="utf-8"))), find(model)
+    asked, way = from_data(json.loads(scene.read_text(encoding="utf-8"))), find(model)
     context = RunContext(folder, lines=way.path, bar=way.path, report=False)
     try:
         try:

@@ -66,7 +66,7 @@ def run(scene: Scene, context: RunContext) -> Result:
                 journal = Journal(comm, _checkpoint(scene, place.folder), context.resume)
             return _run(scene, Writer(place, comm), comm, console, journal, outputs)
     except GeometryError as error:
-        what = "the finger cannot be meshed" if scene.laws.mesh is None else "mesh"
+        what = "the finger cannot be meshed" if scene.geometry.file is None else "mesh"
         raise SceneError(f"{what}: {error}") from error
 
 

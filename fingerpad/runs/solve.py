@@ -3,7 +3,7 @@
 import os
 import signal
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -25,9 +25,6 @@ from variational.coefficients import LawError
 
 if TYPE_CHECKING:
     from fingerpad.startup import MPI
-    from variational.contact.friction import Friction
-    from variational.materials.material import Material
-    from variational.roughness.closure import Closure
 
 
 def run(
@@ -35,10 +32,6 @@ def run(
     *,
     out: str | Path | None = None,
     model: str = DEFAULT_MODEL,
-    closure: "Closure | None" = None,
-    materials: "Mapping[str, Material] | None" = None,
-    friction: "Friction | float | None" = None,
-    mesh: str | Path | None = None,
     comm: "MPI.Comm | None" = None,
     resume: bool = False,
     outputs: Sequence[Output] = (),
@@ -50,10 +43,6 @@ def run(
         out: folder for tables, pictures, fields and ``summary.json``; without it nothing is written.
         model: a name of :data:`fingerpad.reduced.models.MODELS`: ``"full"``, every ridge along the whole path
             (minutes); ``"cylinders"``, a closed form (at once).
-        closure: microscale model in place of the bearing area model, see :mod:`variational.roughness.closure`.
-        materials: materials by layer (``{"dermis": NeoHooke(2.5e3)}``), see :mod:`variational.materials.material`.
-        friction: friction law, see :mod:`variational.contact.friction`.
-        mesh: file of a gmsh mesh in place of the finger's own, see :mod:`geometry.meshfile`.
         comm: communicator; by default of all ranks.
         resume: go on from where a run of the same scene in ``out`` was cut short; only of the full model.
         outputs: further quantities, each computed from every state: see :class:`fingerpad.io.quantities.Output`.
@@ -69,8 +58,6 @@ def run(
     scene, way = checked(scene), find(model)
     if out is not None and not isinstance(out, str | os.PathLike):
         raise SceneError(f"out is {show(out)}; it must be the path of a folder")
-    if closure is not None or materials or friction is not None or mesh is not None:
-        scene = scene.with_laws(closure=closure, materials=materials, friction=friction, mesh=mesh)
     if resume and (out is None or not way.resumes):
         raise SceneError(
             f"resume is true, out is {show(out)} and model {show(model)}; only a full run in a folder can go on"
@@ -114,7 +101,9 @@ def solved(scene: Scene, model: Model, context: RunContext) -> Result:
         context: all else.
     """
     checked_outputs(context.outputs)
-    scene.laws.refuse_kept()
+    scene = scene.resolved()
+    if context.resume:
+        scene.refuse_laws_of_program("a run that goes on")
     try:
         result = _solved(scene, model, context) if scene.force is None else _whole(scene, model, context)
     except LawError as error:
@@ -148,14 +137,14 @@ def _solved(scene: Scene, model: Model, context: RunContext) -> Result:
 def _refuse_different(scene: Scene, comm: "MPI.Comm | Serial") -> None:
     """Refuse scenes that differ from rank to rank, whose solves would wait for each other for ever; collective.
 
-    Laws of one's own are left out: those without a source are another one in each process.
+    Hashes of laws are left out: those without a file are another one in each process.
 
     Raises:
         SceneError: the first key that differs, on every rank.
     """
     if isinstance(comm, Serial):
         return
-    first, *others = comm.allgather({k: v for k, v in flat(scene.parameters()).items() if not k.startswith("laws.")})
+    first, *others = comm.allgather({k: v for k, v in flat(scene.parameters()).items() if not k.endswith(".sha256")})
     for rank, other in enumerate(others, start=1):
         for key in sorted(first.keys() | other.keys()):
             if (one := first.get(key)) != (two := other.get(key)):

@@ -61,8 +61,8 @@ def sweep(
             With ``force`` tables and arrays are of the whole finger.
 
     Raises:
-        SceneError: a key or a value that a scene cannot have, no values, a scene with laws of its own, which other
-            processes cannot be given, more than one rank of MPI, or a folder that holds a run.
+        SceneError: a key or a value that a scene cannot have, no values, a law that only this program knows and other
+            processes cannot import, more than one rank of MPI, or a folder that holds a run.
         KeyboardInterrupt: Ctrl-C, after the present step of each running point; the same sweep goes on from there.
         SystemExit: SIGTERM or SIGHUP, likewise.
     """
@@ -74,9 +74,12 @@ def sweep(
     if not isinstance(out, str | os.PathLike):
         raise SceneError(f"out is {show(out)}; it must be the path of a folder")
     checked_outputs(outputs)
-    _refuse_axes(scene, axes)
+    _refuse_axes(axes)
+    scene = scene.resolved()
     scenes = _scenes(scene, axes)
     values = _values(scenes, axes)
+    for each in scenes if way.meshes else ():
+        each.refuse_laws_of_program("the processes of a sweep")
     folder = Path(out)
     _claim(folder)
     points = [_Point(*each) for each in zip(scenes, _points(values), strict=True)]
@@ -129,7 +132,7 @@ def _scenes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> list[Scene]:
     return [_with(scene, point) for point in _points(axes)]
 
 
-def _refuse_axes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> None:
+def _refuse_axes(axes: Mapping[str, Sequence[Any]]) -> None:
     """Refuse a sweep over what cannot be one."""
     if not axes:
         raise SceneError("the sweep has no axis; give values of at least one key, such as voltage=[0, 100, 200]")
@@ -143,11 +146,6 @@ def _refuse_axes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> None:
             raise SceneError(
                 f"{key} of the sweep is {show(values)}; it must be a list of at least one value, none a list"
             )
-    scene.laws.refuse_kept()
-    if scene.parameters().get("laws", {}).keys() - {"mesh"}:
-        raise SceneError(
-            "the scene has laws of its own, which the processes of a sweep cannot be given; call run for each point"
-        )
     count = int(np.prod([len(values) for values in axes.values()]))
     if count > _MOST:
         raise SceneError(f"the sweep has {count} points; at most {_MOST} are allowed")

@@ -33,7 +33,7 @@ def with_newtons(result: Result) -> Result:
     Args:
         result: of a scene without a history of its own.
     """
-    if result.scene.history is not None or result.scene.laws.mesh is not None or not result.named:
+    if result.scene.history is not None or result.scene.geometry.file is not None or not result.named:
         return result
     try:
         states = [state for state in result.steps if state.load == "press"]
