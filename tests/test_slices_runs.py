@@ -258,7 +258,6 @@ def test_folder_of_other_results_is_refused_before_the_work(tmp_path, monkeypatc
     [
         ({"f_ext": "50 N/m"}, "force is 0.5 N and f_ext is 50 N/m; give one of the two"),
         ({"history": [{"name": "press", "f_ext": 1.0}]}, "force is 0.5 N and history is given; a force on the whole"),
-        ({"geometry": {"file": "mine.msh"}}, "force is 0.5 N and geometry.file is 'mine.msh'; a force on the whole"),
     ],
 )
 def test_force_is_exclusive(other, words):

@@ -189,8 +189,7 @@ def _of_finger(run: Result, finger: WholeFinger, table: Measured) -> dict[str, f
 
 def _of_sweep(sweep: Table, table: Measured) -> pd.DataFrame:
     """Return the values in the table of a sweep."""
-    force = "force" if table.whole else "f_ext"
-    keys, fixed = {"force": force, "voltage": "voltage"}, sweep.parameters or {}
+    keys, fixed = {"force": "force" if table.whole else "f_ext", "voltage": "voltage"}, sweep.parameters or {}
     if not set(sweep.axes) <= set(keys.values()) <= {*sweep.axes, *fixed}:
         raise SceneError(
             f"{_place(sweep)} is over {', '.join(sweep.axes)}, and {table.name} has forces in {table.force_unit}; "

@@ -100,8 +100,7 @@ def model_of(path: Path | None) -> str:
 
 def _of_run(path: Path) -> dict[str, Any]:
     """Return the data of the scene of a run's folder."""
-    name, data = f"scene file {clip(str(path), _PATH)}", _kept(path)
-    return {key: value for key, value in data.items() if key != "model"}
+    return {key: value for key, value in _kept(path).items() if key != "model"}
 
 
 def _kept(path: Path) -> dict[str, Any]:
