@@ -84,7 +84,7 @@ def by_python(values: dict[str, float]) -> dict[str, float] | str:
     except SceneError as error:
         return str(error)
     assert found.full_slip is not None
-    more = {key: found.record[f"slip_{key}"] for key in ("p_c", "d_eq")}
+    more = {key: found.record[f"full_slip_{key}"] for key in ("p_c", "d_eq")}
     return {key: getattr(found.full_slip, key) for key in NUMBERS} | more
 
 

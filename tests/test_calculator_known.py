@@ -12,7 +12,7 @@ from fingerpad.scene import Scene
 from tests.browser import asked
 from tests.commands import kept
 
-BANDS = known.KNOWN_ERROR["cylinders"]["full_slip"]
+BANDS = known.KNOWN_ERROR["full_slip"]
 # Sets values into fields; returns what the page shows of its error.
 SHOWN = """
 function shown(values) {

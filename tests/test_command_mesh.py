@@ -35,12 +35,12 @@ def test_rule_of_the_cost_is_that_of_kept_runs():
     """Shares, factors and time are the default run's of docs/chart.json, times those of docs/performance.json."""
     points = {point["label"]: point for point in kept("chart.json")["points"]}
     work = points["default"]["work"]
-    slip, charged, pressed = work["slip"], work["normal"], work["uncharged"]
+    slip, charged, pressed = work["full_slip"], work["charged"], work["uncharged"]
     shares = {"force": pressed / slip, "voltage": (charged - pressed) / slip, "slide": (slip - charged) / slip}
     assert cost.SHARES == pytest.approx(shares, abs=0.01)
-    at_10_um = points["10 µm"]["work"]["slip"]
+    at_10_um = points["10 µm"]["work"]["full_slip"]
     for name, label in (("nitsche", "Nitsche, γ_0 = 1"), ("augmented", "augmented Lagrangian")):
-        assert cost.FORMULATIONS[name] == pytest.approx(points[label]["work"]["slip"] / at_10_um, rel=0.01)
+        assert cost.FORMULATIONS[name] == pytest.approx(points[label]["work"]["full_slip"] / at_10_um, rel=0.01)
     run, operations = (kept("performance.json")[name]["found"] for name in ("run", "operations"))
     path = sum(run["path"].values())
     unknowns = next(each["unknowns"] for each in operations if each["factor"] == 1.0)

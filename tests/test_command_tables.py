@@ -86,7 +86,7 @@ def test_colours_of_voltages_go_up_to_the_largest_amount(command, voltages, tmp_
         ("estimate --csv nowhere/mu.csv", "its folder is not there"),
         ("estimate --plot same.png --csv same.png", "same.png is given twice, once to be written;"),
         ("estimate demos/scenes/unload.toml", "history is given; the model 'cylinders' answers for press, charge and"),
-        ("microscale --p 0:1e5:3", "--p has the value 0.0;"),
+        ("microscale --p 0:1e5:3", "--p: 0.0 is not allowed; it must be greater than 0"),
         ("microscale demos/scenes/sine_while_sliding.toml", "name those wanted by --voltage"),
         ("params zebra", "no key of a scene has zebra in its name"),
         ("compare --ridges 3", "one of --contact-length and --ridges is given without the other"),
@@ -199,7 +199,7 @@ def test_sweep_prints_and_keeps_a_table(tmp_path, capsys):
     with (tmp_path / "table.csv").open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
     assert [float(row["voltage"]) for row in rows] == [0.0, 200.0]
-    assert float(rows[0]["slip_mu_app"]) == pytest.approx(0.25, rel=1e-12)
+    assert float(rows[0]["full_slip_mu_app"]) == pytest.approx(0.25, rel=1e-12)
 
 
 @pytest.mark.parametrize(

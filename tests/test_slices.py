@@ -40,7 +40,7 @@ def kept(voltage: float, model: str = "full") -> Trace:
     for f_ext in (5.0, 10.0, 25.0, 50.0, 75.0, 100.0, 120.0, 150.0):
         found = scenes[f"{f_ext:g} N/m, {voltage:g} V"][model]["summary"]
         names = ("f_t", "bone_height", "f_electrostatic", "ridges_in_contact", "contact_length", "f_contact", "mu_app")
-        values = {name: found[f"slip_{name}"] for name in names}
+        values = {name: found[f"full_slip_{name}"] for name in names}
         states.append(ContactState(f_ext=f_ext, voltage=voltage, **values))
     return trace(states, Scene().geometry.ridge_wavelength)
 

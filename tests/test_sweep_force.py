@@ -51,7 +51,7 @@ def test_table_text_and_dataset_are_of_the_whole_finger(found):
     with (found.folder / "table.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert not [key for key in rows[0] if re.match(r"(slip|normal|uncharged)_(?!finger_)", key)]
-    assert float(rows[4]["slip_finger_f_t"]) == found.array("f_t")[1, 1]
+    assert float(rows[4]["full_slip_finger_f_t"]) == found.array("f_t")[1, 1]
     title, heads, *lines = str(found).splitlines()
     assert title == "Whole finger, at full slip" and heads.split()[2:7] == ["force", "(N)", "µ_app", "F_T", "(N)"]
     assert lines[4].split()[:2] == ["200", "0.2"] and found[4].finger.shown("full_slip", "f_t") in lines[4]
@@ -135,7 +135,7 @@ def test_command_and_measurements(tmp_path, capsys):
     table.write_text("# source: X 2020\nforce (mN), friction force (N)\n100, 0.09\n200, 0.15\n", encoding="utf-8")
     assert main(["compare-data", str(table), "--sweep", str(out), "--csv", str(tmp_path / "both.csv")]) == 0
     with (out / "table.csv").open(encoding="utf-8", newline="") as file:
-        low, high = (float(row["slip_finger_f_t"]) for row in csv.DictReader(file))
+        low, high = (float(row["full_slip_finger_f_t"]) for row in csv.DictReader(file))
     with (tmp_path / "both.csv").open(encoding="utf-8", newline="") as file:
         ours = [float(row["computed"]) for row in csv.DictReader(file)]
     assert ours == pytest.approx([low, np.sqrt(low * high)], rel=1e-9)

@@ -106,7 +106,7 @@ def _in_unit(value: float, per: float) -> float:
 
 def data() -> dict[str, Any]:
     """Return all numbers that the page has from Python, ready for JSON; SI units but for those of the fields."""
-    scene, error = Scene(), KNOWN_ERROR[cylinders.Cylinders.name]["full_slip"]
+    scene, error = Scene(), KNOWN_ERROR["full_slip"]
     nodes, weights = (each.tolist() for each in leggauss(scene.slices.count))
     return {
         "fields": [asdict(field) for field in (*fields(), *contact())],

@@ -123,7 +123,7 @@ def _row(found: Result) -> dict[str, Any]:
 
 def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
     """Return what is known of the error of these rows."""
-    bands = known.KNOWN_ERROR[cylinders.Cylinders.name]["full_slip"]
+    bands = known.KNOWN_ERROR["full_slip"]
     mu, length, pull = (f"within {100 * bands[key]:.1f} %" for key in ("mu_app", "contact_length", "f_electrostatic"))
     runs = f"{known.KNOWN_RUNS} full runs at {known.where()}"
     of = "" if "force" not in rows[0] else " of the section"

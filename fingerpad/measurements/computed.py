@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from fingerpad.io.result import Result
-from fingerpad.io.states import PREFIXES, WORDS, before_sliding
+from fingerpad.io.states import WORDS, before_sliding
 from fingerpad.measurements.one_scene import folder, refuse_mixed
 from fingerpad.measurements.table import Measured
 from fingerpad.report.source import Table
@@ -196,7 +196,7 @@ def _of_sweep(sweep: Table, table: Measured) -> pd.DataFrame:
             f"give one over {keys['force']} and voltage alone, or runs"
         )
     rows = pd.DataFrame(sweep.rows)
-    column = f"{PREFIXES[table.state]}_{'finger_' if table.whole else ''}{table.key}"
+    column = f"{table.state}_{'finger_' if table.whole else ''}{table.key}"
     if column not in rows:
         raise SceneError(
             f"the table of the sweep has no {table.quantity} of {WORDS[table.state]}, which {table.name} has; "

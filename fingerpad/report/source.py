@@ -15,7 +15,7 @@ from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.messages import clip
 from fingerpad.scene.reading import DEFAULT_MODEL
 
-_RESULTS = ("uncharged_", "normal_", "slip_", "load_")
+_RESULTS = ("uncharged_", "charged_", "full_slip_", "load_")
 
 
 @dataclass(frozen=True)

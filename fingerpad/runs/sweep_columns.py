@@ -12,7 +12,7 @@ from typing import Any
 
 from fingerpad.io.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell
 from fingerpad.io.result import Result
-from fingerpad.io.states import PREFIXES, STATES, LoadResult
+from fingerpad.io.states import STATES, LoadResult
 from fingerpad.scene.keys import Key, every
 from fingerpad.slices.finger import WholeFinger
 
@@ -29,7 +29,7 @@ def row(result: Result) -> dict[str, Any]:
     if result.scene.force is not None:
         return (_newtons(result.finger) if result.finger is not None else {}) | {"failure": result.failure}
     values, keys = result.values(), (*SWEPT, *(each.name for each in result.outputs))
-    names = [f"{PREFIXES[state]}_{key}" for state in STATES for key in keys]
+    names = [f"{state}_{key}" for state in STATES for key in keys]
     cells = {key: values.get(key) for name in names for key in (name, f"{name}_error") if key in values}
     if result.finger is not None:
         cells |= _newtons(result.finger)
@@ -79,7 +79,7 @@ def shown(columns: Iterable[str], whole: bool, outputs: Iterable[Output] = ()) -
     """
     if not whole:
         known = {key: QUANTITIES[key] for key in SWEPT} | {each.name: each for each in outputs}
-        return "full_slip", {f"{PREFIXES['full_slip']}_{key}": each for key, each in known.items()}
+        return "full_slip", {f"full_slip_{key}": each for key, each in known.items()}
     there = set(columns)
     state = next((name for name in reversed(STATES) if _of_finger(name, "contact_area") in there), "full_slip")
     keys = [key for key in _WHOLE if state == "full_slip" or key not in FRICTION]
@@ -88,7 +88,7 @@ def shown(columns: Iterable[str], whole: bool, outputs: Iterable[Output] = ()) -
 
 def _of_finger(state: str, key: str) -> str:
     """Return the column of a quantity of the whole finger."""
-    return f"{PREFIXES[state]}_finger_{key}"
+    return f"{state}_finger_{key}"
 
 
 def newtons_of(result: Result) -> str:
