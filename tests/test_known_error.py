@@ -3,7 +3,6 @@
 import pytest
 
 from fingerpad.io.result import Result
-from fingerpad.io.states import PREFIXES
 from fingerpad.reduced import cylinders, known
 from fingerpad.report import trust
 from fingerpad.scene import Scene, from_data
@@ -23,7 +22,7 @@ def test_known_error_is_that_of_the_kept_runs():
     assert set(known.KNOWN_ERROR) == {"full_slip", "charged"}
     for state, bands in known.KNOWN_ERROR.items():
         for key, largest in bands.items():
-            name = f"{PREFIXES[state]}_{key}"
+            name = f"{state}_{key}"
             pairs = [(each["cylinders"]["summary"][name], each["full"]["summary"][name]) for each in runs.values()]
             worst = max(abs(ours / full - 1) for ours, full in pairs if full)
             assert worst <= largest < worst + 1e-3, name
