@@ -58,7 +58,7 @@ def run(scene: Scene, context: RunContext) -> Result:
     try:
         with context.console() as console, context.place(scene, DEFAULT_MODEL) as place:
             journal = None
-            if place is not None and context.asked is None:
+            if place is not None:
                 journal = Journal(comm, _checkpoint(scene, place.folder), context.resume)
             writer, clock, interrupt = Writer(place, comm), Clock(comm), Interrupt(comm)
             return _run(scene, Session(comm, writer, console, clock, interrupt, journal, outputs))
