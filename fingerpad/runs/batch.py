@@ -21,7 +21,7 @@ from typing import Any
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from fingerpad.io.files import below, lock_file, read_object, replace_json
-from fingerpad.io.left import between
+from fingerpad.io.pace import between
 from fingerpad.io.place import identity
 from fingerpad.io.terminal import watched
 from fingerpad.runs.processes import End, Pool, limit_processor_time, run
