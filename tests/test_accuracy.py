@@ -13,8 +13,8 @@ from fingerpad.accuracy import solves
 from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.accuracy.rigid_screen import ORDER
 from fingerpad.accuracy.solves import Solve, State
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.touching import by_rule
 from fingerpad.richardson import MORE, ONCE
 from fingerpad.scene import from_data
 from tests.runs import run

@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 from mpi4py import MPI
 
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import by_rule
 from fingerpad.scene import from_data
 from geometry.bodies import block
 from geometry.mesh import load

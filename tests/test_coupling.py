@@ -13,9 +13,9 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import by_rule
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene, from_data

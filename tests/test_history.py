@@ -8,9 +8,9 @@ import ufl
 from dolfinx import fem
 from mpi4py import MPI
 
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import by_rule
 from fingerpad.scene import Scene
 from geometry.bodies import ridge
 from geometry.mesh import load

@@ -5,10 +5,10 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.accuracy.solves import StateRecorder
-from fingerpad.model import balance, full_slip
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import by_rule
+from fingerpad.model.stability import FullSlip
 from fingerpad.scene import from_data
 from tests.small_finger import small
 
@@ -42,7 +42,7 @@ def test_lengths_by_ridge_are_the_length(path):
 
 def test_slip_that_is_never_steady_ends_with_the_slide(monkeypatch):
     """The bone never goes back to where the slide should have ended."""
-    monkeypatch.setattr(balance, "_STEADY", -1.0)
+    monkeypatch.setattr("fingerpad.model.state._STEADY", -1.0)
     scene, places = from_data(SCENE | {"slide_length": 0.9e-3}), []
     simulation = Simulation(
         FingerModel(scene, plan(scene)), MPI.COMM_WORLD, lambda step, done: places.append(step.state.bone_x)
@@ -84,10 +84,8 @@ def test_slide_of_no_length_is_none():
 def test_time_goes_on_where_full_slip_is_not_steady_at_once(monkeypatch):
     """The slide goes on from where it is, and so does its time, at the speed of the bone."""
     steady = iter([False])
-    slides_on = full_slip.FullSlip.slides_on
-    monkeypatch.setattr(
-        full_slip.FullSlip, "slides_on", lambda self, *args: slides_on(self, *args) and next(steady, True)
-    )
+    slides_on = FullSlip.slides_on
+    monkeypatch.setattr(FullSlip, "slides_on", lambda self, *args: slides_on(self, *args) and next(steady, True))
     slide = {"name": "slide", "bone_x": 1e-3, "speed": 0.02, "until_full_slip": True}
     scene = small().replace(history=[{"name": "press", "f_ext": 1.0}, slide])
     simulation = Simulation(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_WORLD)
@@ -118,4 +116,4 @@ def test_force_of_full_slip_is_as_steady_as_its_gaps(formulation, change, steady
     finger = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD).finger
     finger.coupling.set_air_gaps(np.full(len(finger.ridges), 1.5e-6))
     finger.continuation = Slid(finger.solver, change)
-    assert full_slip.FullSlip(finger).slides_on("slide", 1) is steady
+    assert FullSlip(finger).slides_on("slide", 1) is steady
