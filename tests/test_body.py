@@ -46,7 +46,7 @@ def _slid(ranks: int) -> Body:
         ({"shape": 3}, "shape is 3; it must be a shape of fingerpad.geometry, a mesh, or a file of one"),
         ({"element": "P7"}, "element is 'P7'; it must be one of P1, P2"),
         ({"element": ["P1"]}, "element is .*; it must be one of P1, P2"),
-        ({"contact": 3}, "contact is 3; it must be a Penalty, a Nitsche or an AugmentedLagrangian"),
+        ({"contact": 3}, "contact is 3; it must be a Formulation"),
         ({"h_0": -1.0}, "h_0 is -1.0; it must be a finite number greater than 0"),
         ({"force_scale": True}, "force_scale is True; it must be"),
         ({"force_scale": -1.0}, "force_scale is -1.0; it must be a finite number greater than 0"),
