@@ -18,7 +18,6 @@ from fingerpad.cli import run as command
 from fingerpad.io.checkpoint import Checkpoint, CheckpointError
 from fingerpad.io.drawing import Drawing
 from fingerpad.io.writing import Writer
-from fingerpad.model.journal import Journal
 from fingerpad.model.simulation import Simulation
 from fingerpad.runs.batch import key, sweep
 from fingerpad.scene import SceneError
@@ -185,6 +184,7 @@ def test_kill_9(undisturbed, tmp_path, kind, number):
     assert lines((out / "summary.json").read_text(encoding="utf-8")) == lines(summary)
 
 
+@pytest.mark.mpi
 def test_on_another_number_of_ranks(tmp_path, killed_at):
     """Begun on one rank and finished on all; to 1e-8 the numbers of one rank."""
     comm = MPI.COMM_WORLD
@@ -285,19 +285,28 @@ def test_refused_options(tmp_path):
             command.main(["--resume", str(tmp_path)])
 
 
-def test_a_run_without_a_folder_keeps_nothing(monkeypatch):
-    """Its solves use the factorisations that they would always use."""
-    monkeypatch.setattr(Journal, "__init__", lambda *args: pytest.fail("a journal"))
-    fp.run(scene(history="charged at rest").replace(history=[PRESS]))
+def test_numbers_do_not_depend_on_the_folder(tmp_path, monkeypatch):
+    """To the last bit on one rank: the solver forgets at the same places. Without a folder nothing is kept."""
+    inside = fp.run(scene(), out=tmp_path)
+    monkeypatch.setattr(Checkpoint, "write", lambda *args: pytest.fail("a checkpoint"))
+    outside = fp.run(scene())
+    assert outside.values() == inside.values()
+    rows = [
+        [{k: v for k, v in state.row().items() if "seconds" not in k} for state in found.steps]
+        for found in (inside, outside)
+    ]
+    assert str(rows[0]) == str(rows[1])
 
 
 def test_checkpoint_of_another_mesh(cut_short, monkeypatch):
     """As by another version of gmsh: the places are compared, not trusted."""
     read = Checkpoint.read
 
-    def elsewhere(self, number):
-        facts, arrays = read(self, number)
-        return facts, {k: v + 1e-6 * k.startswith("body/") for k, v in arrays.items()}
+    def elsewhere(self, classes):
+        kept = read(self, classes)
+        places = kept["simulation"]["paths"]["finger"]["places"]
+        places["unknowns"] = places["unknowns"] + 1e-6
+        return kept
 
     monkeypatch.setattr(Checkpoint, "read", elsewhere)
     with pytest.raises(CheckpointError, match="of another mesh"):
@@ -308,10 +317,10 @@ def test_full_disk_under_the_checkpoint(tmp_path, monkeypatch):
     """What is there stays whole, and the run goes on from it when there is room."""
     write = Checkpoint.write
 
-    def full(self, number, facts, arrays):
-        if number == 3:
+    def full(self, state):
+        if self.number == 2:
             raise OSError(28, "No space left on device")
-        write(self, number, facts, arrays)
+        write(self, state)
 
     monkeypatch.setattr(Checkpoint, "write", full)
     with pytest.raises(OSError, match="fingerpad run --resume FOLDER goes on when there is room"):

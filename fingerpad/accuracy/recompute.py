@@ -4,6 +4,7 @@ import math
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -105,6 +106,14 @@ class StateRecorder:
             self._begun = self._state(1 if state.f_t >= 0 else -1)
         if state.slip_held and self._begun is not None:
             self.states["full_slip"] = self._begun
+
+    def kept(self) -> dict[str, Any]:
+        """Return what another process needs to go on with the path."""
+        return {"states": self.states, "begun": self._begun}
+
+    def resume(self, kept: Mapping[str, Any]) -> None:
+        """Go on from what another process kept."""
+        self.states, self._begun = kept["states"], kept["begun"]
 
     def keep(self, name: str) -> None:
         """Keep the present state; collective."""

@@ -4,22 +4,23 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from fingerpad.accuracy.recompute import StateRecorder
+from fingerpad.accuracy.recompute import State, StateRecorder
 from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.io import petsc_options
+from fingerpad.io.checkpoint import Checkpoint, CheckpointError
 from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt, Interrupted
 from fingerpad.io.left import in_words
 from fingerpad.io.over_time import NOTE, long_steps
 from fingerpad.io.provenance import provenance
 from fingerpad.io.result import Result
+from fingerpad.io.views import Profile
 from fingerpad.io.writing import Writer
 from fingerpad.model import cautions
 from fingerpad.model.balance import broken, force_error
 from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Step
 from fingerpad.model.hints import finer_mesh_may_help, hint
-from fingerpad.model.journal import Journal
 from fingerpad.model.memory import refuse_beyond
 from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Report
@@ -31,10 +32,44 @@ from fingerpad.scene.remarks import leakage, remarks
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
+from variational.solvers.checkpoint import OtherBody
 from variational.solvers.continuation import StepFailed
+from variational.solvers.equations import Control
+from variational.solvers.target import Progress
+from variational.solvers.timing import Counts
+from variational.solvers.transfer import SkinState, StateSnapshot
+from variational.state import ContactState, Errors, RidgeStates, StepRecord
 
+STEPS = 5
+"""Accepted steps from one checkpoint to the next, at most; there is one at the end of each load."""
 FINEST = 5e-6
 """Contact size (m) down to which a run starts again by itself where the path of its loads cannot be followed."""
+
+_KEPT = (
+    *(ContactState, RidgeStates, StepRecord, Errors, Profile, Control, Counts, Progress),
+    *(State, StateSnapshot, SkinState),
+)
+"""Classes of what a checkpoint holds."""
+
+
+def read(checkpoint: Checkpoint, comm: MPI.Comm) -> dict[str, Any]:
+    """Return what the last checkpoint holds, on every rank; collective.
+
+    Raises:
+        CheckpointError: a run cannot go on from there; on every rank.
+    """
+    kept: dict[str, Any] | CheckpointError | None = None
+    if comm.rank == 0:
+        try:
+            checkpoint.check()
+            kept = checkpoint.read(_KEPT)
+        except CheckpointError as error:
+            kept = error
+    kept = comm.bcast(kept)
+    if isinstance(kept, CheckpointError):
+        raise kept
+    assert kept is not None
+    return kept
 
 
 class Attempt:
@@ -53,28 +88,33 @@ class Attempt:
         console: Console,
         clock: Clock,
         interrupt: Interrupt,
-        journal: Journal | None = None,
+        restarts: Restarts,
+        checkpoint: Checkpoint | None = None,
     ) -> None:
         """Mesh the finger; collective."""
-        self._model, self._journal = model, journal
+        self._model, self._checkpoint, self._restarts = model, checkpoint, restarts
         self._comm, self._interrupt = comm, interrupt
         self._writer, self._console, self._clock = writer, console, clock
         console.phase("meshing the finger and setting up its equations")
         with clock.phase("setup"):
-            self.simulation = Simulation(model, comm, self._on_step, self._on_load, journal)
-        self.report = Report(self.simulation, model.omitted, writer, console, clock)
+            self.simulation = Simulation(model, comm, self._on_step, self._on_load)
+        loads = [load.name for load in model.loads]
+        self.report = Report(self.simulation, model.omitted, loads, writer, console, clock)
         self._recorder = StateRecorder(self.simulation) if model.options.errors else None
         self._refinement: Refinement | None = None
         self._ended: dict[str, str] = {}
+        self._has_kept = False  # whether there is a checkpoint
         self._solves = 0  # for the error estimate
+        self._steps, self._done = 0, 0.0  # accepted since the last checkpoint; part of the history that is done
 
     def _on_step(self, step: Step, done: float) -> None:
         petsc_options.refuse_unread()
         self.report.step(step, done)
         if self._recorder is not None:
             self._recorder.record(step)
-        if self._journal is not None:
-            self._journal.accepted(self._clock.present())
+        self._steps, self._done = self._steps + 1, done
+        if self._steps >= STEPS:
+            self._keep()
         self._interrupt.stop_if_asked(step.state.step, self._kept())
 
     def _kept(self) -> str:
@@ -82,15 +122,52 @@ class Attempt:
         if self._writer.folder is None:
             return ""
         steps = "every accepted step is in the folder of results"
-        if self._journal is None:
+        if self._checkpoint is None:
             return steps
         resumes = "fingerpad run --resume FOLDER goes on from there"
-        return f"{steps}, and {resumes if self._journal.parts else 'the same command starts again'}"
+        return f"{steps}, and {resumes if self._has_kept else 'the same command starts again'}"
 
     def _on_load(self) -> None:
         self.report.load_reached()
-        if self._journal is not None:
-            self._journal.keep(self._clock.present())
+        self._keep()
+
+    def _keep(self) -> None:
+        """Have the next solve use nothing but the accepted state, and keep that if there is a folder; collective."""
+        self.simulation.forget()
+        self._steps = 0
+        if self._checkpoint is None:
+            return
+        with self._clock.phase("output"):
+            recorder = None if self._recorder is None else self._recorder.kept()
+            state = {
+                "simulation": self.simulation.kept(),
+                "report": self.report.kept(),
+                "recorder": recorder,
+                "restarts": self._restarts.kept(),
+                "mesh": self._model.mesh.model_dump(),
+                "both_halves": self._model.options.both_halves,
+                "done": self._done,
+                "seconds": self._clock.present(),
+            }
+            if self._comm.rank == 0:
+                self._checkpoint.write(state)
+        self._has_kept = True
+
+    def resume(self, kept: dict[str, Any]) -> None:
+        """Go on from a checkpoint, as :func:`read` gives it; collective.
+
+        Raises:
+            CheckpointError: it is of another mesh.
+        """
+        self._has_kept, self._done = True, kept["done"]
+        try:
+            self.simulation.resume(kept["simulation"], [*kept["report"]["states"]])
+        except OtherBody as error:
+            raise CheckpointError(f"the checkpoint is of another mesh: {error}") from error
+        places = kept["simulation"]["paths"]["finger"]["places"]
+        self.report.resume(kept["report"], places, self._done)
+        if self._recorder is not None:
+            self._recorder.resume(kept["recorder"])
 
     def _before_solve(self) -> None:
         """Stop if asked to, or tell how far the error estimate is."""

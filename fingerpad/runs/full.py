@@ -19,15 +19,15 @@ from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
 from fingerpad.model import expected
 from fingerpad.model.cost import Clock
-from fingerpad.model.journal import Journal
 from fingerpad.model.memory import estimate
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.touching import by_rule
-from fingerpad.runs.attempt import Attempt
+from fingerpad.runs.attempt import Attempt, read
 from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import coefficient
 from fingerpad.startup import MPI
+from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError
 
 
@@ -73,10 +73,11 @@ def run(
     console = Console(comm, lines, bar)
     try:
         with nullcontext() if folder is None else Place(folder, scene.parameters(), comm, asked=asked) as place:
-            journal = None
+            checkpoint = None
             if place is not None and asked is None:
-                journal = Journal(comm, _checkpoint(scene, place.folder), resume)
-            return _run(scene, Writer(place, comm), comm, console, journal)
+                checkpoint = _checkpoint(scene, place.folder)
+            kept = read(checkpoint, comm) if resume and checkpoint is not None else None
+            return _run(scene, Writer(place, comm), comm, console, checkpoint, kept)
     except GeometryError as error:
         what = "the finger cannot be meshed" if scene.laws.mesh is None else "mesh"
         raise SceneError(f"{what}: {error}") from error
@@ -90,23 +91,36 @@ def _checkpoint(scene: Scene, folder: Path) -> Checkpoint:
     return Checkpoint(folder, scene.parameters(), {"source": versions["source"], "dolfinx": versions["dolfinx"]})
 
 
-def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console, journal: Journal | None) -> Result:
-    """Run a scene until nothing must be added to its model."""
+def _run(
+    scene: Scene,
+    writer: Writer,
+    comm: MPI.Comm,
+    console: Console,
+    checkpoint: Checkpoint | None,
+    kept: dict[str, Any] | None,
+) -> Result:
+    """Run a scene until nothing must be added to its model; go on from what an earlier run kept, if it did."""
     writer.log.info("scene %s", json.dumps(scene.parameters()))
     clock, restarts = Clock(comm), Restarts(writer.log, console)
-    if journal is not None:
-        clock.earlier(*journal.seconds)
-        if journal.parts:
-            writer.log.info("takes over what an earlier run solved, %d parts of its checkpoint", journal.parts)
-            console.show(f"fingerpad: going on with a run of {journal.seconds[0]:.0f} s; its steps are listed again")
     model = FingerModel(by_rule(scene), plan(scene))
+    if kept is not None:
+        clock.earlier(*kept["seconds"])
+        restarts.resume(kept["restarts"])
+        more = kept["both_halves"] and not model.options.both_halves
+        options = model.options.with_both_halves() if more else model.options
+        model = model.changed(mesh=MeshSize(**kept["mesh"]), options=options)
+        writer.log.info("goes on after step %d of an earlier run", len(kept["report"]["states"]))
+        console.show(f"fingerpad: going on with a run of {kept['seconds'][0]:.0f} s; its steps are listed again")
     try:
         with Interrupt(comm) as interrupt:
             while True:
                 _expect(scene, model, comm, console)
-                attempt = Attempt(model, comm, writer, console, clock, interrupt, journal)
+                attempt = Attempt(model, comm, writer, console, clock, interrupt, restarts, checkpoint)
                 if model.mesh_file is not None:
                     _expect(scene, model, comm, console, attempt.simulation.finger.unknowns)
+                if kept is not None:
+                    attempt.resume(kept)
+                    kept = None
                 restart = attempt.follow()
                 if restart is None:
                     break
@@ -116,8 +130,8 @@ def _run(scene: Scene, writer: Writer, comm: MPI.Comm, console: Console, journal
             result = attempt.result(scene, restarts)
             console.show(f"\n{result}\n{_work(result)}")
             writer.close()
-            if journal is not None and not result.interrupted:
-                journal.end()
+            if checkpoint is not None and comm.rank == 0 and not result.interrupted:
+                checkpoint.delete()
             return result
     except BaseException as error:
         # On more ranks than this, or not: what waits for the others would never return.

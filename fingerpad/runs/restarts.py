@@ -1,7 +1,7 @@
 """Restarts of a run: all loads again, since an omitted part of the model turned out to matter."""
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fingerpad.io.console import Console
@@ -25,6 +25,14 @@ class Restarts:
         self.table: list[dict[str, Any]] = []
         self.notes: list[str] = []
         self._seconds = 0.0
+
+    def kept(self) -> dict[str, Any]:
+        """Return what another process needs to go on."""
+        return {"table": self.table, "notes": self.notes, "seconds": self._seconds}
+
+    def resume(self, kept: Mapping[str, Any]) -> None:
+        """Go on from what another process kept."""
+        self.table, self.notes, self._seconds = kept["table"], kept["notes"], kept["seconds"]
 
     def record(self, restart: RestartRequired, states: Sequence[ContactState], finger: Finger, clock: Clock) -> None:
         """Record a restart; collective.
