@@ -41,7 +41,6 @@ _BODY = [["press", {"f_ext": 4.4}], ["charge", {"voltage": 150.0}], ["slide", {"
 SCENES: dict[str, dict[str, Any]] = {
     "errors estimated": {"output": {"errors": True}},
     "cylinders": {},
-    "smooth finger": {},
     "accuracy asked for": {"accuracy": {"mu_app": 0.05}},
     "20 µm": {"mesh": {"contact": 20e-6}},
     "receptors": {"output": {"receptors": True}},
@@ -86,7 +85,6 @@ SCENES: dict[str, dict[str, Any]] = {
 
 MORE: dict[str, dict[str, Any]] = {
     "cylinders": {"model": "cylinders", "default": True},
-    "smooth finger": {"model": "smooth"},
     "folder": {"folder": True},
     "law of friction": {"friction": {"law": "Derjaguin", "mu_f": 0.3, "tau_0": 5e3}},
     "materials": {"materials": {"dermis": {"law": "NeoHooke", "shear_modulus": 2.5e3, "poisson": 0.45}}},

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import geometry as geometry
+    from fingerpad.io.quantities import Output as Output
     from fingerpad.io.result import Result as Result
     from fingerpad.measurements.compare import compare as compare
     from fingerpad.model.body import Body as Body
@@ -44,6 +45,7 @@ _HOMES = {
     "Sweep": "fingerpad.runs.sweep_results",
     "compare": "fingerpad.measurements.compare",
     "Result": "fingerpad.io.result",
+    "Output": "fingerpad.io.quantities",
     "ContactState": "variational.state",
     "Body": "fingerpad.model.body",
     "Material": "variational.materials.material",
@@ -79,7 +81,7 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module 'fingerpad' has no attribute {name!r}; it has {', '.join(__all__)}")
     with needed_by(f"fingerpad.{name}"):
         if name in _FINITE_ELEMENTS:  # with the configuration of the user alone, before any other import
-            import_module("fingerpad.started")
+            import_module("fingerpad.startup")
         return getattr(import_module(_HOMES[name]), name)
 
 

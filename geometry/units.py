@@ -91,3 +91,17 @@ def _root(unit: str) -> "tuple[Decimal, pint.Unit] | None":
     except (AttributeError, ValueError, TypeError, ArithmeticError):  # pint's own errors are of the first three
         return None
     return Decimal(str(factor)), root
+
+
+def in_si(unit: str) -> tuple[str, float]:
+    """Return the unit of :data:`QUANTITIES` that measures the same as a unit, and the factor from it to the unit.
+
+    A unit of none of them, one that is not known, and any where pint is not installed, is its own with the factor 1.
+    """
+    try:
+        found = _root(unit)
+        roots = [(known, root) for known in QUANTITIES if (root := _root(known)) is not None]
+    except ImportError:
+        return unit, 1.0
+    same = [(known, float(root[0] / found[0])) for known, root in roots if found and root[1] == found[1]]
+    return same[0] if same else (unit, 1.0)

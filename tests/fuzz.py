@@ -30,7 +30,7 @@ from pydantic import BaseModel
 
 from fingerpad.cli import refuse
 from fingerpad.cli.arguments import Parser, scene_of
-from fingerpad.io.folder import check_folder
+from fingerpad.io.files import check_folder
 from fingerpad.model import options
 from fingerpad.model.memory import estimate
 from fingerpad.reduced.cylinders import tip_radius
@@ -231,7 +231,7 @@ def fault(case: Mutant, folder: Path) -> tuple[str, str]:
     if case.file is not None:
         (folder / "scene.toml").write_bytes(case.file)
     argv = [word.replace("{folder}", str(folder)) for word in case.argv]
-    parser = Parser("fingerpad run", "Press, charge and slide a finger.", "fingerpad run")
+    parser = Parser("run", "fingerpad run")
     parser.add_scene()
     parser.add_out("results", "folder of the results")
     out, err = io.StringIO(), io.StringIO()

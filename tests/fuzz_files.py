@@ -223,8 +223,8 @@ def _read(path: Path) -> int:
         elif path.suffix == ".measured":
             measurements.read(path)
         else:
-            unit, size = ["--unit", "um"], ["--size", "32", "24"]
-            given = {".npy": unit + size, ".csv": unit + size, ".xyz": unit}
+            unit, size = ["--unit", "um"], ["--size", "32 um", "24 um"]
+            given = {ending: unit + size for ending in (".npy", ".csv", ".xyz")}
             given |= {ending: unit + size for ending in (".mat", ".npz", ".h5", ".tif")}
             return topography.main([str(path), *given.get(path.suffix, [])])
     except (SceneError, GeometryError) as error:

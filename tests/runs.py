@@ -10,6 +10,7 @@ from mpi4py import MPI
 
 from fingerpad.io import finger_picture, history_picture, skin_picture, style
 from fingerpad.runs import full
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene
 
 PICTURES = ((finger_picture, "finger"), (skin_picture, "surface"), (history_picture, "history"))
@@ -36,4 +37,4 @@ def run(scene: Scene, folder: Path, comm: MPI.Comm = MPI.COMM_WORLD, pictures: b
     """
     built = patch.object(style, "save", lambda figure, path: figure if path is None else touch(path))
     with built if pictures else no_pictures():
-        return full.run(scene, folder, comm).to_dict()
+        return full.run(scene, RunContext(folder, comm, lines=True)).to_dict()

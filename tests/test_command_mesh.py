@@ -23,8 +23,9 @@ def test_check(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(("formulation", "told"), [("augmented", 1), ("penalty", 0), ("nitsche", 0)])
-def test_method_for_comparison_is_named_before_a_run(tmp_path, capsys, formulation, told):
+def test_method_for_comparison_is_named_before_a_run(tmp_path, monkeypatch, capsys, formulation, told):
     """One line of the model, for the augmented Lagrangian alone."""
+    monkeypatch.setattr("fingerpad.cli.check._picture", lambda *given: "")
     argv = ["check", "--set", f"contact.formulation={formulation}", "--out", str(tmp_path)]
     assert main([*argv, *(word for text in COARSE for word in ("--set", text))]) == 0
     assert capsys.readouterr().out.count("contact by a method for comparison") == told
@@ -155,7 +156,3 @@ def test_mesh_is_read_again_with_its_names(tmp_path, capsys):
     assert {"stratum corneum", "dermis", "bone rim", "outer skin", "ridge 0", "ridge -1"} <= groups
     assert y.min() == pytest.approx(0, abs=2e-6)
     assert y.max() == pytest.approx(Scene().geometry.height, rel=1e-3)  # chords of an ellipse
-
-
-def test_mesh_refuses_another_name(capsys):
-    assert "finger.stl cannot be a mesh; its name must end with .msh" in refused(capsys, "mesh", "--out", "finger.stl")

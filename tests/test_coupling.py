@@ -16,8 +16,8 @@ from scipy.optimize import brentq
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.model.touching import by_rule
-from fingerpad.reduced import ridge_cell
 from fingerpad.runs import full
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene, from_data
 from geometry import tags
 from geometry.bodies import ridge
@@ -298,21 +298,12 @@ def test_mean_pressure_is_over_the_length_chosen(by_gap):
 def finger(scene: Scene) -> tuple[Array, Array]:
     """Return pressures over the length under pressure (Pa) and air gaps (m) of a charged finger's ridges in contact."""
     loads = [{"name": "press", "f_ext": 1.0}, {"name": "charge", "voltage": 100.0}]
-    made = full.run(scene.replace(history=loads), None, MPI.COMM_SELF, lines=False)
+    made = full.run(scene.replace(history=loads), RunContext(comm=MPI.COMM_SELF))
     touching = made.charged.p_c > 0
     return made.charged.p_c[touching], made.charged.d_eq[touching]
 
 
-def cell(scene: Scene) -> tuple[Array, Array]:
-    """Return those of the one ridge from which the smooth finger's table is made."""
-    walk = ridge_cell._Cell(scene, 2.5).walk
-    walk.run(Target("press", f_ext=1.0))
-    walk.run(Target("charge", voltage=100.0))
-    return walk.observer.ridge_loads(walk.surface_state).p_c, walk.coupling.d_eq
-
-
-@pytest.mark.parametrize("model", [finger, cell])
-def test_scene_chooses_the_length(model):
+def test_scene_chooses_the_length():
     """By default each air gap is the closure's at the pressure over the length under pressure; by gap it is larger.
 
     Tolerance: the loop's, which ends with an iteration or two to spare. A longer length by a twentieth opens the gap by
@@ -320,6 +311,6 @@ def test_scene_chooses_the_length(model):
     """
     scene = from_data({"geometry": {"ridge_count": 9}, "mesh": MESH, "output": {"receptors": False, "errors": False}})
     for length, least, most in (("pressure", 1 - 1e-6, 1 + 1e-6), ("gap", 1.02, 2.0)):
-        p_c, d_eq = model(scene.replace(contact={"length": length}))
+        p_c, d_eq = finger(scene.replace(contact={"length": length}))
         ratio = d_eq / scene.closure()(p_c).d_eq
         assert ((least < ratio) & (ratio < most)).all()

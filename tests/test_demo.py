@@ -13,6 +13,7 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.runs import full
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import from_data, load
 from tests import runs
 
@@ -137,7 +138,7 @@ def test_ranks_agree_with_one(size):
     """The same numbers to 1e-6: the coupling's tolerance on the air gap, times its contraction."""
     small = NINE | {"f_ext": 1.0, "voltage": 100.0, "mesh": MESH}
     scene = from_data(small) if size == "small" else load(COARSE).replace(output={"errors": False})
-    found, other = (full.run(scene, None, comm, lines=False).to_dict() for comm in (MPI.COMM_WORLD, MPI.COMM_SELF))
+    found, other = (full.run(scene, RunContext(comm=comm)).to_dict() for comm in (MPI.COMM_WORLD, MPI.COMM_SELF))
     assert (found["ranks"], other["ranks"]) == (MPI.COMM_WORLD.size, 1)
     for state in ("normal", "slip"):
         for name in ("f_contact", "f_electrostatic", "contact_length", "bone_height", "ridges_in_contact"):

@@ -28,7 +28,7 @@ def voltages(path: Path) -> None:
 
 
 def topography(path: Path) -> None:
-    from_data({"roughness": {"topography": {"file": str(path), "unit": "um", "size": [1.0, 1.0]}}})
+    from_data({"roughness": {"topography": {"file": str(path), "unit": "um", "size": [1e-3, 1e-3]}}})
 
 
 DOORS = {

@@ -17,9 +17,11 @@ from fingerpad.io.kept_drawing import finger_of, skin_of
 from fingerpad.io.place import Place, PlaceError, Serial, full_scene
 from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
+from fingerpad.reduced.models import find
 from fingerpad.report import run_page
 from fingerpad.report.page import picture
 from fingerpad.report.write import write
+from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene, SceneError
 
@@ -72,7 +74,7 @@ def test_json_that_never_ends(tmp_path):
 def answered(tmp_path_factory) -> Path:
     """The folder of a closed form, which has a summary as a run has."""
     folder = tmp_path_factory.mktemp("cylinders") / "out"
-    solved(Scene(), "cylinders", folder)
+    solved(Scene(), find("cylinders"), RunContext(folder))
     return folder
 
 
@@ -100,9 +102,11 @@ def test_program_s_error_in_a_report_is_not_hidden(answered, monkeypatch):
 
 def test_value_that_is_no_number_is_named(answered, tmp_path):
     copy = Path(shutil.copytree(answered, tmp_path / "copy"))
-    summary = json.loads((copy / "summary.json").read_text()) | {"slip_f_t": [1]}
+    summary = json.loads((copy / "summary.json").read_text())
+    summary["states"]["full_slip"]["f_t"] = [1]
+    (copy / "result.nc").unlink()
     (copy / "summary.json").write_text(json.dumps(summary))
-    with pytest.raises(SceneError, match="not of a run .slip_f_t is no number"):
+    with pytest.raises(SceneError, match="not of a run .f_t of full_slip is no number"):
         Result.load(copy)
 
 

@@ -30,11 +30,10 @@ def test_known_error_is_that_of_the_kept_runs():
                 assert worst <= largest < worst + 1e-3, (model, name)
 
 
-@pytest.mark.parametrize("model", ["cylinders", "smooth"])
-def test_band_is_named_where_the_runs_are(model):
-    """Every quantity that has one, normal contact too; what the ± of the smooth finger's mesh does not hold."""
-    words = known.in_words(known.errors(model, from_data({"f_ext": 42.0, "voltage": -120.0})))
-    for bands in known.KNOWN_ERROR[model].values():
+def test_band_is_named_where_the_runs_are():
+    """Every quantity that has one, normal contact too."""
+    words = known.in_words(known.errors("cylinders", from_data({"f_ext": 42.0, "voltage": -120.0})))
+    for bands in known.KNOWN_ERROR["cylinders"].values():
         for error in bands.values():
             assert f" {100 * error:.1f} %" in words
     assert "44 full runs at 5 to 150 N/m and 0 to 200 V" in words and "in charged normal contact" in words
@@ -58,7 +57,7 @@ def test_band_is_named_where_the_runs_are(model):
 )
 def test_no_band_where_no_run_is(scene):
     """Beyond the loads, and with anything else than those runs have; a caution names it."""
-    assert known.errors("smooth", scene) == {} and len(known.cautions(scene)) == 1
+    assert known.errors("cylinders", scene) == {} and len(known.cautions(scene)) == 1
 
 
 def test_answer_has_its_band_in_words_and_in_its_file(tmp_path):

@@ -5,10 +5,12 @@ import json
 import numpy as np
 import pytest
 
+from fingerpad.cli import compare
 from fingerpad.io.quantities import PLUS_MINUS
 from fingerpad.io.result import Result
+from fingerpad.io.states import PREFIXES
 from fingerpad.reduced import cylinders
-from fingerpad.runs import compare
+from fingerpad.reduced.model import STATES
 from fingerpad.scene import SceneError, from_data
 from variational.contact.friction import Coulomb
 from variational.state import RESULTS
@@ -115,9 +117,13 @@ def keep(folder, **values):
     lengths = {"normal_contact_length": 1.7e-3, "slip_contact_length": 1.6e-3}
     ridges = {"normal_ridges_in_contact": 17, "slip_ridges_in_contact": 16}
     cost = {"wall_seconds": 9.0, "factorisations": 3, "unknowns": 5, "full_slip": True}
-    summary = (
-        {"f_ext": 75.0, "voltage": 200.0, "parameters": scene().parameters()} | names | lengths | ridges | cost | values
-    )
+    flat, at = names | lengths | ridges, {"f_ext": 75.0, "voltage": 200.0}
+    states = {
+        name: at | {key: flat[f"{prefix}_{key}"] for key in RESULTS}
+        for name, prefix in PREFIXES.items()
+        if name in STATES
+    }
+    summary = at | {"parameters": scene().parameters(), "states": states} | flat | cost | values
     (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     return summary
 
@@ -135,7 +141,7 @@ def test_length_of_a_run(tmp_path, sign):
 @pytest.mark.parametrize(
     ("values", "sentence"),
     [
-        ({"model": "smooth"}, "is one of the model 'smooth'; give a full run"),
+        ({"model": "cylinders"}, "is one of the model 'cylinders'; give a full run"),
         ({"voltage": 50.0}, "is one at voltage 50 V"),
         ({"slip_contact_length": None}, "did not reach full slip"),
         (
@@ -164,7 +170,9 @@ def test_missing_run_is_refused(tmp_path):
 
 def test_errors_of_a_run_stand_beside_its_values(tmp_path):
     """With what ± is; a state that comes without an error has its value alone."""
-    answer = Result.from_dict(keep(tmp_path, slip_contact_length_error=2e-5))
+    summary = keep(tmp_path)
+    summary["states"]["full_slip"]["error"] = {"contact_length": 2e-5}
+    answer = Result.from_dict(summary)
     assert answer.full_slip.error.known() == {"contact_length": 2e-5}
     lines = compare.table([answer]).splitlines()
     assert next(line for line in lines if line.startswith("full slip: contact length")).endswith("1.600 ± 0.020")

@@ -1,11 +1,9 @@
 """Laws of one's own in the reduced models, and in the rule of thumb."""
 
-import json
-
 import pytest
 
 from fingerpad.model import touching
-from fingerpad.reduced import cylinders, ridge_cell, smooth
+from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene, SceneError, laws
 from tests.test_laws import DERJAGUIN, OWN, Held
 from variational.contact.friction import Coulomb, Derjaguin
@@ -44,39 +42,12 @@ def test_modulus_of_the_skin_is_the_given_materials():
     assert laws.skin_modulus(own) == pytest.approx(laws.skin_modulus(Scene()), rel=1e-12)
 
 
-def test_smooth_finger_takes_a_coefficient_alone(tmp_path):
-    with pytest.raises(SceneError, match=r"friction is Derjaguin\(.*so that it takes a friction coefficient alone"):
-        smooth.solve(Scene().with_laws(friction=DERJAGUIN), tmp_path)
-
-
-def test_reduced_models_take_no_mesh(tmp_path):
+def test_cylinders_take_no_mesh(tmp_path):
     file = tmp_path / "mine.msh"
     file.write_text("", encoding="utf-8")
     scene = Scene().with_laws(mesh=file)
-    for solve in (cylinders.solve, lambda scene: smooth.solve(scene, tmp_path)):
-        with pytest.raises(SceneError, match="answers for fingers of the scene's own geometry"):
-            solve(scene)
-
-
-def test_layer_of_another_material_between_walls():
-    """The stretch under a pressure is a root of the material's own stress, here of the same solid in another form."""
-    neo, ogden = NeoHooke(2.5e3, 0.48), Ogden(2.5e3, 2.0, 0.48, "abaqus")
-    assert ridge_cell.confined(neo, 2e4) == pytest.approx(ridge_cell.confined(ogden, 2e4), rel=1e-12)
-
-
-def test_tables_of_a_ridge_depend_on_its_laws():
-    names = [
-        json.dumps(ridge_cell._made_of(scene), sort_keys=True)
-        for scene in (
-            Scene(),
-            Scene().with_laws(closure=Held()),
-            Scene().with_laws(materials={"dermis": NeoHooke(2e3)}),
-            Scene().with_laws(friction=0.3),
-        )
-    ]
-    assert len(set(names)) == 4
-    subcutis = Scene().with_laws(materials={"subcutis": NeoHooke(2e3)})  # not in the cell
-    assert json.dumps(ridge_cell._made_of(subcutis), sort_keys=True) == names[0]
+    with pytest.raises(SceneError, match="answers for fingers of the scene's own geometry"):
+        cylinders.solve(scene)
 
 
 def test_rule_of_thumb_takes_a_law():

@@ -173,14 +173,13 @@ def test_run_without_a_report_names_none(tmp_path, monkeypatch, capsys):
 def test_compare_in_quiet_has_models_that_print_nothing(tmp_path, monkeypatch, quiet):
     given = []
 
-    def solved(scene, model, out, **shown):
-        given.append((model, shown))
-        return Result(scene, model, None, None, None, failure="none")
+    def solved(scene, model, context):
+        given.append((model.name, context.lines, context.bar))
+        return Result(scene, model.name, None, None, None, failure="none")
 
     monkeypatch.setattr(compare, "solved", solved)
-    main(["compare", "--model", "smooth", "full", "--out", str(tmp_path), *(["--quiet"] if quiet else [])])
-    shown = {"lines": not quiet, "bar": not quiet}
-    assert given == [("smooth", shown), ("full", shown)]
+    main(["compare", "--model", "full", "--out", str(tmp_path), *(["--quiet"] if quiet else [])])
+    assert given == [("full", not quiet, not quiet)]
 
 
 def test_sweep_in_quiet_prints_its_table_alone(tmp_path, write, capsys):

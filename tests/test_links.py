@@ -68,7 +68,6 @@ def test_folder_may_be_reached_by_a_link(out, tmp_path):
     ("name", "start"),
     [
         ("charged", lambda out: folder_of(out, "charged")),
-        ("ridge_tables", lambda out: fp.run(model="smooth", out=out)),
         ("full", lambda out: fp.sweep(out=out, voltage=[100], quiet=True)),
         ("full", lambda out: main(["compare", "--out", str(out), "--model", "full", "--quiet"]) and None),
     ],

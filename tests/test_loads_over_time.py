@@ -20,6 +20,7 @@ from fingerpad.model.simulation import Simulation
 from fingerpad.model.touching import by_rule
 from fingerpad.report.run_page import page
 from fingerpad.runs import full
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import Load, Scene, from_data
 from fingerpad.scene.waveform import SAMPLES
 from variational.state import ContactState
@@ -260,7 +261,7 @@ def test_square_of_a_file_is_the_square():
 
 # -- results -------------------------------------------------------------------------------------------
 def result(*loads: dict, out: Path | None = None, **more) -> Result:
-    return full.run(scene(*loads, **more), out, MPI.COMM_WORLD, lines=False, bar=False)
+    return full.run(scene(*loads, **more), RunContext(out, bar=False))
 
 
 def test_results_of_a_run(tmp_path):
@@ -321,7 +322,7 @@ def test_mean_from_steps_that_are_too_long_is_told(tmp_path):
         {"name": "back", "bone_x_by": -5e-4, "speed": 1e-3},
         {"name": "lift", "bone_height": 5e-5, "duration": 1.0},
     ]
-    long, short = (full.run(scene(*loads, numerics={"step_scale": part}), None, MPI.COMM_WORLD) for part in (1, 0.1))
+    long, short = (full.run(scene(*loads, numerics={"step_scale": part}), RunContext()) for part in (1, 0.1))
     told = [note.split(" the mean ")[0] for note in long.cautions]
     assert told == ["In the load back", "In the load lift"]
     assert not any("In the load back" in text for text in short.cautions)

@@ -167,6 +167,8 @@ HEADS = "force (N/m), friction (1)\n"
         ("force (N/m), force (N/mm), friction (1)\n1, 2, 3\n", "two columns have the name force"),
         ("force (N/m), friction (1), spread (mm)\n1, 2, 3\n", "column 3: the unit of spread is 'mm'; it must be 1"),
         (f"{HEADS}1, {'2' * 200_000}\n", "column 2: the friction is '2222"),
+        ("a," * 200_000 + "friction (1)\n1, 2\n", "line 2 has 200001 columns; at most 1000 are read"),
+        (f"# source: a{' ' * 200_000}b\nforce{' ' * 200_000}(N/m), sum (1)\n1, 2\n", "has the columns force "),
         (f'{HEADS}1, "2\n3, 4\n', "is no table in CSV: "),
         (f'{HEADS}1, "2\n3"\n4, 5\n', "is no table in CSV: a cell in quotation marks does not end in its line"),
     ],
@@ -350,7 +352,7 @@ def test_errors_of_a_sweep_count_with_the_spread(folder, table, tmp_path, capsys
             "force (N/m), voltage (V), friction (1)\n5, 0, 0.3\n",
             "is within the results, which have 25 to 75 N/m at 0 V, 25 to 75 N/m at 100 V, 25 to 75 N/m at 200 V",
         ),
-        ("force (N), friction (1)\n25, 0.3\n", "has forces in N; sweep force, or give runs"),
+        ("force (N), friction (1)\n25, 0.3\n", "is over voltage, f_ext, and"),
         ("force (N/m), voltage (V), depth (mm)\n25, 0, 0.3\n", "the table of the sweep has no depth of full slip"),
     ],
 )
@@ -379,6 +381,7 @@ def test_folders_are_told_apart(folder, table, tmp_path, capsys):
     assert "is given with others; give one sweep, or runs" in several
     third = tmp_path / "third"
     sweep(Scene(), third, model="cylinders", friction=[0.2, 0.3])
-    assert "is over friction, which no measurement has" in refused(capsys, "compare-data", file, "--sweep", str(third))
+    words = "is over friction, and {} has forces in N/m; give one over f_ext and voltage alone, or runs"
+    assert words.format(file) in refused(capsys, "compare-data", file, "--sweep", str(third))
     with pytest.raises(SceneError, match=r"friction is 0\.2 in .* and 0\.3 in .*; give runs that differ in force and"):
         fp.compare(file, fp.sweep(Scene(), model="cylinders", friction=[0.2, 0.3]))

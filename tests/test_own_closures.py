@@ -7,6 +7,7 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.runs import full
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import from_data
 from tests.test_laws import SMALL, Held
 from variational.roughness.bam import BearingArea
@@ -70,7 +71,7 @@ def test_notes_are_of_the_pressures_that_the_closure_gets(tmp_path):
     told = {}
     for length in ("pressure", "gap"):
         scene = from_data(data | {"contact": {"length": length}}).with_laws(closure=Telling())
-        full.run(scene, tmp_path / length, MPI.COMM_SELF, lines=False)
+        full.run(scene, RunContext(tmp_path / length, MPI.COMM_SELF))
         with (tmp_path / length / "ridges.csv").open(encoding="utf-8") as file:
             rows = [row for row in csv.DictReader(file) if float(row["p_c"]) > 0]
         told[length] = np.array([[float(row["p_c"]), float(row["state"])] for row in rows])

@@ -16,8 +16,8 @@ def slip(**values) -> ContactState:
 
 
 def test_cautions_follow_the_notes_with_a_mark():
-    lines = text(fp.Result(fp.Scene(), "smooth", None, None, slip(), notes=("a note",), cautions=("mind this",)))
-    assert lines.startswith("Result (model 'smooth')")
+    lines = text(fp.Result(fp.Scene(), "cylinders", None, None, slip(), notes=("a note",), cautions=("mind this",)))
+    assert lines.startswith("Result (model 'cylinders')")
     assert lines.splitlines()[-2:] == ["  a note", "  ! mind this"]
     assert ["friction", "force", "f_T", "(N/m)", "4.000"] in [line.split() for line in lines.splitlines()]
 

@@ -12,8 +12,8 @@ from petsc4py import PETSc
 
 from fingerpad.accuracy.recompute import StateRecorder
 from fingerpad.io import console, drawing, writing
+from fingerpad.io.drawing import Profile
 from fingerpad.io.states import RESULTS, named
-from fingerpad.io.views import Profile
 from fingerpad.model import full_slip, report
 from fingerpad.model.balance import force_error
 from fingerpad.model.options import FingerModel, plan

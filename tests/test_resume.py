@@ -21,6 +21,8 @@ from fingerpad.io.writing import Writer
 from fingerpad.model.simulation import Simulation
 from fingerpad.runs.batch import key, sweep
 from fingerpad.scene import SceneError
+from tests.test_history import Own
+from variational.problem import Problem
 from variational.solvers.coupling import Coupling
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -117,6 +119,8 @@ def test_goes_on_to_the_last_bit(history, tmp_path, killed_at):
 WRAPPER = """
 import os, sys, random
 kind, number = sys.argv.pop(1), int(sys.argv.pop(1))
+from tests.test_history import Own
+from variational.problem import Problem
 from variational.solvers.coupling import Coupling
 from fingerpad.io import checkpoint, files
 def kill_at(owner, name, do=lambda *args: None):
@@ -268,13 +272,13 @@ def test_refused_options(tmp_path):
         fp.run(resume=True)
     with pytest.raises(SceneError, match="only a full run in a folder, of one scene, can go on"):
         fp.run(out=tmp_path, model="cylinders", resume=True)
-    for words in (["scene.toml"], ["--set", "voltage=1"], ["--model", "smooth"], ["--out", "x"], ["--force", "1 N"]):
+    for words in (["scene.toml"], ["--set", "voltage=1"], ["--model", "cylinders"], ["--out", "x"], ["--force", "1 N"]):
         with pytest.raises(SceneError, match="and --resume are given"):
             command.main([*words, "--resume", str(tmp_path)])
     with pytest.raises(SceneError, match=r"has no scene.json of a run, and so no run to go on with"):
         command.main(["--resume", str(tmp_path)])
     for kept, match in (
-        ('{"model": "smooth"}', "only a full one can go on"),
+        ('{"model": "cylinders"}', "only a full one can go on"),
         ('{"laws": {"friction": {}}}', "resume=True"),
         ('{"trace": 5}', "has no scene.json of a run"),
         ('{"laws": {"mesh": []}}', "has no scene.json of a run"),
@@ -345,3 +349,40 @@ def test_sweep_goes_on(tmp_path, killed_at, monkeypatch):
         assert "failure" not in found
         assert ("earlier" in (folder / "run.log").read_text(encoding="utf-8")) == (head is None)
         (folder / "summary.json").unlink()
+
+
+# -- history and outputs of one's own -------------------------------------------------------------------
+def test_own_history_is_kept(tmp_path, killed_at, monkeypatch):
+    """A viscous strain and an accumulated slip go on from the checkpoint to the last bit, with no other edit."""
+    plain, problems = Problem.__init__, list[Problem]()
+
+    def init(self, *args, **more):
+        plain(self, *args, **more)
+        Own.of(self)
+        problems.append(self)
+
+    def ends() -> tuple[np.ndarray, np.ndarray]:
+        whole = problems[0].history.accepted
+        problems.clear()
+        return whole["slip"], whole["strain"]
+
+    monkeypatch.setattr(Problem, "__init__", init)
+    slow = {"history": [PRESS, SLIDE | {"speed": 0.02}]}
+    killed_at(None)
+    fp.run(scene().replace(**slow), out=tmp_path / "whole")
+    reference = ends()
+    killed_at(14)
+    with pytest.raises(Killed):
+        fp.run(scene().replace(**slow), out=tmp_path / "cut")
+    problems.clear()
+    killed_at(None)
+    fp.run(scene().replace(**slow), out=tmp_path / "cut", resume=True)
+    for found, expected in zip(ends(), reference, strict=True):
+        np.testing.assert_array_equal(found, expected)
+        assert np.abs(expected).max() > 0
+
+
+def test_other_outputs_are_refused(cut_short):
+    more = fp.Output("p_mean", "Pa", lambda state: state.f_contact / state.contact_length)
+    with pytest.raises(SceneError, match="is of another list of outputs"):
+        fp.run(scene(), out=cut_short, resume=True, outputs=[more])

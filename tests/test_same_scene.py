@@ -44,10 +44,9 @@ def test_laws_are_left_out():
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize("model", ["full", "smooth"])
-def test_refused_on_all_ranks(model):
+def test_refused_on_all_ranks():
     rank, size = MPI.COMM_WORLD.rank, MPI.COMM_WORLD.size
     scene = fp.Scene(f_ext=50 + rank, mesh={"contact": 1e-3})  # of which no finger can be meshed
     words = "f_ext is 50 on rank 0 of MPI and 51 on rank 1" if size > 1 else "mesh.contact"
     with pytest.raises(SceneError, match=words):
-        fp.run(scene, model=model)
+        fp.run(scene)

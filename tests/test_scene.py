@@ -137,8 +137,8 @@ def test_scene_of_a_run_s_folder_is_a_scene(tmp_path):
     """With changes on top, as a scene in TOML; a run that was given more is refused, and so is other JSON."""
     given = Scene(f_ext=20.0, accuracy={"mu_app": 0.02})
     file = tmp_path / "scene.json"
-    file.write_text(json.dumps(given.parameters() | {"model": "smooth"}), encoding="utf-8")
-    assert model_of(file) == "smooth" and model_of(tmp_path / "scene.toml") == model_of(None) == "full"
+    file.write_text(json.dumps(given.parameters() | {"model": "cylinders"}), encoding="utf-8")
+    assert model_of(file) == "cylinders" and model_of(tmp_path / "scene.toml") == model_of(None) == "full"
     assert Scene.load(file) == given and scenes.load(file, {"f_ext": "30 N/m"}) == given.replace(f_ext=30.0)
     for data, words in (
         (

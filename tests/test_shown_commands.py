@@ -66,8 +66,7 @@ def small(line: str) -> list[str]:
     words = shlex.split(line)[1:]
     if "--force" in words and "cylinders" not in words:  # which know the default finger alone
         words.insert(1, "scene.toml")
-        words[words.index("--force") + 1] = "0.02 N" if "smooth" in words else "0.01 N"
-        words += ["--set", "mesh.contact=1e-5", "--set", "mesh.touching_half_arc=2.5e-3"] * ("smooth" in words)
+        words[words.index("--force") + 1] = "0.01 N"
     return words
 
 

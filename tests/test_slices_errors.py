@@ -9,7 +9,7 @@ import pytest
 
 import fingerpad as fp
 from benchmarks import newtons
-from fingerpad.io.dataset import finger
+from fingerpad.io.dataset import _finger as finger
 from fingerpad.io.states import STATES
 from fingerpad.report.run_page import page
 from fingerpad.runs.sweep_columns import row

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.cli import main
 from fingerpad.io.place import full_scene
 from fingerpad.model.simulation import Simulation
-from fingerpad.reduced.answer import TooLight
+from fingerpad.reduced.models import find
 from fingerpad.report import parameters, run_page
 from fingerpad.runs import solve
+from fingerpad.runs.context import RunContext
 from fingerpad.scene import SceneError
 from fingerpad.slices import traces
 from fingerpad.slices.estimate import with_newtons
@@ -139,7 +139,7 @@ def test_points_of_the_traces_are_of_one_kind():
     """Each state of a trace is uncharged, charged at rest, or at full slip at the scene's voltage."""
     scene = small(**SMALL)
     for name in ("uncharged", "charged"):
-        found = points(solve.solved(history(scene, name, 1.0), "full"), name)
+        found = points(solve.solved(history(scene, name, 1.0), find("full"), RunContext()), name)
         assert len(found) > 1 and {state.voltage for state in found} == {0.0 if name == "uncharged" else scene.voltage}
         assert all(state.bone_x == 0 for state in found)
 
@@ -219,9 +219,9 @@ def test_least_force(tmp_path):
         given.append(scene)
         raise Stop
 
-    for model in ("full", "smooth"):
+    for model in ("full", "cylinders"):
         with pytest.raises(Stop):
-            traces.whole(fp.Scene(), 1e-5, model, solve)
+            traces.whole(fp.Scene(), 1e-5, find(model), solve)
     assert all(load.f_ext >= 1e-3 for scene in given for load in scene.loads() if load.f_ext is not None)
     finger = fp.run(force=1e-5, model="cylinders").finger
     assert finger.states["full_slip"].totals["f_ext"] == pytest.approx(1e-5, rel=1e-9)
@@ -230,63 +230,11 @@ def test_least_force(tmp_path):
         fp.run(straight, force=1e-5, model="cylinders")
 
 
-def test_force_that_is_too_small_for_a_model_is_named():
-    def solve(scene, name):
-        raise TooLight("f_ext is 0.7 N/m, under which the finger touches over less than a ridge")
-
-    with pytest.raises(SceneError, match=r"^force is 0.03 N, and in its trace f_ext is 0.7 N/m, under which"):
-        traces.whole(fp.Scene(), 0.03, "smooth", solve)
-
-
-@pytest.fixture
-def smooth_scenes(monkeypatch):
-    """Folders of tables that the model 'smooth' is given, scene by scene; charged cylinders answer in its place."""
-    from fingerpad.reduced import cylinders, smooth
-
-    given = []
-
-    def answer(scene, folder, comm, console):
-        given.append(folder)
-        return replace(cylinders.solve(scene), model="smooth")
-
-    monkeypatch.setattr(smooth, "solve", answer)
-    return given
-
-
-@pytest.mark.parametrize("quiet", [False, True])
-def test_force_of_the_smooth_finger_shows_its_scenes(tmp_path, smooth_scenes, capsys, quiet):
-    """A line each, and the tables of their ridge in the folder of the results."""
-    words = ["run", "--force", "0.5 N", "--model", "smooth", "--out", str(tmp_path), *(["--quiet"] if quiet else [])]
-    assert main(words) == 0
-    lines = re.findall(r"^scene (\d+) of some 25: (.*), [\d.]+ N/m$", capsys.readouterr().out, re.MULTILINE)
-    assert smooth_scenes == 25 * [tmp_path / "ridge_tables"]
-    traced = ["trace of uncharged normal contact", "trace of charged normal contact", "trace of full slip"]
-    every = [*(what for what in traced for _ in range(8)), "centre of the finger"]
-    assert lines == ([] if quiet else [(str(k), what) for k, what in enumerate(every, 1)])
-    assert fp.Result.load(tmp_path).finger.f_ext == pytest.approx(0.5, rel=1e-9)
-
-
-def test_force_of_the_smooth_finger_that_was_interrupted(tmp_path, smooth_scenes, monkeypatch, capsys):
-    """It ends with a sentence on what is kept, and the same command goes on from there."""
-    words = ["run", "--force", "0.5 N", "--model", "smooth", "--out", str(tmp_path)]
-    with monkeypatch.context() as patch:
-        patch.setattr(traces.cylinders, "indentation", interrupt)
-        assert main(words) == 130
-    kept = f"with the ridge's finished tables in {tmp_path / 'ridge_tables'}."
-    assert capsys.readouterr().out.endswith(f"Stopped. The same command starts the traces again, {kept}\n")
-    assert (tmp_path / "ridge_tables").is_dir() and main(words) == 0
-
-
-def interrupt(*given):
-    raise KeyboardInterrupt
-
-
-@pytest.mark.parametrize("force", [0.5, None])
-def test_folder_of_other_results_is_refused_before_the_work(tmp_path, smooth_scenes, force):
+def test_folder_of_other_results_is_refused_before_the_work(tmp_path, monkeypatch):
     fp.run(model="cylinders", out=tmp_path)
+    monkeypatch.setattr("fingerpad.reduced.cylinders.solve", None)
     with pytest.raises(SceneError, match="holds the results of another scene"):
-        fp.run(force=force, model="smooth", out=tmp_path)
-    assert not smooth_scenes and not (tmp_path / "ridge_tables").exists()
+        fp.run(force=0.5, model="cylinders", out=tmp_path)
 
 
 def test_scene_with_a_history_has_no_newtons():

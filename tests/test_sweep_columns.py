@@ -10,8 +10,7 @@ import xarray
 
 import fingerpad as fp
 from fingerpad.report.write import write
-from fingerpad.runs import sweep_dataset
-from fingerpad.runs.sweep_results import Sweep
+from fingerpad.runs.sweep_results import Sweep, _stacked
 from fingerpad.slices.finger import WholeFinger
 from tests.test_loads_over_time import BY, PRESS, SLIDE, WAVE, scene
 
@@ -29,7 +28,7 @@ def folder(tmp_path_factory):
     failed = fp.Result(results[0].scene, "full", None, None, None, failure="no equilibrium")
     done = Sweep({KEY: (40.0, 80.0, 120.0)}, (*results, failed), place)
     done.to_csv(place / "table.csv")
-    assert not sweep_dataset.save(done)
+    assert not done.save()
     return done
 
 
@@ -123,7 +122,7 @@ def test_places_along_a_dimension_are_those_of_labels():
         {"ridge": (("ridge",), np.array(numbers), about), "x": (("ridge",), np.array(numbers, float), about)}
         for numbers in ([0, 1], [-1, 0])
     ]
-    found = sweep_dataset._more([*points, {}], ("voltage",), [3])
+    found = _stacked([*points, {}], ("voltage",), [3])
     assert found["ridge"][1].tolist() == [-1, 0, 1]
     dims, values, _ = found["x"]
     assert dims == ("voltage", "ridge")

@@ -88,7 +88,7 @@ def test_files_of_an_earlier_sweep_do_not_stay_beside_a_new_table(tmp_path, monk
     words = ["sweep", "--model", "cylinders", "--over", "voltage=0,100", "--out", str(tmp_path)]
     assert main(words) == 0 and "sweep.nc, report.html, sweep.json" in capsys.readouterr().out
     monkeypatch.setattr("fingerpad.runs.sweep.attempt", lambda folder: None)
-    monkeypatch.setattr("fingerpad.runs.sweep_dataset.save", lambda sweep: "sweep.nc is missing: no room")
+    monkeypatch.setattr("fingerpad.runs.sweep_results.Sweep.save", lambda sweep: "sweep.nc is missing: no room")
     assert main(words) == 0
     assert not (tmp_path / "sweep.nc").exists() and not (tmp_path / "report.html").exists()
     assert capsys.readouterr().out.strip().endswith("table.csv, sweep.json")

@@ -9,7 +9,6 @@ from functools import partial
 import numpy as np
 import pytest
 
-from fingerpad.reduced import ridge_cell
 from fingerpad.scene import Scene
 from fingerpad.scene.law_source import digest
 from fingerpad.scene.laws import Laws, used
@@ -69,17 +68,8 @@ def test_edited_closure_is_another(tmp_path, change):
     assert old == same != new
 
 
-def test_tables_of_an_edited_closure_are_not_those_before(tmp_path):
-    scenes = [
-        Scene().with_laws(closure=imported(tmp_path / name, inside=inside)())
-        for name, inside in (("old", "2e-6"), ("new", "3e-6"))
-    ]
-    old, new = (ridge_cell._made_of(scene) for scene in scenes)
-    assert old != new
-
-
 def test_file_edited_after_its_import_does_not_change_a_law(tmp_path):
-    """The law is the code that runs, and its tables are not those of the code that the file has now."""
+    """The law is the code that runs, and not the code that the file has now."""
     law = imported(tmp_path / "old")()
     before = described(law)
     old = imported(tmp_path / "late")

@@ -10,8 +10,8 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import ArrayLike, NDArray
 
+from fingerpad.io.drawing import View
 from fingerpad.io.states import PREFIXES, WORDS, before_sliding
-from fingerpad.io.views import View
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import Simulation

@@ -34,8 +34,8 @@ from fingerpad.accuracy.recompute import Solve, quantities, words
 from fingerpad.accuracy.rigid_screen import rigid
 from fingerpad.accuracy.solves import Solves
 from fingerpad.io.interrupt import Interrupted
-from fingerpad.io.quantities import in_words, scaled
-from fingerpad.io.states import PREFIXES
+from fingerpad.io.quantities import QUANTITIES
+from fingerpad.io.states import PREFIXES, WORDS
 from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import RestartRequired
 from fingerpad.richardson import MeshParameter, errors, plus_minus, to_refine
@@ -147,8 +147,8 @@ class Refinement:
             self._note(f"the effect of the penalty could not be estimated: {error}")
             return
         self.penalty = rigid(self.base.values(), found.values())
-        changes = {name: scaled(name, value) for name, value in self.penalty.items() if "_sed_" not in name}
-        listed = [f"{in_words(name)} by {value:.2g} {unit}".rstrip() for name, (value, unit) in changes.items()]
+        changes = {name: _scaled(name, value) for name, value in self.penalty.items() if "_sed_" not in name}
+        listed = [f"{_in_words(name)} by {value:.2g} {unit}".rstrip() for name, (value, unit) in changes.items()]
         self._show(f"penalty: a rigid screen would change {', '.join(listed)}")
 
     def _note(self, text: str) -> None:
@@ -223,10 +223,10 @@ class Refinement:
         for name, error in found.items():
             if "_sed_" in name:
                 continue
-            (value, unit), (spread, _) = scaled(name, values[name]), scaled(name, error)
-            limit = f", {scaled(name, allowed[name])[0]:.2g} allowed" if name in allowed else ""
+            (value, unit), (spread, _) = _scaled(name, values[name]), _scaled(name, error)
+            limit = f", {_scaled(name, allowed[name])[0]:.2g} allowed" if name in allowed else ""
             number = f"{plus_minus(value, spread)} {unit}".rstrip()
-            self._show(f"{in_words(name)}: {number} (estimated discretisation error){limit}")
+            self._show(f"{_in_words(name)}: {number} (estimated discretisation error){limit}")
 
     def summary(self) -> dict[str, Any]:
         """Return how errors were found, ready for JSON; collective."""
@@ -276,3 +276,19 @@ def errors_of(name: str, changes: Mapping[str, float]) -> Errors:
     prefix = f"{PREFIXES[name]}_"
     known = {field.name for field in fields(Errors)}
     return Errors(**{k: v for key, v in changes.items() if (k := key.removeprefix(prefix)) in known and k != key})
+
+
+def _in_words(key: str) -> str:
+    """Return a key such as ``slip_mu_app`` in words: quantity and state."""
+    name = next((name for name, prefix in PREFIXES.items() if key.startswith(f"{prefix}_")), None)
+    if name is None:
+        return key
+    quantity = key.removeprefix(f"{PREFIXES[name]}_")
+    words = QUANTITIES[quantity].words if quantity in QUANTITIES else quantity
+    return f"{words} at {WORDS[name]}"
+
+
+def _scaled(key: str, value: float) -> tuple[float, str]:
+    """Return the value of a key such as ``slip_contact_length`` (in SI) in the unit of tables, and this unit."""
+    known = [q for name, q in QUANTITIES.items() if key == name or key.endswith(f"_{name}")]
+    return (value * known[0].scale, known[0].unit) if known else (value, "")

@@ -11,8 +11,8 @@ from pydantic import BaseModel, WrapValidator
 
 from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
-from fingerpad.reduced.answer import STATES
 from fingerpad.reduced.known import KNOWN_ERROR, KNOWN_FORCES, KNOWN_RUNS, KNOWN_VOLTAGES
+from fingerpad.reduced.model import STATES
 from fingerpad.scene import Scene
 from fingerpad.scene.contradictions import LARGEST_GAP
 from fingerpad.scene.laws import skin_modulus
@@ -97,7 +97,7 @@ def _in_unit(value: float, per: float) -> float:
 
 def data() -> dict[str, Any]:
     """Return all numbers that the page has from Python, ready for JSON; SI units but for those of the fields."""
-    scene, error = Scene(), KNOWN_ERROR["cylinders"]["full_slip"]
+    scene, error = Scene(), KNOWN_ERROR[cylinders.Cylinders.name]["full_slip"]
     return {
         "fields": [asdict(field) for field in (*fields(), *contact())],
         "eps_0": VACUUM_PERMITTIVITY,

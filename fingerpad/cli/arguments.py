@@ -11,9 +11,10 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
+from fingerpad.cli import COMMANDS, ranges
 from fingerpad.io import terminal
 from fingerpad.model.check import check
-from fingerpad.scene import Scene, load, override
+from fingerpad.scene import Scene, from_data, load, override
 from fingerpad.scene.keys import every
 from fingerpad.scene.messages import SceneError, clip, ends
 from geometry.units import to_si
@@ -38,18 +39,18 @@ PICTURE = Kind("a picture", (".png", ".pdf", ".svg", ".jpg", ".jpeg", ".eps", ".
 class Parser(argparse.ArgumentParser):
     """A parser that refuses by :class:`SceneError` and prints on rank 0 alone."""
 
-    def __init__(self, program: str, description: str, examples: str) -> None:
+    def __init__(self, command: str, examples: str) -> None:
         """Start with the options that all subcommands have.
 
         Args:
-            program: what is typed before the options.
-            description: a line or two on what it does.
+            command: name of the subcommand; its description is that of :data:`fingerpad.cli.COMMANDS`.
             examples: command lines, one a line.
         """
         lines = "\n".join(f"  {line.strip()}" for line in examples.strip().splitlines())
+        what = COMMANDS.get(command, "")
         super().__init__(
-            prog=program,
-            description=description,
+            prog=f"fingerpad {command}",
+            description=f"{what[:1].upper()}{what[1:]}.",
             epilog=f"examples:\n{lines}",
             formatter_class=argparse.RawDescriptionHelpFormatter,
             allow_abbrev=False,
@@ -76,6 +77,20 @@ class Parser(argparse.ArgumentParser):
         self.add_argument(
             "--set", action="append", default=[], metavar="KEY=VALUE", help="a key of the scene; one --set for each key"
         )
+
+    def add_ranges(self, *keys: str) -> None:
+        """Add an option for several values of each of these keys, which :func:`several` reads."""
+        for key in every():
+            if key.name in keys:
+                what = f"{key.meaning.partition('. ')[0].rstrip('.')}; several as 0,100 or 0:200:5, also with a unit"
+                self.add_argument(f"--{key.name.replace('_', '-')}", metavar="RANGE", help=what)
+
+    def add_table(self, table: str) -> None:
+        """Add an option for each optional key of a table of a scene."""
+        for key in every():
+            if key.name.startswith(f"{table}.") and not key.required:
+                pair: dict[str, Any] = {"nargs": 2, "metavar": ("X", "Y")} if key.allowed.startswith("list") else {}
+                self.add_argument(f"--{key.name.removeprefix(table)[1:]}", **pair, help=key.meaning)
 
     def add_out(self, default: str, what: str) -> None:
         """Add the folder that results go to."""
@@ -169,6 +184,19 @@ def changes(given: Sequence[str]) -> dict[str, Any]:
                 raise SceneError(f"--set {clip(short)} is given {twice}; give one value")
         found[key] = value
     return found
+
+
+def several(args: argparse.Namespace, scene: Scene, key: str) -> list[float]:
+    """Return the values of an option of :meth:`Parser.add_ranges`; the scene's own without it.
+
+    Raises:
+        SceneError: a value that the key cannot have, or the key is given by ``--set`` too.
+    """
+    option, text = f"--{key.replace('_', '-')}", getattr(args, key)
+    refuse_twice(args, key, option)
+    if text is None:
+        return [getattr(scene, key)]
+    return [getattr(from_data({key: value}), key) for value in ranges.read(option, text)]
 
 
 def refuse_twice(args: argparse.Namespace, key: str, option: str) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fingerpad.cli.arguments import Parser, echo, scene_of
-from fingerpad.io.folder import check_folder
+from fingerpad.io.files import check_folder
 from fingerpad.io.left import about, between
 from fingerpad.model import expected as cost
 from fingerpad.model.memory import MEASURED, Budget, estimate
@@ -28,9 +28,7 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Describe a run; return the exit code."""
-    parser = Parser(
-        "fingerpad check", "Compute what a run contains, omits and costs, and draw its mesh; solve nothing.", _EXAMPLES
-    )
+    parser = Parser("check", _EXAMPLES)
     parser.add_scene()
     parser.add_out("results", "folder of the picture mesh.png (default: results)")
     args = parser.read(argv)

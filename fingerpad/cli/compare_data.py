@@ -11,7 +11,7 @@ import numpy as np
 from fingerpad.cli import tables
 from fingerpad.cli.arguments import Parser, echo, path
 from fingerpad.io.states import WORDS
-from fingerpad.io.titles import plain
+from fingerpad.io.style import plain
 from fingerpad.scene.messages import SceneError, clip
 
 if TYPE_CHECKING:
@@ -35,11 +35,7 @@ _DRAWN = 201  # places of a curve
 
 def main(argv: Sequence[str]) -> int:
     """Compare tables of measurements with results; return the exit code."""
-    parser = Parser(
-        "fingerpad compare-data",
-        "Print measurements beside finished runs or a sweep, and their misfit as a ratio; draw both.",
-        _EXAMPLES,
-    )
+    parser = Parser("compare-data", _EXAMPLES)
     parser.add_argument("tables", nargs="+", type=path, metavar="TABLE", help="CSV with names and units in its header")
     parser.add_argument(
         "--column",

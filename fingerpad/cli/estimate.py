@@ -4,12 +4,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from fingerpad.cli import ranges, tables
-from fingerpad.cli.arguments import Parser, echo, refuse_twice, scene_of
+from fingerpad.cli import tables
+from fingerpad.cli.arguments import Parser, echo, scene_of, several
 from fingerpad.io.quantities import PER_LENGTH
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinders, known
-from fingerpad.reduced.answer import refuse_others
 from fingerpad.scene import Scene, from_data
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import LEAKAGE, remarks
@@ -31,21 +30,14 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Estimate friction over a grid; return the exit code."""
-    parser = Parser(
-        "fingerpad estimate",
-        "Compute friction at full slip by a closed form: every ridge in contact is the same charged cylinder.",
-        _EXAMPLES,
-    )
+    parser = Parser("estimate", _EXAMPLES)
     parser.add_scene()
-    parser.add_argument("--f-ext", metavar="RANGE", help="forces (N/m): 75, or 20,50,75 or 20:75:3, or with units")
-    parser.add_argument("--voltage", metavar="RANGE", help="voltages (V), written likewise")
+    parser.add_ranges("f_ext", "voltage")
     tables.add_files(parser, _COLUMNS, "picture: one curve a force")
     args = parser.read(argv)
-    refuse_twice(args, "f_ext", "--f-ext")
-    refuse_twice(args, "voltage", "--voltage")
     scene = scene_of(args, meshed=False)
-    refuse_others(scene, "cylinders")
-    forces, voltages = (_axis(scene, key, getattr(args, key)) for key in ("f_ext", "voltage"))
+    cylinders.Cylinders().check(scene)
+    forces, voltages = (several(args, scene, key) for key in ("f_ext", "voltage"))
     rows, lost = grid(scene, forces, voltages)
     echo("Friction at full slip by a closed form, every ridge in contact the same charged cylinder.")
     echo(f"Friction coefficient {scene.friction:g}.\n")
@@ -60,18 +52,6 @@ def main(argv: Sequence[str]) -> int:
     return 0
 
 
-def _axis(scene: Scene, key: str, text: str | None) -> list[float]:
-    """Return the values of a key, checked; the scene's own if none are given."""
-    if text is None:
-        return [getattr(scene, key)]
-    values = ranges.read(f"--{key.replace('_', '-')}", text)
-    return [getattr(_with(scene, **{key: value}), key) for value in values]
-
-
-def _with(scene: Scene, **values: float | str) -> Scene:
-    return from_data(scene.parameters() | values)
-
-
 def grid(scene: Scene, forces: Sequence[float], voltages: Sequence[float]) -> tuple[list[dict[str, Any]], list[str]]:
     """Return a row for each force (N/m) and voltage (V), and a message for each point that was refused.
 
@@ -83,7 +63,7 @@ def grid(scene: Scene, forces: Sequence[float], voltages: Sequence[float]) -> tu
         for voltage in voltages:
             row: dict[str, Any] = {"f_ext": f_ext, "voltage": voltage}
             try:
-                found = cylinders.solve(_with(scene, f_ext=f_ext, voltage=voltage))
+                found = cylinders.solve(from_data(scene.parameters() | {"f_ext": f_ext, "voltage": voltage}))
                 row |= {c.key: getattr(found.full_slip, c.key) for c in _COLUMNS if c.key not in row}
                 row["state"] = found.full_slip
             except SceneError as error:
@@ -96,7 +76,7 @@ def grid(scene: Scene, forces: Sequence[float], voltages: Sequence[float]) -> tu
 
 def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
     """Return what is known of the error of these rows."""
-    bands = known.KNOWN_ERROR["cylinders"]["full_slip"]
+    bands = known.KNOWN_ERROR[cylinders.Cylinders.name]["full_slip"]
     mu, length, pull = (f"within {100 * bands[key]:.1f} %" for key in ("mu_app", "contact_length", "f_electrostatic"))
     runs = f"{known.KNOWN_RUNS} full runs at {known.where()}"
     said = [f"Known error: mu_app and friction {mu}, attraction {pull}, contact {length} of {runs}."]

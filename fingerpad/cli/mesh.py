@@ -14,11 +14,7 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Write a mesh; return the exit code."""
-    parser = Parser(
-        "fingerpad mesh",
-        "Compute the mesh of the whole unloaded finger; write it for gmsh, in m, with names of its parts.",
-        _EXAMPLES,
-    )
+    parser = Parser("mesh", _EXAMPLES)
     parser.add_scene()
     parser.add_file("--out", _MESH, "file for gmsh (default: finger.msh)", "finger.msh")
     parser.add_file("--plot", PICTURE, "picture of the mesh")

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from fingerpad.cli import ranges, tables
-from fingerpad.cli.arguments import Parser, echo, refuse_twice, scene_of
+from fingerpad.cli.arguments import Parser, echo, scene_of, several
 from fingerpad.model.cautions import on_closure
-from fingerpad.scene import Scene, from_data
+from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import remarks
 from geometry.units import to_si
@@ -33,22 +33,16 @@ _EXAMPLES = """
 
 def main(argv: Sequence[str]) -> int:
     """Print the microscale over pressure; return the exit code."""
-    parser = Parser(
-        "fingerpad microscale",
-        "Compute air gap, attraction and real area of contact of a rough ridge over its mean contact pressure.",
-        _EXAMPLES,
-    )
+    parser = Parser("microscale", _EXAMPLES)
     parser.add_scene()
-    parser.add_argument("--voltage", metavar="RANGE", help="voltages (V): 200, or 0,100, or 0:200:5, or with units")
+    parser.add_ranges("voltage")
     parser.add_argument("--p", metavar="RANGE", default=_PRESSURES, help=f"pressures (Pa); default {_PRESSURES}")
     tables.add_files(parser, _COLUMNS, "picture")
     args = parser.read(argv)
-    refuse_twice(args, "voltage", "--voltage")
     scene = scene_of(args, meshed=False)
     if args.voltage is None and scene.history is not None:
         raise SceneError("history is given, whose loads have their own voltages; name those wanted by --voltage")
-    voltages = [scene.voltage] if args.voltage is None else _voltages(args.voltage)
-    rows = table(scene, voltages, _pressures(args.p))
+    rows = table(scene, several(args, scene, "voltage"), _pressures(args.p))
     closure = scene.roughness.bearing_area(scene.h_0)
     echo(
         f"A ridge of rms roughness {scene.roughness.h_rms * 1e6:.3g} µm, largest wavelength "
@@ -66,10 +60,6 @@ def main(argv: Sequence[str]) -> int:
         echo(f"{text[0].upper()}{text[1:]}.")
     tables.write_files(args, _COLUMNS, rows, draw)
     return 0
-
-
-def _voltages(text: str) -> list[float]:
-    return [from_data({"voltage": value}).voltage for value in ranges.read("--voltage", text)]
 
 
 def _pressures(text: str) -> list[float]:

@@ -38,7 +38,7 @@ This page is written by `fingerpad params --markdown` from the program's own def
 
 def main(argv: Sequence[str]) -> int:
     """Print keys; return the exit code."""
-    parser = Parser("fingerpad params", "Print every key of a scene: unit, default, range and meaning.", _EXAMPLES)
+    parser = Parser("params", _EXAMPLES)
     parser.add_argument("filter", nargs="?", default="", metavar="FILTER", help="keys with this in their name")
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--toml", action="store_true", help="as a complete scene file of the defaults, with comments")

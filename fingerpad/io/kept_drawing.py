@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from fingerpad.io.drawing import Drawing, End
+from fingerpad.io.drawing import Drawing, End, View
 from fingerpad.io.states import PREFIXES, WORDS, by_load
-from fingerpad.io.views import View
 
 _PICTURES = ("surface", "finger")
 
@@ -48,7 +47,7 @@ class KeptDrawing(Drawing):
             if skin and finger and self.final_size is not None:
                 mesh: Any = SimpleNamespace(contact=self.final_size)
                 there = replace(self.named[name], bone_x=float(finger.get("bone_x", state.bone_x)))
-                finer[name] = View(there, mesh, skin, *_finger(finger), [], [])
+                finer[name] = View(there, mesh, skin, *_finger(finger))
             elif skin:
                 profiles[state.step] = skin
         return Drawing(self.mu_0, self.states, profiles, ends, finer, self.starting_size, self.named)

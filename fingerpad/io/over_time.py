@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fingerpad.io.quantities import EXTREMES
 from fingerpad.scene.waveform import Waveform
 from variational.state import ContactState
 
@@ -37,8 +38,6 @@ HARMONICS, SAMPLED = 6, 4
 """Number of amplitudes in the spectrum of a wave, and of samples that friction has in a period of the last of them. A
 file, which may be a carrier under a slow envelope, has as many amplitudes as its samples allow, and no fewer."""
 _MOST = 200  # amplitudes
-QUANTITIES = ("mu_app", "f_t", "contact_length", "f_electrostatic")
-"""Quantities of which extremes and means are kept."""
 Array = NDArray[np.float64]
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 _MEANS = {"f_t": ("f_T", "N/m", 1.0), "contact_length": ("L_R", "mm", 1e3)}
@@ -89,7 +88,8 @@ def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime
     last = int(np.flatnonzero(times <= start + _NEAR * seconds)[-1])  # of those that take no time, as a first touch
     states, time = states[last:], times[last:] - start
     corners = [] if wave is None else wave.corners(seconds)
-    values = {name: np.array([getattr(state, name) for state in states]) for name in QUANTITIES}
+    names = (*EXTREMES, *states[-1].own)
+    values = {name: np.array([getattr(state, name, math.nan) for state in states]) for name in names}
     mean = {
         name: math.nan if np.isnan(value).any() else float(_rule(time, value, corners)[1].sum()) / seconds
         for name, value in values.items()

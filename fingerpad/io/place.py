@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 from fingerpad.io.files import lock_file, read_object, remove, replace_json
 from fingerpad.scene import Scene, SceneError, from_kept
 from fingerpad.scene.messages import ends
+from fingerpad.scene.reading import DEFAULT_MODEL
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -47,7 +48,7 @@ T = TypeVar("T")
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP)  # some network file systems
 
 
-_MODEL = {"model": "full"}  # of parameters that name none
+_MODEL = {"model": DEFAULT_MODEL}  # of parameters that name none
 
 
 class Serial:
@@ -94,7 +95,7 @@ class Place:
         folder: Path,
         parameters: Mapping[str, Any],
         comm: "MPI.Comm | Serial",
-        model: str = "full",
+        model: str = DEFAULT_MODEL,
         asked: Mapping[str, Any] | None = None,
     ) -> None:
         """Choose a folder; nothing is touched before :meth:`take`, except that the folder is made.
@@ -103,13 +104,13 @@ class Place:
             folder: of the results.
             parameters: of the scene that they are of.
             comm: communicator of the run.
-            model: whose results they are, see :data:`fingerpad.runs.solve.MODELS`.
+            model: whose results they are, see :data:`fingerpad.reduced.models.MODELS`.
             asked: of which the scene is a trace, if it is one: ``force`` (N) on the whole finger and ``parameters`` of
                 the scene that was given. A trace makes way for another one to a larger force.
         """
         self.folder, self._comm = folder, comm
         self._parameters = json.loads(json.dumps(parameters))  # as they are read back
-        if model != "full":
+        if model != DEFAULT_MODEL:
             self._parameters["model"] = model
         if asked is not None:
             self._parameters[TRACE] = json.loads(json.dumps(asked))

@@ -2,13 +2,15 @@
 
 import csv
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.io import terminal
+from fingerpad.io import dataset, terminal
 from fingerpad.io.files import read_object
+from fingerpad.io.quantities import CHANGES, FRICTION, QUANTITIES, STABILITY, Output, checked, valued
+from fingerpad.io.quantities import read as read_outputs
 from fingerpad.io.states import PREFIXES, STATES, LoadResult, load_results
 from fingerpad.scene import Scene, SceneError, as_kept
 from fingerpad.scene.laws import coefficient
@@ -22,8 +24,6 @@ if TYPE_CHECKING:
     from fingerpad.io.drawing import Drawing
     from fingerpad.slices.finger import WholeFinger
 
-_STABILITY = ("stable", "lambda_min", "gain")
-_CHANGES = ("error", "penalty")
 KINDS = ("surface", "finger", "history", "footprint", "time")
 """Pictures of a result."""
 
@@ -51,7 +51,7 @@ class Result:
 
     scene: Scene
     model: str
-    """``full``, ``smooth`` or ``cylinders``."""
+    """``full`` or ``cylinders``."""
     uncharged: ContactState | None
     """Uncharged normal contact; None where a history or a model does not have this state, as for the next two. All
     three are defined in :mod:`fingerpad.io.states`."""
@@ -78,6 +78,8 @@ class Result:
     """Folder of tables, plots and fields, an absolute path; None where nothing was written."""
     drawing: "Drawing | None" = None
     """Data of the pictures; None for a model without them."""
+    outputs: tuple[Output, ...] = ()
+    """Outputs that are computed from a state; of a result that was read their values alone are known."""
     finger: "WholeFinger | None" = None
     """The whole finger in N and mm²; None where a history or a model does not give it."""
 
@@ -138,41 +140,72 @@ class Result:
         Raises:
             ImportError: xarray is not installed.
         """
-        from fingerpad.io import dataset  # it takes a Result
-
         return dataset.dataset(self)
+
+    def with_outputs(self, outputs: Iterable[Output]) -> "Result":
+        """Return the result with further outputs, computed from its states; files are not written again.
+
+        Raises:
+            SceneError: one is no output, or cannot be computed.
+        """
+        new = checked(outputs)
+        named: dict[str, Any] = {name: valued(state, new) for name, state in self.named.items()}
+        steps = tuple(valued(state, new) for state in self.steps)
+        loads = tuple(load_results(steps, self.scene.loads(), lambda k, end: self.loads[k].stable)) if steps else ()
+        kept = tuple(each for each in self.outputs if each.name not in {one.name for one in new})
+        return replace(self, steps=steps, loads=loads, outputs=(*kept, *new), **named)
+
+    @property
+    def printed(self) -> dict[str, Output]:
+        """Quantities of a state that are printed, with outputs of one's own, by name."""
+        return QUANTITIES | {each.name: each for each in self.outputs}
+
+    def cells(self, key: str) -> list[str]:
+        """Return a printed quantity in each named state, with its error; a dash where it is not shown."""
+        of, shown = self.printed[key], []
+        for name, state in self.named.items():
+            error = getattr(state.error, key, math.nan)
+            shown.append("–" if key in FRICTION and name != "full_slip" else of.shown(getattr(state, key), error))
+        return shown
 
     # -- files -----------------------------------------------------------------------------------------
     def values(self) -> dict[str, Any]:
         """Return conditions and results of the named states, flat: ``slip_mu_app``; None where a state is missing."""
         found: dict[str, Any] = {}
-        for name in STATES:
-            state, prefix = getattr(self, name), PREFIXES[name]
-            names = (*CONDITIONS, *RESULTS, *_STABILITY)
-            found |= {f"{prefix}_{key}": None if state is None else _plain(getattr(state, key)) for key in names}
-            for kind in _CHANGES if state is not None else ():
+        for name, prefix in PREFIXES.items():
+            state = getattr(self, name)
+            found |= {f"{prefix}_{key}": None if state is None else getattr(state, key) for key in self._kept()}
+            for kind in CHANGES if state is not None else ():
                 found |= {f"{prefix}_{key}_{kind}": value for key, value in getattr(state, kind).known().items()}
-        return found
+        return {key: None if value != value else value for key, value in found.items()}
+
+    def _kept(self) -> tuple[str, ...]:
+        """Return the names of the quantities of a named state in ``summary.json``."""
+        return *CONDITIONS, *RESULTS, *STABILITY, *(each.name for each in self.outputs)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the content of ``summary.json``, ready for JSON; SI units."""
-        last = self.last
+        last, values = self.last, self.values()
+        nested = {
+            name: {key: values[f"{PREFIXES[name]}_{key}"] for key in self._kept()}
+            | {kind: getattr(state, kind).known() for kind in CHANGES}
+            for name, state in self.named.items()
+        }
         found: dict[str, Any] = {
             "model": self.model,
             "f_ext": 0.0 if last is None else last.f_ext,
             "voltage": 0.0 if last is None else last.voltage,
             "full_slip": self.full_slip is not None,
-            **{f.name: getattr(self.cost, f.name) for f in fields(Cost)},
-            **self.values(),
-            "states": {name: _nested(state) for name, state in self.named.items()},
+            **asdict(self.cost),
+            **values,
+            "states": nested,
             "loads": [load.to_dict() for load in self.loads],
             "parameters": self.scene.parameters(),
             **self.record,
         }
-        for name in ("failure", "interrupted"):
-            found |= {name: getattr(self, name)} if getattr(self, name) else {}
-        for name in ("notes", "cautions"):
-            found |= {name: list(getattr(self, name))} if getattr(self, name) else {}
+        found |= {name: text for name in ("failure", "interrupted") if (text := getattr(self, name))}
+        found |= {name: list(kept) for name in ("notes", "cautions") if (kept := getattr(self, name))}
+        found |= {"outputs": [each.to_dict() for each in self.outputs]} if self.outputs else {}
         return found | ({"finger": self.finger.to_dict()} if self.finger is not None else {})
 
     @classmethod
@@ -182,64 +215,57 @@ class Result:
         Raises:
             SceneError: its parameters are no valid scene.
         """
-        parameters = summary["parameters"]
-        scene = as_kept(parameters)
-        cost = Cost(**{f.name: summary.get(f.name, f.default) for f in fields(Cost)})
-        used = {f.name for f in fields(Cost)} | {"parameters", "states", "loads", "failure", "interrupted", "notes"}
-        used |= {"cautions", "model", "f_ext", "voltage", "full_slip", "finger"}
-        names = (*CONDITIONS, *RESULTS, *_STABILITY, *(f"{f.name}_{kind}" for f in fields(Errors) for kind in _CHANGES))
-        used |= {f"{prefix}_{name}" for prefix in PREFIXES.values() for name in names}
-        record = {key: value for key, value in summary.items() if key not in used}
-        if "laws" in parameters:  # objects of Python, of which only the names are kept
-            record["parameters"] = parameters
-        uncharged, charged, full_slip = (_state(summary, PREFIXES[name]) for name in STATES)
         from fingerpad.slices.finger import WholeFinger  # it takes names of this module's wing
 
-        return cls(
-            scene,
-            summary.get("model", "full"),
-            uncharged,
-            charged,
-            full_slip,
-            cost=cost,
+        parameters, named = summary["parameters"], summary.get("states", {})
+        bare = cls(as_kept(parameters), summary.get("model", "full"), None, None, None)
+        states: dict[str, Any] = {name: _state(name, named[name]) for name in STATES if name in named}
+        bare = replace(
+            bare,
+            **states,
+            cost=Cost(**{f.name: summary.get(f.name, f.default) for f in fields(Cost)}),
             failure=summary.get("failure", ""),
             interrupted=summary.get("interrupted", ""),
             notes=tuple(summary.get("notes", ())),
             cautions=tuple(summary.get("cautions", ())),
-            record=record,
+            outputs=read_outputs(summary.get("outputs", ())),
             folder=folder,
-            finger=WholeFinger.from_dict(summary["finger"], scene.slices) if "finger" in summary else None,
+            finger=WholeFinger.from_dict(summary["finger"], bare.scene.slices) if "finger" in summary else None,
         )
+        used = {*bare.to_dict(), "failure", "interrupted", "notes", "cautions", "outputs", "finger"}
+        used |= {
+            f"{PREFIXES[name]}_{field.name}_{kind}" for name in STATES for field in fields(Errors) for kind in CHANGES
+        }
+        record = {key: value for key, value in summary.items() if key not in used}
+        if "laws" in parameters:  # objects of Python, of which only the names are kept
+            record["parameters"] = parameters
+        return replace(bare, record=record)
 
     @classmethod
     def load(cls, folder: str | Path) -> "Result":
-        """Return the result of a run from its folder; the skin of its named states is that of ``result.nc`` there.
+        """Return the result of a run from its folder: its states from ``result.nc``, all else from ``summary.json``.
+
+        Where there is no whole ``result.nc``, the states are those of ``steps.csv`` and ``summary.json``, without
+        ridges, sites and skin.
 
         Raises:
             SceneError: the folder holds no result that can be read.
         """
-        from fingerpad.io import dataset  # it takes a Result
-        from fingerpad.io.kept_drawing import KeptDrawing  # Matplotlib, which reading numbers does not need
-
         folder, name = Path(folder), clip(str(folder), 80)
         try:
             summary = read_object(folder / "summary.json")
             if set(summary) == {"failure"}:
                 raise SceneError(f"the run in {name} was refused and has no results: {summary['failure']}")
             found = cls.from_dict(summary, folder)
-            skins = dataset.skins(folder)
-            known = {name: replace(state, skin=skins.get(name)) for name, state in found.named.items()}
-            found = replace(found, **{name: known.get(name) for name in STATES})  # type: ignore[arg-type]
-            if found.model != "full" or not (summary.get("steps") or (folder / "steps.csv").exists()):
+            if (kept := dataset.read(folder, [each.name for each in found.outputs])) is not None:
+                found = replace(found, steps=kept[0], **kept[1])  # type: ignore[arg-type]
+            elif found.model == "full" and (folder / "steps.csv").exists():
+                found = replace(found, steps=steps_of(folder))
+            if not found.steps:
                 return found  # of no path, or of one without an accepted step
-            with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
-                steps = tuple(ContactState.from_row(row) for row in csv.DictReader(file))
-            mu_0 = None if "laws" in found.record.get("parameters", {}) else coefficient(found.scene)
-            asked = found.scene.accuracy is not None
-            meshes = (summary.get("path_mesh"), summary.get("accuracy", {}).get("mesh")) if asked else (None, None)
-            path, final = (mesh["contact"] if mesh else None for mesh in meshes)
-            drawing = KeptDrawing(mu_0, steps, {}, {}, {}, path, found.named, folder.absolute(), final)
-            return replace(found, steps=steps, loads=tuple(_loads(steps, found.scene, summary)), drawing=drawing)
+            stable = [load.get("stable") for load in summary.get("loads", ())]
+            loads = load_results(found.steps, found.scene.loads(), lambda k, end: (*stable, *[None] * (k + 1))[k])
+            return replace(found, loads=tuple(loads), drawing=_drawing(found, folder))
         except (OSError, ValueError, KeyError, TypeError, AttributeError, csv.Error) as error:  # JSON of other things
             if isinstance(error, SceneError) and name in str(error):
                 raise
@@ -257,36 +283,38 @@ class Result:
     """In a notebook, too: the values of all steps are hundreds of pages."""
 
 
-def _loads(steps: Sequence[ContactState], scene: Scene, summary: Mapping[str, Any]) -> Iterator[LoadResult]:
-    """Return the result of each load of a run; the stability of its end comes from the summary."""
-    stable = [load.get("stable") for load in summary.get("loads", ())]
-    return load_results(steps, scene.loads(), lambda k, end: stable[k] if k < len(stable) else None)
+def steps_of(folder: Path) -> tuple[ContactState, ...]:
+    """Return the states of ``steps.csv`` of a folder; a last row that is cut short is left out.
+
+    Raises:
+        OSError: there is no such file.
+        ValueError: it is not of a run.
+    """
+    with (folder / "steps.csv").open(encoding="utf-8", newline="") as file:
+        return tuple(ContactState.from_row(row) for row in csv.DictReader(file) if None not in row.values())
 
 
-def _plain(value: Any) -> Any:
-    """Return a value ready for JSON: None for NaN."""
-    return None if isinstance(value, float) and math.isnan(value) else value
+def _drawing(result: Result, folder: Path) -> "Drawing":
+    """Return what the pictures of a result that was read are drawn from."""
+    from fingerpad.io.kept_drawing import KeptDrawing  # Matplotlib, which reading numbers does not need
+
+    mu_0 = None if "laws" in result.record.get("parameters", {}) else coefficient(result.scene)
+    meshes = (result.record.get("path_mesh"), result.record.get("accuracy", {}).get("mesh"))
+    path, final = (mesh["contact"] if mesh and result.scene.accuracy is not None else None for mesh in meshes)
+    return KeptDrawing(mu_0, result.steps, {}, {}, {}, path, result.named, folder.absolute(), final)
 
 
-def _nested(state: ContactState) -> dict[str, Any]:
-    found: dict[str, Any] = {key: _plain(getattr(state, key)) for key in (*CONDITIONS, *RESULTS, *_STABILITY)}
-    return found | {kind: getattr(state, kind).known() for kind in _CHANGES}
+def _state(name: str, kept: Mapping[str, Any]) -> ContactState:
+    """Return a named state of ``summary.json``.
 
-
-def _state(summary: Mapping[str, Any], prefix: str) -> ContactState | None:
-    if summary.get(f"{prefix}_contact_length") is None:
-        return None
-    values = {key: summary.get(f"{prefix}_{key}") for key in (*CONDITIONS, *RESULTS, *_STABILITY)}
-    given = {"mu_app": math.nan} | {key: value for key, value in values.items() if value is not None}
-    if wrong := [key for key, value in given.items() if not isinstance(value, int | float) and key != "load"]:
-        raise TypeError(f"{prefix}_{wrong[0]} is no number")
-    for key in ("f_ext", "voltage"):  # of the scene itself, in results of models without a loading path
-        given.setdefault(key, summary[key] if summary.get("model", "full") != "full" else math.nan)
-    if prefix == PREFIXES["full_slip"]:
-        given |= {"all_slip": True, "slip_held": True}
-    return ContactState(**given, error=_changes(summary, prefix, "error"), penalty=_changes(summary, prefix, "penalty"))
-
-
-def _changes(summary: Mapping[str, Any], prefix: str, kind: str) -> Errors:
-    keys = {field.name: f"{prefix}_{field.name}_{kind}" for field in fields(Errors)}
-    return Errors(**{name: summary[key] for name, key in keys.items() if summary.get(key) is not None})
+    Args:
+        name: of the state.
+        kept: its values and errors.
+    """
+    values = {key: value for key, value in kept.items() if key not in CHANGES and value is not None}
+    if wrong := [key for key, value in values.items() if not isinstance(value, int | float) and key != "load"]:
+        raise TypeError(f"{wrong[0]} of {name} is no number")
+    more: dict[str, Any] = {kind: Errors(**kept.get(kind, {})) for kind in CHANGES}
+    more |= {key: values.pop(key) for key in STABILITY if key in values}
+    slip = {"all_slip": True, "slip_held": True} if name == "full_slip" else {}
+    return replace(ContactState.from_row({"mu_app": math.nan} | values | slip), **more)

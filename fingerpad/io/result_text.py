@@ -5,6 +5,7 @@ import math
 from fingerpad.io.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import LoadResult, called
+from fingerpad.scene.reading import DEFAULT_MODEL
 
 _TITLES = {True: "Cross-section at the end of its last trace", False: "Cross-section at the centre of the finger"}
 
@@ -15,15 +16,16 @@ def text(result: Result) -> str:
     The whole finger follows; it comes first where the run was asked for a force in newtons.
     """
     asked, shown = result.asked_force is not None and result.finger is not None, result.named
-    lines = [_TITLES[result.model == "full"] if asked else "Result"]
-    lines[0] += f" (model '{result.model}')" if result.model != "full" else ""
+    lines = [_TITLES[bool(result.steps)] if asked else "Result"]
+    lines[0] += f" (model '{result.model}')" if result.model != DEFAULT_MODEL else ""
     if shown:
         heads = [called(name, state.voltage).split(" normal") for name, state in shown.items()]
         rows = [
             ["", *(head[0] for head in heads)],
             ["", *(("normal" + head[1]) if head[1:] else "" for head in heads)],
         ]
-        rows += [row for key in QUANTITIES if (row := _line(result, key))]
+        values = ((quantity.title, result.cells(key)) for key, quantity in result.printed.items())
+        rows += [[title, *each] for title, each in values if set(each) - {"–"}]
         if any(state.stable is not None for state in shown.values()):
             verdicts = {True: "yes", False: "no", None: "–"}
             rows.append(["stable", *(verdicts[state.stable] for state in shown.values())])
@@ -36,15 +38,6 @@ def text(result: Result) -> str:
     lines += [f"  {note}" for note in _remarks(result)]
     finger = [f"{result.finger}"] if result.finger is not None else []
     return "\n".join([*finger, *lines] if asked else [*lines, *finger])
-
-
-def _line(result: Result, key: str) -> list[str]:
-    """Return a quantity of the named states as a row of text; empty where it is missing in every state."""
-    quantity, cells = QUANTITIES[key], []
-    for name, state in result.named.items():
-        shown = key not in ("mu_app", "f_t") or name == "full_slip"
-        cells.append(cell(key, getattr(state, key), getattr(state.error, key, math.nan)) if shown else "–")
-    return [quantity.title, *cells] if set(cells) - {"–"} else []
 
 
 def _remarks(result: Result) -> list[str]:

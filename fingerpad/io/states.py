@@ -16,7 +16,8 @@ from itertools import groupby
 from operator import attrgetter
 from typing import Any
 
-from fingerpad.io.over_time import QUANTITIES, OverTime, over_time, without_parts_of_jumps
+from fingerpad.io.over_time import OverTime, over_time, without_parts_of_jumps
+from fingerpad.io.quantities import EXTREMES
 from fingerpad.scene import Load
 from fingerpad.scene.waveform import Waveform
 from variational.state import CONDITIONS, RESULTS, ContactState
@@ -30,7 +31,7 @@ PREFIXES = {"uncharged": "uncharged", "charged": "normal", "full_slip": "slip"}
 FIRST_TOUCH = "touch"
 """Name of the steps that press a finger in the air in a little, before a force can control it."""
 _ROUNDOFF = 1e-9  # relative, of a displacement or a voltage
-_UNLOADED = ContactState(
+UNLOADED = ContactState(
     f_ext=0.0, voltage=0.0, f_t=0.0, mu_app=math.nan, f_contact=0.0, f_electrostatic=0.0, ridges_in_contact=0,
     contact_length=0.0, time=0.0,
 )  # fmt: skip
@@ -196,7 +197,7 @@ class LoadResult:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the load's result, ready for JSON."""
-        end = {key: getattr(self.end, key) for key in (*CONDITIONS, *RESULTS) if key != "load"}
+        end = {key: getattr(self.end, key) for key in (*CONDITIONS, *RESULTS, *self.end.own) if key != "load"}
         extremes = {quantity: extreme.to_dict() for quantity, extreme in self.extremes.items()}
         more = {name: getattr(self, name) for name in ("full_slip_reached", "full_slip_held", "stable")}
         more |= {} if self.over_time is None else {"over_time": self.over_time.to_dict()}
@@ -239,15 +240,15 @@ def load_result(
         wave: its voltage over time; None where it is constant.
     """
     # A waveform has a state of its own at its begin, after a jump from the voltage before.
-    begin = [] if wave is not None else before or ([_UNLOADED] if mine[0].time > 0 else [])
+    begin = [] if wave is not None else before or ([UNLOADED] if mine[0].time > 0 else [])
     passed = over_time([*begin, *mine], wave)
     own = [state for state in mine if _counts(state, name)] or mine
     if passed is not None:
         own = without_parts_of_jumps(own, passed.start) if wave is not None else [*begin, *own]
     extremes = {}
-    for quantity in QUANTITIES:
+    for quantity in (*EXTREMES, *mine[-1].own):
         of = attrgetter(quantity)
-        known = [state for state in own if not math.isnan(of(state))]
+        known = [state for state in own if not math.isnan(getattr(state, quantity, math.nan))]
         if not known:
             continue
         least, most = min(known, key=of), max(known, key=of)

@@ -2,17 +2,20 @@
 
 import logging
 import logging.handlers
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
 from mpi4py import MPI
 
-from fingerpad.io import columns, dataset
+from fingerpad.io import dataset
 from fingerpad.io.files import Table, replace_json
 from fingerpad.io.place import Place
+from fingerpad.io.quantities import FIELDS
 from fingerpad.io.result import Result
 from variational.output import Fields
 from variational.problem import Problem
+from variational.state import ContactState
 
 _LOG = "run.log"
 
@@ -79,8 +82,8 @@ class Writer:
         """Write the present fields under the number of their step, and the load's name and units beside; collective."""
         if self._fields is not None:
             self._fields.write(float(step))
-            for name, column in columns.FIELDS.items():
-                about = {"unit": column.unit, "meaning": column.meaning}
+            for name, field in FIELDS.items():
+                about = {"unit": field.si, "meaning": field.meaning}
                 self.row("fields", {"file": f"{name}.bp", "variable": name, "time": step, "load": load} | about)
 
     def summary(self, found: Mapping[str, Any]) -> None:
@@ -144,3 +147,20 @@ def _send(log: logging.Logger, file: logging.Handler) -> None:
             memory.setTarget(file)
             memory.flush()
     log.handlers = [file]
+
+
+def ridge_rows(state: ContactState) -> Iterator[dict[str, Any]]:
+    """Yield the row of each ridge in contact, as ``ridges.csv`` has it."""
+    if (ridges := state.ridges) is None:
+        return
+    for k in np.flatnonzero(ridges.length > 0):
+        values = {name: getattr(ridges, attribute) for name, attribute in dataset.OF_RIDGES.items()}
+        yield {"ridge": int(ridges.number[k])} | {name: each[k] if len(each) else "" for name, each in values.items()}
+
+
+def site_rows(state: ContactState) -> Iterator[dict[str, Any]]:
+    """Yield the row of each ridge's receptor sites, as ``receptors.csv`` has it."""
+    if (sites := state.sites) is None:
+        return
+    for k, number in enumerate(sites.number):
+        yield {"ridge": int(number)} | {name: getattr(sites, each)[k] for name, each in dataset.OF_SITES.items()}

@@ -190,18 +190,13 @@ def _of_finger(run: Result, finger: WholeFinger, table: Measured) -> dict[str, f
 
 def _of_sweep(sweep: Table, table: Measured) -> pd.DataFrame:
     """Return the values in the table of a sweep."""
-    force = FORCE if table.whole else "f_ext"
-    if (FORCE in sweep.axes) is not table.whole:
-        mine, other = ("N", "N/m") if table.whole else ("N/m", "N")
+    keys, fixed = {"force": FORCE if table.whole else "f_ext", "voltage": "voltage"}, sweep.parameters or {}
+    if not set(sweep.axes) <= set(keys.values()) <= {*sweep.axes, *fixed}:
         raise SceneError(
-            f"{_place(sweep)} is over forces in {other}, and {table.name} has forces in {mine}; sweep {force}, or give "
-            "runs"
+            f"{_place(sweep)} is over {', '.join(sweep.axes)}, and {table.name} has forces in {table.force_unit}; "
+            f"give one over {keys['force']} and voltage alone, or runs"
         )
-    if others := [axis for axis in sweep.axes if axis not in (force, "voltage")]:
-        raise SceneError(
-            f"{_place(sweep)} is over {others[0]}, which no measurement has; give one over {force} and voltage alone"
-        )
-    rows, fixed = pd.DataFrame(sweep.rows), sweep.parameters or {}
+    rows = pd.DataFrame(sweep.rows)
     column = f"{PREFIXES[table.state]}_{'finger_' if table.whole else ''}{table.key}"
     if column not in rows:
         raise SceneError(
@@ -209,10 +204,10 @@ def _of_sweep(sweep: Table, table: Measured) -> pd.DataFrame:
             "give one of its runs"
         )
     try:
-        taken = {name: rows[key] if key in rows else fixed[key] for name, key in (("force", force), ("voltage",) * 2)}
+        taken = {name: rows[key] if key in rows else fixed[key] for name, key in keys.items()}
         taken |= {"value": rows[column], "error": rows.get(f"{column}_error", math.nan)}
         points = pd.DataFrame(taken).replace("", math.nan).astype(float)
-    except (ValueError, TypeError, KeyError) as error:
+    except (ValueError, TypeError) as error:
         raise SceneError(f"the table of {_place(sweep)} cannot be read: {error}") from None
     points["voltage"] = 0.0 if table.state == "uncharged" else points.voltage.abs()
     # Another run may have the value, at another voltage or sign of it.

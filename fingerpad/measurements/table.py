@@ -49,9 +49,11 @@ WHOLE = {
 STATES = {"uncharged": "uncharged", "charged": "charged", "full slip": "full_slip"}
 """What the state of a table can be, and its name in results."""
 _NAMES = (*CONDITIONS, *(SECTION | WHOLE), "spread")
-_COMMENT = re.compile(r"#\s*(source|doi|url|people|state)\s*:\s*(.*?)\s*", re.IGNORECASE)
+_COMMENT = re.compile(r"#\s*(source|doi|url|people|state)\s*:(.*)", re.IGNORECASE)
 _HEAD = re.compile(r"\s*(.*?)\s*[(\[]\s*([^()\[\]]*?)\s*[)\]]\s*")
-_LARGEST = 1_000_000  # bytes of a file
+_MAX_BYTES = 1_000_000  # of a file
+_MAX_COLUMNS = 1000
+_MAX_HEAD = 200  # characters of a head with a unit
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,7 +157,7 @@ def _file(file: Path) -> tuple[str, str, pd.DataFrame]:
     """Return the name of a file, what its rows are called, and its cells by head and line."""
     name = clip(str(file), 80)
     try:
-        lines = files.read(file, _LARGEST).decode("utf-8-sig").splitlines()
+        lines = files.read(file, _MAX_BYTES).decode("utf-8-sig").splitlines()
     except OSError as error:
         raise SceneError(f"{name} cannot be read: {error.strerror or error}") from None
     except UnicodeDecodeError:
@@ -163,7 +165,10 @@ def _file(file: Path) -> tuple[str, str, pd.DataFrame]:
     rows = [n for n, line in enumerate(lines, start=1) if line.strip() and not line.lstrip().startswith("#")]
     if len(rows) < 2:
         raise SceneError(f"{name} has no rows of numbers below a header such as 'force (N/m), friction (1)'")
-    mark = next((mark for mark in "\t;," if mark in lines[rows[0] - 1]), ",")
+    head = lines[rows[0] - 1]
+    mark = next((mark for mark in "\t;," if mark in head), ",")
+    if head.count(mark) >= _MAX_COLUMNS:
+        raise SceneError(f"{name}, line {rows[0]} has {head.count(mark) + 1} columns; at most {_MAX_COLUMNS} are read")
     text = io.StringIO("\n".join(lines[n - 1] for n in rows))
     try:
         frame = pd.read_csv(text, sep=mark, header=None, dtype=str, keep_default_na=False, skipinitialspace=True)
@@ -176,7 +181,7 @@ def _file(file: Path) -> tuple[str, str, pd.DataFrame]:
         raise SceneError(f"{name} is no table in CSV: a cell in quotation marks does not end in its line")
     frame = frame.set_axis(frame.iloc[0], axis=1).set_axis(rows).iloc[1:]
     comments = [match for line in lines if (match := _COMMENT.fullmatch(line.strip()))]
-    frame.attrs = {match[1].lower(): match[2] for match in comments}
+    frame.attrs = {match[1].lower(): match[2].strip() for match in comments}
     return name, "line", frame
 
 
@@ -201,7 +206,7 @@ def _named(name: str, frame: pd.DataFrame, columns: Mapping[str, str | None]) ->
 
 def _parts(head: str) -> tuple[str, str]:
     """Return name and unit of a head."""
-    match = _HEAD.fullmatch(head)
+    match = _HEAD.fullmatch(head[:_MAX_HEAD])
     return (match[1].lower(), match[2]) if match else (head.lower(), "")
 
 

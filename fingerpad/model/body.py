@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-import fingerpad.started  # noqa: F401
+import fingerpad.startup  # noqa: F401
 from fingerpad.io.states import full_slip
 from fingerpad.model import cautions
 from fingerpad.model.balance import force_error, refuse_strained, steady

@@ -30,8 +30,6 @@ class Step:
     """An accepted step."""
 
     state: ContactState
-    notes: list[str]
-    """Remarks on each ridge's place on the closure, mostly empty."""
     attempt: Attempt
     touches: bool = False
     """Whether the bone was lowered to a first touch."""
@@ -126,7 +124,8 @@ class Finger:
         p_c = self.ridge_loads(by_gap=True).p_c if self.coupling.by_gap else loads.p_c  # the closure's own
         notes = [self.closure.state(float(p), self.voltage) if self.closure else "" for p in p_c]
         more = {"load": load, "load_number": number, "mesh_contact": self.contact_size}
-        return Step(contact_state(self.continuation, loads, self.ridges, d_eq, **more), notes, attempt or Attempt())
+        state = contact_state(self.continuation, loads, self.ridges, d_eq, notes, **more)
+        return Step(state, attempt or Attempt())
 
 
 def assembled(

@@ -8,8 +8,7 @@ import numpy as np
 from mpi4py import MPI
 
 from fingerpad.io import states
-from fingerpad.io.drawing import Drawing, End
-from fingerpad.io.views import Profile, View
+from fingerpad.io.drawing import Drawing, End, Profile, View
 from fingerpad.model.stability import Checked
 from fingerpad.scene import Load
 from variational.state import ContactState

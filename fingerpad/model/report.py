@@ -8,9 +8,9 @@ from typing import Any
 
 from fingerpad.io import states
 from fingerpad.io.console import Console
-from fingerpad.io.drawing import End
-from fingerpad.io.views import View
-from fingerpad.io.writing import Writer
+from fingerpad.io.drawing import End, View
+from fingerpad.io.quantities import Output, valued
+from fingerpad.io.writing import Writer, ridge_rows, site_rows
 from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Step
 from fingerpad.model.options import Omission
@@ -36,6 +36,7 @@ class Report:
         writer: Writer,
         console: Console,
         clock: Clock,
+        outputs: Sequence[Output] = (),
     ) -> None:
         """Print the model; nothing is written before there is a step.
 
@@ -46,7 +47,9 @@ class Report:
             writer: writes into the folder.
             console: prints.
             clock: of the run.
+            outputs: computed from each state.
         """
+        self._outputs = outputs
         self._simulation, self._writer, self._console, self._clock = simulation, writer, console, clock
         finger, checks = simulation.finger, simulation.checks
         self.record = PathRecord(finger.problem.mesh.comm, checks)
@@ -71,29 +74,33 @@ class Report:
             assert step.state.record is not None
             self._writer.take(self._simulation.finger.problem)
             record = replace(step.state.record, processor_seconds=self._clock.processor_seconds())
-            state = replace(step.state, record=record)
+            state = replace(step.state, record=record, sites=self._viewer.sites(), changes=tuple(step.attempt.changes))
+            state = valued(state, self._outputs)
             self.record.states.append(state)
-            profile, receptors = self._viewer.profile(step), self._viewer.receptors(step)
+            profile = self._viewer.profile(step)
             if profile is not None:
                 self.record.profiles[state.step] = profile
             self._writer.row("steps", state.row())
-            size = {"mesh_contact": state.mesh_contact}
-            for name, found in (("ridges", self._viewer.ridges(step)), ("receptors", receptors)):
-                for each in found:
-                    self._writer.row(name, each | size)
-            for iteration, change in enumerate(step.attempt.changes):
+            self._tables("", {"step": state.step}, state, state.mesh_contact)
+            for iteration, change in enumerate(state.changes):
                 self._writer.row("coupling", {"step": state.step, "iteration": iteration + 1, "change": change})
             self._console.step(state, done)
             if self._simulation.finger.problem.mesh.comm.rank == 0:
                 self._log(step, state)
+
+    def _tables(self, end: str, first: Mapping[str, Any], state: ContactState, size: float) -> None:
+        """Write the rows of ridges in contact and of receptor sites of a state."""
+        for name, rows in (("ridges", ridge_rows(state)), ("receptors", site_rows(state))):
+            for row in rows:
+                self._writer.row(f"{name}{end}", {**first, **row, "mesh_contact": size})
 
     def _log(self, step: Step, state: ContactState) -> None:
         log = self._writer.log
         log.info("step %s coupling iterations %s", json.dumps(state.row()), step.attempt.changes)
         for cut in step.attempt.cutbacks:
             log.warning("step %d cut: %s", state.step, cut)
-        ridges = self._simulation.finger.ridges
-        notes = [f"ridge {j} {note}" for j, note in zip(ridges, step.notes, strict=True) if note]
+        assert state.ridges is not None
+        notes = [f"ridge {j} {note}" for j, note in zip(state.ridges.number, state.ridges.note, strict=True) if note]
         if notes:
             log.warning("step %d closure: %s", state.step, ", ".join(notes))
 
@@ -166,8 +173,4 @@ class Report:
             path = "steps.csv, history.png and *.bp are of the path on the starting mesh; %s"
             self._writer.log.info(path, words)
         for state, view in views.items():
-            size = {"mesh_contact": view.mesh.contact}
-            for name, found in (("ridges", view.ridges), ("receptors", view.receptors)):
-                for row in found:
-                    values = {key: value for key, value in row.items() if key != "step"}
-                    self._writer.row(f"{name}_final", {"of": state} | values | size)
+            self._tables("_final", {"of": state}, view.state, view.mesh.contact)

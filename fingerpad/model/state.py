@@ -1,6 +1,7 @@
 """The present state of a path of loads, and the energies and work of the step to it, in plain numbers."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,12 @@ from variational.state import ContactState, RidgeStates, StepRecord
 
 
 def contact_state(
-    path: Continuation, loads: RidgeLoads, ridges: list[int], d_eq: NDArray[np.float64], **more: Any
+    path: Continuation,
+    loads: RidgeLoads,
+    ridges: list[int],
+    d_eq: NDArray[np.float64],
+    notes: Sequence[str] = (),
+    **more: Any,
 ) -> ContactState:
     """Return the present state.
 
@@ -23,6 +29,7 @@ def contact_state(
         loads: resultants of the ridges that can touch.
         ridges: their numbers.
         d_eq: their air gaps (m), shape (ridges,).
+        notes: remarks on their places on the closure, mostly empty.
         **more: further attributes of the state.
     """
     solver, (slipping, all_slip) = path.solver, path.slip
@@ -43,7 +50,7 @@ def contact_state(
         all_slip=all_slip,
         ridges=RidgeStates(
             np.array(ridges), loads.length, loads.f_contact, loads.f_friction, loads.f_attraction, loads.p_c,
-            np.array(d_eq),
+            np.array(d_eq), tuple(notes),
         ),
         **more,
     )  # fmt: skip

@@ -1,16 +1,16 @@
 """A state of the whole finger as tables and pictures show it, whatever mesh and half of it the model has."""
 
-from collections.abc import Iterator
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fingerpad.io.views import Profile, View
+from fingerpad.io.drawing import Profile, View
 from fingerpad.model import symmetry
 from fingerpad.model.finger import Finger, Step
 from variational.output import Snapshot, gather_mesh
 from variational.receptors import Receptors
+from variational.state import Sites
 
 Array = NDArray[np.float64]
 _PROFILE = ("x", "y", "p_n", "t_t", "p_el", "area_x", "area_y")
@@ -31,8 +31,7 @@ class Viewer:
     def view(self, step: Step) -> View:
         """Return all that is shown of the present state, that of the step; collective."""
         profile, (snapshot, merkel) = self.profile(step), self.picture()
-        mesh, receptors = self._finger.size, list(self.receptors(step))
-        return View(step.state, mesh, profile, snapshot, merkel, list(self.ridges(step)), receptors)
+        return View(replace(step.state, sites=self.sites()), self._finger.size, profile, snapshot, merkel)
 
     def profile(self, step: Step) -> Profile | None:
         """Return the skin of a step, the present one, on rank 0, None elsewhere; collective."""
@@ -56,37 +55,10 @@ class Viewer:
                 merkel[ridges < 0, 0] *= -1
         return snapshot, merkel
 
-    def ridges(self, step: Step) -> Iterator[dict[str, Any]]:
-        """Yield the row of each ridge in contact."""
-        values = step.state.ridges
-        assert values is not None
-        for k, note in enumerate(step.notes):
-            if values.length[k] > 0:
-                yield {
-                    "step": step.state.step,
-                    "ridge": int(values.number[k]),
-                    "contact_length": values.length[k],
-                    "f_contact": values.f_contact[k],
-                    "f_friction": values.f_friction[k],
-                    "f_electrostatic": values.f_electrostatic[k],
-                    "p_c": values.p_c[k],
-                    "d_eq": values.d_eq[k],
-                    "state": note,
-                }
-
-    def receptors(self, step: Step) -> list[dict[str, Any]]:
-        """Return the row of each ridge's sites in the present state, that of the step; collective."""
+    def sites(self) -> Sites | None:
+        """Return the energy densities at the receptor sites in the present state, None without them; collective."""
         if self._sites is None:
-            return []
+            return None
         names, sed = self._finger.profiles.ridges, self._sites.sed()
-        merkel, meissner = sed[: len(names)], sed[len(names) :].reshape(-1, 2)
-        return [
-            {
-                "step": step.state.step,
-                "ridge": j,
-                "merkel_sed": at_tip,
-                "meissner_left": left,
-                "meissner_right": right,
-            }
-            for j, at_tip, (left, right) in zip(names, merkel, meissner, strict=True)
-        ]
+        left, right = sed[len(names) :].reshape(-1, 2).T
+        return Sites(np.array(names), sed[: len(names)], left, right)

@@ -17,11 +17,11 @@ voltage. ``docs/models.md`` has its errors.
 """
 
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,15 +32,19 @@ from fingerpad.io.result import Cost, Result
 from fingerpad.io.states import PREFIXES, WORDS
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import known
-from fingerpad.reduced.answer import STATES, Stopwatch, at_rest, at_slip, refuse_others
+from fingerpad.reduced.model import STATES, Model, Stopwatch, at_rest, at_slip, refuse_others
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import skin_modulus, used
 from fingerpad.scene.messages import show
+from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import leakage, remarks
 from geometry.parameters import Fingertip
 from geometry.profiles import Profiles
 from variational.attraction.cylinder import Cylinder, NoEquilibriumError, RidgeState, hertz_modulus
 from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.runs.context import RunContext
 
 Array = NDArray[np.float64]
 # The default finger's full runs without voltage, contact size 10 um: f_ext (N/m), then contact length (m), ridges in
@@ -56,9 +60,7 @@ INDENTATIONS = {  # m, how far the bone is lowered
     "full_slip": (0.1452e-3, 0.2239e-3, 0.3893e-3, 0.5842e-3, 0.7345e-3, 0.8569e-3, 0.9417e-3, 1.0510e-3),
 }
 _SHAPING = ("geometry", "materials", "contact")  # tables of a scene of which these lengths are a matter
-_ELSE = (
-    "use the model 'smooth', or the command compare with --contact-length and --ridges, or with the --run of a folder"
-)
+_ELSE = "use the model 'full', or the command compare with --contact-length and --ridges, or with the --run of a folder"
 
 
 @dataclass(frozen=True)
@@ -165,7 +167,7 @@ def from_run(scene: Scene, folder: Path) -> Footprint:
 def _of_summary(scene: Scene, folder: Path, summary: Mapping[str, Any]) -> Footprint:
     if "parameters" not in summary:  # a point of a sweep that was refused
         raise SceneError(f"run {folder} has no results: {summary.get('failure', 'summary.json is of another kind')}")
-    if (model := summary.get("model", "full")) != "full":
+    if (model := summary.get("model", DEFAULT_MODEL)) != DEFAULT_MODEL:
         raise SceneError(f"run {folder} is one of the model {show(model)}; give a full run")
     for name, unit in (("f_ext", "N/m"), ("voltage", "V")):
         if not np.isclose(abs(summary[name]), abs(getattr(scene, name)), rtol=1e-6, atol=1e-9):
@@ -190,6 +192,28 @@ def _finger(parameters: Mapping[str, Any]) -> dict[str, Any]:
     return dict(json.loads(json.dumps(shape | {"laws": own})))
 
 
+class Cylinders(Model):
+    """Every ridge in contact the same charged cylinder, over a footprint; without one it is the default finger's."""
+
+    name, words = "cylinders", "A closed form of charged cylinders"
+    traces = "traces of charged cylinders, indentations without voltage"
+
+    def __init__(self, footprint: Footprint | None = None) -> None:
+        """Take the footprint."""
+        self._footprint = footprint
+
+    def solve(self, scene: Scene, context: "RunContext") -> Result:
+        """Return the answer of :func:`solve`."""
+        return solve(scene, self._footprint)
+
+    def over_forces(
+        self, scene: Scene, f_ext: Sequence[float], state: str, solve: Callable[[Scene], Result]
+    ) -> list[ContactState]:
+        """Return the states computed together, with the indentations of the default finger without voltage."""
+        states = over_forces(scene, f_ext, state)
+        return [replace(each, bone_height=-indentation(each.f_ext, state)) for each in states]
+
+
 def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     """Return the answer of the cylinders; without a footprint it is the default finger's.
 
@@ -197,11 +221,11 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         SceneError: a scene with a history, another finger than the footprint's, or ridges that do not stay.
     """
     clock = Stopwatch()
-    refuse_others(scene, "cylinders")
+    refuse_others(scene, Cylinders.name)
     footprint = footprint or fitted(scene)
     found: dict[str, ContactState] = {}
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
-    errors = {} if footprint.charged else known.errors("cylinders", scene)
+    errors = {} if footprint.charged else known.errors(Cylinders.name, scene)
     notes = footprint.source, exact, known.in_words(errors), "the bone's height is not in this model", *leakage(scene)
     cautions, states = [*remarks(scene), *([] if footprint.charged else known.cautions(scene))], {}
     for state in STATES:
@@ -215,7 +239,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     more |= {"laws": used(scene), "model_error": errors}
     cost = Cost(processor_seconds=clock.seconds())
     return Result(
-        scene, "cylinders", None, found["charged"], found["full_slip"],
+        scene, Cylinders.name, None, found["charged"], found["full_slip"],
         cost=cost, notes=notes, cautions=tuple(cautions), record=more,
     )  # fmt: skip
 
@@ -234,7 +258,7 @@ def over_forces(
     Raises:
         SceneError: as :func:`solve`, but for what is wrong with the other state alone.
     """
-    refuse_others(scene, "cylinders")
+    refuse_others(scene, Cylinders.name)
     if press:
         length = np.array([each.contact_length for each in press])
         ridges = np.array([each.ridges_in_contact for each in press])
@@ -312,6 +336,6 @@ def tip_radius(finger: Fingertip) -> float:
         what = f"{len(places)} crests" if len(places) > 1 else "a flat tip"
         raise SceneError(
             f"geometry.ridge_profile gives a ridge {what}; the model 'cylinders' takes ridges for cylinders, so use "
-            "the model 'smooth'"
+            "the model 'full'"
         )
     return step**2 / (2 * (high - low))

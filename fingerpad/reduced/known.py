@@ -18,10 +18,6 @@ KNOWN_ERROR: Mapping[str, Bands] = {
         "full_slip": {"mu_app": 0.024, "contact_length": 0.063, "f_electrostatic": 0.05},
         "charged": {"contact_length": 0.1, "f_electrostatic": 0.14},
     },
-    "smooth": {
-        "full_slip": {"mu_app": 0.017, "contact_length": 0.057, "f_electrostatic": 0.055, "bone_height": 0.012},
-        "charged": {"contact_length": 0.085, "f_electrostatic": 0.068, "bone_height": 0.013},
-    },
 }
 """Largest relative errors by model, rounded up to 0.1 %; tests/test_command_tables.py derives them again."""
 KNOWN_RUNS, KNOWN_FORCES, KNOWN_VOLTAGES = 44, (5.0, 150.0), (0.0, 200.0)

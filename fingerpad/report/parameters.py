@@ -8,7 +8,7 @@ from typing import Any
 
 from fingerpad.report.page import folded, paragraph, table, text
 from fingerpad.scene import Scene, SceneError, override
-from fingerpad.scene.reading import flat
+from fingerpad.scene.reading import DEFAULT_MODEL, flat
 
 PAPER = (
     "Forsbach, F., Heß, M., Papangelo, A. (2023). A two-scale FEM-BAM approach for fingerpad friction under "
@@ -65,7 +65,7 @@ def again(parameters: Mapping[str, Any], model: str, asked: Mapping[str, Any] | 
             f"The scene has laws of its own, written in Python ({parameters['laws']}); run the program that made them."
         )
     given = {key: value for key, value in changed(parameters).items() if key != "model"}
-    option = "" if model == "full" else f" --model {model}"
+    option = "" if model == DEFAULT_MODEL else f" --model {model}"
     if any("[" in key or isinstance(value, list) or value is None for key, value in given.items()):
         kept, more = 'open("scene.json"))', ""
         if asked:

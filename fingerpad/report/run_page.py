@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.io.kept_drawing import arrays_of
-from fingerpad.io.quantities import PER_LENGTH, PLUS_MINUS, QUANTITIES, cell
+from fingerpad.io.quantities import PER_LENGTH, PLUS_MINUS, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import before_sliding, called
+from fingerpad.reduced.models import MODELS
 from fingerpad.report import over_time, parameters, receptors, trust
 from fingerpad.report import page as html
 from fingerpad.report.frames import frames
@@ -102,19 +103,12 @@ def _cell(reached: list[Any]) -> str:
 def _numbers(result: Result) -> str:
     if not result.named:
         return html.section("numbers", "Key numbers", html.paragraph("The run has no named state."))
-    rows = []
-    for key, quantity in QUANTITIES.items():
-        cells = [
-            "–" if key in ("mu_app", "f_t") and name != "full_slip" else cell(key, value, error)
-            for name, state in result.named.items()
-            for value, error in [(getattr(state, key), getattr(state.error, key, math.nan))]
-        ]
-        if set(cells) - {"–"}:
-            rows.append((quantity.title, *cells))
+    every = [(quantity.title, *result.cells(key)) for key, quantity in result.printed.items()]
+    rows = [row for row in every if set(row[1:]) - {"–"}]
     slip = result.full_slip
     notes = []
     if result.asked_force is not None:
-        notes.append(_OF_FORCE[result.model == "full"])
+        notes.append(_OF_FORCE[bool(result.steps)])
     if any(state.error.known() for state in result.named.values()):
         notes.append(PLUS_MINUS)
     if slip is not None and not math.isnan(slip.penalty.contact_length):
@@ -233,8 +227,8 @@ def _model(result: Result) -> str:
         "Never in the model: inertia, viscous skin, waves, leakage of charge, moisture, the deformation and roughness "
         "of the screen, and the direction along the finger (plane strain). See docs/model.md."
     )
-    kinds = {"full": "Every ridge of the cross-section", "smooth": "A smooth finger with the law of one ridge"}
-    first = f"{kinds.get(result.model, 'A closed form of charged cylinders')} (model {result.model!r})."
+    words = MODELS[result.model].words if result.model in MODELS else "A model that is not registered here"
+    first = f"{words} (model {result.model!r})."
     unknowns = f" {result.cost.unknowns} unknowns." if result.cost.unknowns else ""
     left = html.items(omitted) if omitted else html.paragraph("Nothing of the scene was left out.")
     return html.section(

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from fingerpad.io.result import Result
 from fingerpad.io.states import called
 from fingerpad.reduced import known
+from fingerpad.reduced.models import follows_path
 from variational.state import ContactState
 
 GOOD, CARE, BAD = "holds", "care", "fails"
@@ -31,7 +32,7 @@ def findings(result: Result) -> list[Finding]:
     """Return what was looked at, in the order in which a reader needs it."""
     found = [_end(result)]
     found += _full_slip(result)
-    if result.model != "full":
+    if not follows_path(result.model):
         words = f"The model is {result.model!r}, a cheaper one; {known.in_words(result.record.get('model_error', {}))}."
         return [*found, Finding("model", CARE, words), *_cautions(result)]
     for examined in (_cautions, _mesh, _balance, _stability, _jumps, _restarts):
@@ -67,7 +68,7 @@ def _end(result: Result) -> Finding:
 
 
 def _full_slip(result: Result) -> Iterator[Finding]:
-    if result.full_slip is not None and result.model == "full":
+    if result.full_slip is not None and follows_path(result.model):
         words = "Every point in contact slips one way, and the forces stayed the same over a further 0.2 mm."
         yield Finding("full slip", GOOD, words)
     elif result.full_slip is None and any(load.until_full_slip or load.moves for load in result.scene.loads()):

@@ -1,5 +1,6 @@
 """One attempt at a run: the path of its loads on one mesh, and the errors of its states."""
 
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -9,12 +10,13 @@ from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.io import petsc_options
 from fingerpad.io.checkpoint import Checkpoint, CheckpointError
 from fingerpad.io.console import Console
+from fingerpad.io.drawing import Profile
 from fingerpad.io.interrupt import Interrupt, Interrupted
 from fingerpad.io.left import in_words
 from fingerpad.io.over_time import NOTE, long_steps
 from fingerpad.io.provenance import provenance
+from fingerpad.io.quantities import Output, valued
 from fingerpad.io.result import Result
-from fingerpad.io.views import Profile
 from fingerpad.io.writing import Writer
 from fingerpad.model import cautions
 from fingerpad.model.balance import broken, force_error
@@ -28,6 +30,7 @@ from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene
 from fingerpad.scene.laws import coefficient, used
+from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.scene.remarks import leakage, remarks
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.startup import MPI
@@ -90,8 +93,10 @@ class Attempt:
         interrupt: Interrupt,
         restarts: Restarts,
         checkpoint: Checkpoint | None = None,
+        outputs: Sequence[Output] = (),
     ) -> None:
         """Mesh the finger; collective."""
+        self._outputs = outputs
         self._model, self._checkpoint, self._restarts = model, checkpoint, restarts
         self._comm, self._interrupt = comm, interrupt
         self._writer, self._console, self._clock = writer, console, clock
@@ -99,7 +104,7 @@ class Attempt:
         with clock.phase("setup"):
             self.simulation = Simulation(model, comm, self._on_step, self._on_load)
         loads = [load.name for load in model.loads]
-        self.report = Report(self.simulation, model.omitted, loads, writer, console, clock)
+        self.report = Report(self.simulation, model.omitted, loads, writer, console, clock, outputs)
         self._recorder = StateRecorder(self.simulation) if model.options.errors else None
         self._refinement: Refinement | None = None
         self._ended: dict[str, str] = {}
@@ -230,6 +235,7 @@ class Attempt:
             unknowns, more["accuracy"] = refinement.base.unknowns, refinement.summary()
             notes += refinement.notes
             self.report.final(final)
+        named = {name: valued(state, self._outputs) for name, state in named.items()}
         self.report.load_reached()
         failure = self._ended.get("failure", "" if refinement is None else refinement.failure)
         mu_0 = coefficient(scene)
@@ -246,7 +252,7 @@ class Attempt:
         more |= {"restarts": restarts.table, "laws": used(scene), "provenance": provenance()}
         result = Result(
             scene,
-            "full",
+            DEFAULT_MODEL,
             named.get("uncharged"),
             named.get("charged"),
             named.get("full_slip"),
@@ -264,6 +270,7 @@ class Attempt:
             record=more,
             folder=self._writer.folder,
             drawing=drawing,
+            outputs=tuple(self._outputs),
         )
         result = with_newtons(result)
         if result.failure:

@@ -14,19 +14,20 @@ import os
 import sys
 import time
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-from fingerpad.io.files import lock_file, read_object, replace_json
-from fingerpad.io.folder import below
+from fingerpad.io.files import below, lock_file, read_object, replace_json
 from fingerpad.io.left import between
 from fingerpad.io.place import identity
 from fingerpad.io.terminal import watched
 from fingerpad.runs.processes import End, Pool, limit_processor_time, run
 from fingerpad.scene import Scene
+from fingerpad.scene.reading import DEFAULT_MODEL
 
 Summary = dict[str, Any]
 _LIMIT = 900.0  # s of processor time for one scene
@@ -97,7 +98,7 @@ def sweep(
     folder: Path,
     jobs: int = 2,
     limit: float = _LIMIT,
-    model: str = "full",
+    model: str = DEFAULT_MODEL,
     quiet: bool = False,
     forces: Mapping[str, float] = MappingProxyType({}),
 ) -> dict[str, Summary]:
@@ -108,7 +109,7 @@ def sweep(
         folder: of all results.
         jobs: processes at a time.
         limit: seconds of processor time for one scene.
-        model: ``"full"`` or ``"smooth"``.
+        model: a name of :data:`fingerpad.reduced.models.MODELS`, of one that meshes.
         quiet: whether to print nothing, and show no bar.
         forces: on the whole finger (N) by name, as of :func:`fingerpad.runs.solve.run`; of scenes that have one.
 
@@ -164,26 +165,21 @@ def sweep(
 
 
 def _one(scene: Path, folder: Path, model: str, force: float | None = None) -> None:
-    from fingerpad.startup import start
-
-    start()
+    import fingerpad.startup  # noqa: F401  # before any other import of libraries
     from fingerpad.io.checkpoint import CheckpointError
     from fingerpad.io.place import PlaceError
-    from fingerpad.runs.solve import solved, tables_in
+    from fingerpad.reduced.models import find
+    from fingerpad.runs.context import RunContext
+    from fingerpad.runs.solve import solved
     from fingerpad.scene import SceneError, from_kept
 
-    asked = from_kept(json.loads(scene.read_text(encoding="utf-8")))
-
-    def solve(resume: bool) -> None:
-        tables = tables_in(folder.parent) if model == "smooth" else None  # of all points
-        path = model == "full"  # the others are listed by the sweep alone
-        solved(asked, model, folder, lines=path, bar=path, report=False, force=force, resume=resume, tables=tables)
-
+    asked, way = from_kept(json.loads(scene.read_text(encoding="utf-8"))), find(model)
+    context = RunContext(folder, lines=way.path, bar=way.path, report=False)
     try:
         try:
-            solve(resume=model == "full" and force is None)
+            solved(asked, way, replace(context, resume=way.resumes and force is None), force)
         except CheckpointError:  # nothing to go on from
-            solve(resume=False)
+            solved(asked, way, context, force)
     except PlaceError as error:  # another run is at it, or the disk is full: it may be gone the next time
         print(error, file=sys.stderr)
         sys.exit(os.EX_TEMPFAIL)

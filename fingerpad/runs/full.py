@@ -2,19 +2,18 @@
 
 import json
 import signal
-from collections.abc import Mapping
-from contextlib import nullcontext
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import fingerpad.started  # noqa: F401
+import fingerpad.startup  # noqa: F401
 from fingerpad.io import petsc_options
 from fingerpad.io.abort import all_together, no_room
 from fingerpad.io.checkpoint import Checkpoint
 from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt
-from fingerpad.io.place import Place
 from fingerpad.io.provenance import provenance
+from fingerpad.io.quantities import Output, checked
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
 from fingerpad.model import expected
@@ -23,23 +22,17 @@ from fingerpad.model.memory import estimate
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.touching import by_rule
 from fingerpad.runs.attempt import Attempt, read
+from fingerpad.runs.context import RunContext
 from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import coefficient
+from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.startup import MPI
 from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError
 
 
-def run(
-    scene: Scene,
-    folder: Path | None,
-    comm: MPI.Comm,
-    lines: bool = True,
-    bar: bool = True,
-    resume: bool = False,
-    asked: Mapping[str, Any] | None = None,
-) -> Result:
+def run(scene: Scene, context: RunContext) -> Result:
     """Reach every load of a scene; refine where it asks for an accuracy; collective.
 
     Where the scene does not give the number of ridges that can touch, a rule of thumb does. All loads are gone through
@@ -49,12 +42,7 @@ def run(
 
     Args:
         scene: what is run.
-        folder: of tables, plots and fields; None to write nothing.
-        comm: communicator of the run.
-        lines: whether to print the steps.
-        bar: whether to show the progress bar.
-        resume: go on from the checkpoint in the folder.
-        asked: of which the scene is a trace, see :class:`fingerpad.io.place.Place`; a trace has no checkpoint.
+        context: ranks, folder, console, and whether to go on from the checkpoint in the folder.
 
     Returns:
         The result, the same on every rank. It has a ``failure`` if a load or an accuracy could not be reached; every
@@ -68,27 +56,28 @@ def run(
         SceneError: the finger cannot be meshed; on every rank.
         DiskFull: there is no more room for results; on the ranks that found out, which end the others.
     """
+    comm = context.comm or MPI.COMM_WORLD
+    outputs = checked(context.outputs)
     all_together(comm)
     petsc_options.check(comm, scene.numerics.element)
-    console = Console(comm, lines, bar)
     try:
-        with nullcontext() if folder is None else Place(folder, scene.parameters(), comm, asked=asked) as place:
+        with context.console() as console, context.place(scene, DEFAULT_MODEL) as place:
             checkpoint = None
-            if place is not None and asked is None:
-                checkpoint = _checkpoint(scene, place.folder)
-            kept = read(checkpoint, comm) if resume and checkpoint is not None else None
-            return _run(scene, Writer(place, comm), comm, console, checkpoint, kept)
+            if place is not None and context.asked is None:
+                checkpoint = _checkpoint(scene, place.folder, outputs)
+            kept = read(checkpoint, comm) if context.resume and checkpoint is not None else None
+            return _run(scene, Writer(place, comm), comm, console, outputs, checkpoint, kept)
     except GeometryError as error:
         what = "the finger cannot be meshed" if scene.laws.mesh is None else "mesh"
         raise SceneError(f"{what}: {error}") from error
-    finally:
-        console.close()
 
 
-def _checkpoint(scene: Scene, folder: Path) -> Checkpoint:
+def _checkpoint(scene: Scene, folder: Path, outputs: Sequence[Output]) -> Checkpoint:
     """Return the checkpoint of a scene by the present program."""
     versions = provenance()["versions"]
-    return Checkpoint(folder, scene.parameters(), {"source": versions["source"], "dolfinx": versions["dolfinx"]})
+    names = ", ".join(each.name for each in outputs) or "none"
+    same = {"source": versions["source"], "dolfinx": versions["dolfinx"], "list of outputs": names}
+    return Checkpoint(folder, scene.parameters(), same)
 
 
 def _run(
@@ -96,6 +85,7 @@ def _run(
     writer: Writer,
     comm: MPI.Comm,
     console: Console,
+    outputs: Sequence[Output],
     checkpoint: Checkpoint | None,
     kept: dict[str, Any] | None,
 ) -> Result:
@@ -115,7 +105,7 @@ def _run(
         with Interrupt(comm) as interrupt:
             while True:
                 _expect(scene, model, comm, console)
-                attempt = Attempt(model, comm, writer, console, clock, interrupt, restarts, checkpoint)
+                attempt = Attempt(model, comm, writer, console, clock, interrupt, restarts, checkpoint, outputs)
                 if model.mesh_file is not None:
                     _expect(scene, model, comm, console, attempt.simulation.finger.unknowns)
                 if kept is not None:

@@ -10,20 +10,18 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from fingerpad.io.quantities import QUANTITIES, Quantity, cell
+from fingerpad.io.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import PREFIXES, STATES, LoadResult
-from fingerpad.slices.finger import QUANTITIES as OF_FINGER
+from fingerpad.scene.keys import Key, every
 from fingerpad.slices.finger import WholeFinger
+from fingerpad.slices.force import NEWTONS
 
-SHOWN = ("mu_app", "f_t", "contact_length", "f_electrostatic", "ridges_in_contact")
-"""Quantities of a named state."""
 LOAD = "load"
 """Beginning of the columns of a load over time."""
 FORCE = "force"
 """Axis of the force on the whole finger (N), which is no key of a scene."""
 _WHOLE = ("mu_app", "f_t", "f_electrostatic", "contact_area", "gross_area")
-_FRICTION = ("mu_app", "f_t")  # at full slip alone
 _NEWTONS = ("f_ext", *_WHOLE, "indentation")
 _IN_TIME = ("mu_app", "f_t", "contact_length")
 _ENDS = {"min": "least", "max": "largest", "mean": "mean"}
@@ -38,8 +36,8 @@ def row(result: Result, whole: bool = False) -> dict[str, Any]:
     """
     if whole:
         return (_newtons(result.finger) if result.finger is not None else {}) | {"failure": result.failure}
-    values = result.values()
-    names = [f"{PREFIXES[state]}_{key}" for state in STATES for key in SHOWN]
+    values, keys = result.values(), (*SWEPT, *(each.name for each in result.outputs))
+    names = [f"{PREFIXES[state]}_{key}" for state in STATES for key in keys]
     cells = {key: values.get(key) for name in names for key in (name, f"{name}_error") if key in values}
     if result.finger is not None:
         cells |= _newtons(result.finger)
@@ -53,7 +51,7 @@ def _newtons(finger: WholeFinger) -> dict[str, float]:
     for state in finger.states:
         values, error = finger.values(state), finger.error.get(state, {})
         for key in _NEWTONS:
-            if key in _FRICTION and state != "full_slip":
+            if key in FRICTION and state != "full_slip":
                 continue
             name = _of_finger(state, key)
             found |= {name: values[key]} | ({f"{name}_error": error[key]} if key in error else {})
@@ -76,22 +74,24 @@ def _in_time(load: LoadResult) -> dict[str, float]:
     return found
 
 
-def shown(columns: Iterable[str], whole: bool) -> tuple[str, dict[str, Quantity]]:
+def shown(columns: Iterable[str], whole: bool, outputs: Iterable[Output] = ()) -> tuple[str, dict[str, Output]]:
     """Return a named state, and the columns of it that a table shows.
 
     Args:
         columns: of the sweep.
         whole: whether it is over the force in newtons.
+        outputs: of the sweep, that are computed from a state.
 
     Returns:
         Full slip. Without friction a whole finger has none, and it is the last state before.
     """
     if not whole:
-        return "full_slip", {f"{PREFIXES['full_slip']}_{key}": QUANTITIES[key] for key in SHOWN}
+        known = {key: QUANTITIES[key] for key in SWEPT} | {each.name: each for each in outputs}
+        return "full_slip", {f"{PREFIXES['full_slip']}_{key}": each for key, each in known.items()}
     there = set(columns)
     state = next((name for name in reversed(STATES) if _of_finger(name, "contact_area") in there), "full_slip")
-    keys = [key for key in _WHOLE if state == "full_slip" or key not in _FRICTION]
-    return state, {_of_finger(state, key): OF_FINGER[key] for key in keys}
+    keys = [key for key in _WHOLE if state == "full_slip" or key not in FRICTION]
+    return state, {_of_finger(state, key): FINGER[key] for key in keys}
 
 
 def _of_finger(state: str, key: str) -> str:
@@ -128,7 +128,7 @@ def in_time(name: str, columns: Iterable[str]) -> dict[str, str]:
     return {column: said for key, said in words.items() if (column := f"{LOAD}_{name}_{key}") in there}
 
 
-def head(quantity: Quantity) -> str:
+def head(quantity: Output) -> str:
     """Return the symbol of a quantity, or its words where it has none, with the unit."""
     name = quantity.symbol.removesuffix(" in contact")
     return f"{name} ({quantity.unit})" if quantity.unit else name
@@ -164,3 +164,10 @@ def printed(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     return f"{value:g}" if isinstance(value, int | float) else str(value)
+
+
+def described(key: str) -> Key | None:
+    """Return what is known of a dotted key of a scene, or of the force on the whole finger; None of a table."""
+    if key == FORCE:
+        return Key(FORCE, "N", None, f"{NEWTONS.low:g} to {NEWTONS.high:g} N", "external force on the whole finger")
+    return next((each for each in every() if each.name == re.sub(r"\[\d+\]", "[]", key)), None)

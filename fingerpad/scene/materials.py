@@ -4,12 +4,13 @@ A range is wider than measured values by a factor of ten or more on either side.
 the scene reference, ``docs/scene.md``.
 """
 
+import re
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, Field, ValidationError, model_validator
 
-from fingerpad.scene.messages import clip, show
+from fingerpad.scene.messages import show
 from fingerpad.scene.table import Finite, Part
 from geometry.bounds import within
 from variational.attraction.insulator import insulator_thickness
@@ -101,28 +102,25 @@ class Electric(Part):
         return insulator_thickness(d_sc, self.eps_sc, self.d_i, self.eps_i)
 
 
-Length = Annotated[float, Field(strict=True, gt=0, allow_inf_nan=False)]
-LengthUnit = Literal["m", "cm", "mm", "um", "µm", "μm", "micron", "nm", "pm"]
-"""Units of a height map, those of ``variational.roughness.heightheader``."""
+Length = Annotated[Finite, within(1e-10, 0.1, "m")]
 
 
 class Topography(Part):
     """A measured height map, from which the roughness is taken; see :mod:`variational.roughness.heightfile`."""
 
     file: str
-    """File of the height map: text, NumPy or an instrument's format; a relative path starts at the scene file."""
-    unit: LengthUnit | None = None
-    """Unit of the heights. Text and NumPy files need a unit; most files of instruments hold their own."""
+    """File of the height map: NumPy's, a plain matrix of numbers, or a format of SurfaceTopography; a relative path
+    starts at the scene file."""
+    unit: Literal["m", "cm", "mm", "um", "µm", "μm", "nm", "pm"] | None = None
+    """Unit of the heights, for a file that has no unit of its own."""
     size: tuple[Length, Length] | None = None
-    """Lengths of the map along x, from the first line of a matrix to the last, and y, along a line. A map without
-    coordinates needs these lengths or those of a pixel."""
+    """Lengths of the map along x, from the first line of a matrix to the last, and y, along a line (m), for a file that
+    has no size of its own."""
     pixel: tuple[Length, Length] | None = None
-    """Lengths of a pixel along x and y, in place of the map's lengths."""
-    size_unit: LengthUnit | None = None
-    """Unit of these lengths; by default the unit of the heights."""
+    """Lengths of a pixel along x and y (m), in place of the map's lengths."""
     missing: str | None = None
-    """Mark of missing pixels in a text, besides nan and empty places, or in a NumPy file, a number there. Without it a
-    value far from all other heights is refused; "nan" takes all values as measured."""
+    """Mark of missing pixels besides nan and empty places: a number, in a plain matrix also a word. Without it a value
+    far from all other heights is refused; "nan" takes all values as measured."""
 
     def roughness(self) -> dict[str, float]:
         """Return h_rms and wavelength (m) of the map.
@@ -130,19 +128,15 @@ class Topography(Part):
         Raises:
             ValueError: the file cannot be read, or is no height map.
         """
-        from variational.roughness.heightfile import NoUnit, scan
+        from variational.roughness.heightfile import scan
         from variational.roughness.spectrum import roughness_table
 
         try:
-            found = scan(self.file, self.size, self.unit, self.size_unit, self.missing, self.pixel)
-            return roughness_table(found.map)
-        except NoUnit:
-            text = f"topography.unit is missing; {clip(self.file)} holds numbers without a unit"
-            raise ValueError(text) from None
+            return roughness_table(scan(**dict(self)).map)
         except OSError as error:
             raise ValueError(f"topography.file is {show(self.file)}: {error.strerror or error}") from None
         except (ValueError, ImportError) as error:
-            text = str(error).replace('missing="', 'topography.missing="', 1)
+            text = re.sub(r"'(unit|size|pixel|missing)'", r"topography.\1", str(error))
             raise ValueError(f"topography: {text}") from None
 
 
@@ -175,10 +169,13 @@ class Roughness(Part):
         for name in ("h_rms", "wavelength"):
             if name in data:
                 raise ValueError(f"{name} is {show(data[name])} and topography is given too, which has it; give one")
+        given = data["topography"]
+        if isinstance(given, dict):  # strict rules take no list for a tuple
+            given = {key: tuple(value) if isinstance(value, list) else value for key, value in given.items()}
         try:
-            found = Topography.model_validate(data["topography"])
+            found = Topography.model_validate(given)
         except ValidationError:
-            return data  # to be refused where it is
+            return data | {"topography": given}  # to be refused where it is
         return {key: value for key, value in data.items() if key != "topography"} | found.roughness()
 
     def largest_gap(self, h_0: float) -> float:

@@ -15,6 +15,8 @@ from pydantic import BaseModel
 from fingerpad.scene.messages import SceneError, clip, key_of, show
 from variational import files
 
+DEFAULT_MODEL = "full"
+"""Model of a run whose files name none, by :data:`fingerpad.reduced.models.MODELS`."""
 MOST_BYTES = 1_000_000
 """Largest size of a scene, or of a table of voltages; the longest scene that comes along has 1000 bytes."""
 _MOST_DEPTH = 8  # of tables in lists in tables; a scene has 3
@@ -85,12 +87,14 @@ def read_study(path: Path) -> dict[str, Any]:
 
 
 def model_of(path: Path | None) -> str:
-    """Return the model of the run whose ``scene.json`` is given, ``"full"`` of any other scene.
+    """Return the model of the run whose ``scene.json`` is given, :data:`DEFAULT_MODEL` of any other scene.
 
     Raises:
         SceneError: the file cannot be read.
     """
-    return "full" if path is None or path.suffix.lower() != ".json" else str(_kept(path).get("model", "full"))
+    if path is None or path.suffix.lower() != ".json":
+        return DEFAULT_MODEL
+    return str(_kept(path).get("model", DEFAULT_MODEL))
 
 
 def _of_run(path: Path) -> dict[str, Any]:

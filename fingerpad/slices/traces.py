@@ -2,8 +2,8 @@
 
 The full model follows three histories. The finger is pressed without voltage. It is pressed lightly, charged and
 pressed on. It is pressed lightly, charged, slid to full slip and pressed on while it slides; every accepted step at
-full slip is then a point of the trace. The models "smooth" and "cylinders" solve one scene for each of :data:`FORCES`
-forces. A trace that ends before the force is reached is made again to a larger one.
+full slip is then a point of the trace. A model without a path has :data:`FORCES` points. A trace that ends before the
+force is reached is made again to a larger one.
 """
 
 from collections.abc import Iterator
@@ -13,11 +13,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fingerpad.io.folder import below
+from fingerpad.io.files import below
 from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS
-from fingerpad.reduced import cylinders
-from fingerpad.reduced.answer import TooLight
+from fingerpad.reduced.model import Model
 from fingerpad.scene import Scene, SceneError
 from fingerpad.slices import errors
 from fingerpad.slices.finger import WholeFinger, in_order
@@ -33,7 +32,7 @@ if TYPE_CHECKING:
     Solve = Callable[[Scene, str], Result]
 
 FORCES = 8
-"""Points of a trace of the models "smooth" and "cylinders"."""
+"""Points of a trace of a model without a path."""
 LIGHT = 1 / 30
 """Force under which a finger is charged, and slid to full slip, over the largest of its trace."""
 _SMALLEST, _LARGEST = 1e-3, 5e3  # N/m, of a scene
@@ -42,7 +41,6 @@ _TRIES = 4  # of a trace, each time to a larger force
 _MORE, _MARGIN = 1.8, 1.1  # factors on the largest force: of the next try, and beyond the expected one
 # A finger of the default's width bears some 0.53 N where its centre bears 75 N/m; forces grow as F^0.77.
 _LINE, _POINT, _POWER, _WIDTH = 75.0, 0.53, 0.77, 20e-3
-_WORDS = {"full": "traces of the full model", "smooth": "traces of the model 'smooth'"}
 
 
 class Traced(NamedTuple):
@@ -50,11 +48,11 @@ class Traced(NamedTuple):
 
     trace: Trace
     result: Result | None
-    """None of the model "cylinders", whose trace is computed at once."""
+    """None of a model without a path."""
     total: Total | None = None
 
 
-def whole(scene: Scene, force: float, model: str, solve: "Solve") -> Result:
+def whole(scene: Scene, force: float, model: Model, solve: "Solve") -> Result:
     """Return the result at the end of the last trace, with the whole finger under a force; collective.
 
     Args:
@@ -78,15 +76,15 @@ def whole(scene: Scene, force: float, model: str, solve: "Solve") -> Result:
         return stopped.result
     totals = {name: each.total for name, each in found.items() if each.total is not None}
     known = {name: {errors.MESH: errors.discretisation(_end(each, name))} for name, each in found.items()}
-    source = f"{_WORDS.get(model, 'traces of charged cylinders, indentations without voltage')} to "
+    source = f"{model.traces} to "
     source += ", ".join(f"{each.trace.end[1]:.4g} N/m ({name.replace('_', ' ')})" for name, each in found.items())
     last = list(found.values())[-1].result
-    if last is None or model != "full":
+    if last is None:
         f_ext = list(totals.values())[-1].centre / scale
         if f_ext < _SMALLEST:
             raise SceneError(
                 f"force is {force:.4g} N, under which the centre of the finger bears {f_ext:.2g} N/m, and the model "
-                f"{model!r} must have at least {_SMALLEST:g} N/m; give a larger force or a shorter finger"
+                f"{model.name!r} must have at least {_SMALLEST:g} N/m; give a larger force or a shorter finger"
             )
         last = solve(scene.model_copy(update={"f_ext": f_ext}), "")
     states = {name: each.trace for name, each in found.items()}
@@ -109,11 +107,6 @@ def _wanted(scene: Scene) -> Iterator[str]:
         yield "charged"
     if scene.friction_law() is not None:
         yield "full_slip"
-
-
-def scenes(scene: Scene) -> int:
-    """Return how many scenes a model without a path solves for a force, where no trace is made again."""
-    return FORCES * len(list(_wanted(scene))) + 1
 
 
 def refuse(scene: Scene) -> None:
@@ -143,7 +136,7 @@ class _Stopped(Exception):  # noqa: N818
 class _Reach:
     """Follows traces to forces that are large enough."""
 
-    def __init__(self, scene: Scene, finger: Profile, force: float, model: str, solve: "Solve") -> None:
+    def __init__(self, scene: Scene, finger: Profile, force: float, model: Model, solve: "Solve") -> None:
         self._scene, self._finger, self._force, self._model, self._solve = scene, finger, force, model, solve
         scale = scene.geometry.width / _WIDTH
         self._top = _LINE * scale * (force / (_POINT * scale**2)) ** _POWER * _MARGIN
@@ -172,10 +165,8 @@ class _Reach:
 
     def _made(self, name: str, top: float) -> Traced:
         scene = self._scene
-        if self._model == "cylinders":
-            return Traced(self._closed(name, top), None)
-        if self._model != "full":
-            return self._points(name, top)
+        if not self._model.path:
+            return Traced(self._points(name, top), None)
         folder = "" if name == list(_wanted(scene))[-1] else name
         result = self._solve(history(scene, name, top), folder)
         if result.interrupted:
@@ -186,33 +177,13 @@ class _Reach:
             why = f": {result.failure}" if result.failure else ""
             raise SceneError(f"the force on the finger is {self._force:.4g} N; {error}{why}") from None
 
-    def _closed(self, name: str, top: float) -> Trace:
-        """Return a trace of the model "cylinders", whose indentations are those without voltage."""
+    def _points(self, name: str, top: float) -> Trace:
+        """Return a trace of a model without a path."""
+        scene = self._scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else self._scene
         forces = [float(each) for each in np.geomspace(top * LIGHT, top, FORCES)]
         kind = "full_slip" if name == "full_slip" else "charged"
-        scene = self._scene.model_copy(update={"voltage": 0.0}) if name == "uncharged" else self._scene
-        states = [
-            replace(state, bone_height=-cylinders.indentation(state.f_ext, kind))
-            for state in cylinders.over_forces(scene, forces, kind)
-        ]
+        states = self._model.over_forces(scene, forces, kind, lambda each: self._solve(each, name))
         return trace(states, scene.geometry.ridge_wavelength)
-
-    def _points(self, name: str, top: float) -> Traced:
-        """Return a trace of a model that solves one scene at a time."""
-        voltage = 0.0 if name == "uncharged" else self._scene.voltage
-        found, states = None, []
-        for f_ext in np.geomspace(top * LIGHT, top, FORCES):
-            scene = self._scene.model_copy(update={"f_ext": float(f_ext), "voltage": voltage})
-            try:
-                found = self._solve(scene, name)
-            except TooLight as error:
-                raise SceneError(f"force is {self._force:.4g} N, and in its trace {error}") from None
-            state = found.named.get("charged" if name == "uncharged" else name)
-            if state is None:
-                raise SceneError(f"the model {self._model!r} has no {name.replace('_', ' ')} at {f_ext:.4g} N/m")
-            states.append(state)
-        assert found is not None
-        return Traced(trace(states, self._scene.geometry.ridge_wavelength), found)
 
 
 def history(scene: Scene, name: str, top: float) -> Scene:
