@@ -107,8 +107,9 @@ class Simulation:
                 if self._restart is not None:
                     return self._restart
                 self.on_load()
-        finally:
-            self._end_half()
+        finally:  # nothing collective: a rank may be alone here with its error
+            if self._half is not None:
+                self._half.count()
         self.checks.free()
         return None
 
