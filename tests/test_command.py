@@ -72,11 +72,11 @@ def test_options_of_petsc_are_told_from_the_others(words, own, petsc):
         (["--set", "f_ext=nan"], "f_ext is nan; it must be a finite number"),
         (
             ["--set", "f_ext=0.5 N"],
-            "f_ext is '0.5 N'; it must be in N/m; a force on the whole finger is given by run --force",
+            "f_ext is '0.5 N'; it must be in N/m; a force on the whole finger is the key force",
         ),
-        (["--force", "0.5"], "command line: argument --force: 0.5 has no unit; give one, as in '0.5 N'"),
-        (["--force", "nan"], "force is 'nan'; "),
-        (["--force", "0.5 N", "--set", "f_ext = 50"], "--set f_ext is given and --force too; give one of the two"),
+        (["--force", "nan"], "force is nan; "),
+        (["--force", "0.5 N", "--set", "force = 1"], "--set force is given and --force too; give one of the two"),
+        (["--force", "0.5 N", "--set", "f_ext = 50"], "force is 0.5 N and f_ext is 50 N/m; give one of the two"),
         (["--set", "voltage=50", "--set", " voltage = 100"], "--set voltage is given twice; give one value"),
         (
             ["--set", "roughness.young=1e5", "--set", "roughness={h_rms=1e-6}"],
@@ -153,21 +153,11 @@ def test_quiet_ranks(monkeypatch, capsys):
     assert capsys.readouterr() == ("", "")
 
 
-@pytest.mark.parametrize(
-    ("kind", "text", "words"),
-    [
-        (int, "0", "0 is not allowed; it must be a whole number greater than 0"),
-        (int, "two", "two is not allowed; it must be a whole number greater than 0"),
-        (float, "-1", "-1 is not allowed; it must be a number greater than 0"),
-        (float, "nan", "nan is not allowed; it must be a number greater than 0"),
-        (float, "inf", "inf is not allowed; it must be a number greater than 0"),
-    ],
-)
-def test_positive_arguments(kind, text, words):
-    with pytest.raises(argparse.ArgumentTypeError) as refusal:
-        positive(kind)(text)
-    assert str(refusal.value) == words
-    assert positive(kind)("3") == 3
+@pytest.mark.parametrize("text", ["0", "two", "-1", "1.5", "nan", ""])
+def test_positive_arguments(text):
+    with pytest.raises(argparse.ArgumentTypeError, match="is not allowed; it must be a whole number greater than 0"):
+        positive(text)
+    assert positive("03") == 3
 
 
 # -- commands ----------------------------------------------------------------------------------------------

@@ -86,7 +86,7 @@ def test_colours_of_voltages_go_up_to_the_largest_amount(command, voltages, tmp_
         ("estimate --csv nowhere/mu.csv", "its folder is not there"),
         ("estimate --plot same.png --csv same.png", "same.png is given twice, once to be written;"),
         ("estimate demos/scenes/unload.toml", "history is given; the model 'cylinders' answers for press, charge and"),
-        ("microscale --p 0:1e5:3", "--p has the value 0.0;"),
+        ("microscale --p 0:1e5:3", "--p: 0.0 is not allowed; it must be greater than 0"),
         ("microscale demos/scenes/sine_while_sliding.toml", "name those wanted by --voltage"),
         ("params zebra", "no key of a scene has zebra in its name"),
         ("compare --ridges 3", "one of --contact-length and --ridges is given without the other"),
@@ -142,7 +142,7 @@ def test_real_area_is_the_bearing_area():
 def test_microscale_table_is_the_closure():
     """External pressure is that of Eq. 9, attraction that across the equivalent air gap (Eq. 12), to roundoff."""
     scene = Scene()
-    law = scene.roughness.bearing_area(scene.h_0)
+    law = scene.closure()
     for row in microscale.table(scene, [100.0, 200.0], [5e3, 5e4]):
         assert row["p_ext"] == pytest.approx(float(law.external_pressure(row["u_bar"], row["voltage"])), rel=1e-9)
         across = 8.854e-12 * row["voltage"] ** 2 / 2 / (scene.h_0 + row["d_eq"]) ** 2
@@ -172,7 +172,7 @@ def test_every_key_is_listed():
     assert (found["roughness.h_rms"].unit, found["roughness.h_rms"].default) == ("m", 3.1e-6)
     assert found["roughness.h_rms"].meaning.startswith("Root mean square height")
     assert found["mesh.touching_half_arc"].allowed == "1e-06 to 0.2"
-    assert found["contact.formulation"].allowed == '"penalty", "nitsche", "augmented"'
+    assert found["contact.formulation"].allowed == '"penalty", "nitsche", "augmented" or module:Class'
     assert found["geometry.ridge_count"].allowed == "whole, 1 to 101"
     assert found["history[].name"].required
 
@@ -199,7 +199,7 @@ def test_sweep_prints_and_keeps_a_table(tmp_path, capsys):
     with (tmp_path / "table.csv").open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
     assert [float(row["voltage"]) for row in rows] == [0.0, 200.0]
-    assert float(rows[0]["slip_mu_app"]) == pytest.approx(0.25, rel=1e-12)
+    assert float(rows[0]["full_slip_mu_app"]) == pytest.approx(0.25, rel=1e-12)
 
 
 @pytest.mark.parametrize(

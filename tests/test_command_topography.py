@@ -11,6 +11,7 @@ from fingerpad.scene import from_data, load
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import remarks
 from tests.commands import refused
+from tests.test_laws import Held
 from variational.roughness.selfaffine import SelfAffine
 
 
@@ -159,8 +160,9 @@ def test_map_of_ridges_is_told(tmp_path, capsys):
     assert REMARK not in text and "a scene refuses" not in text
 
 
-def test_roughness_as_long_as_ridges_is_told(tmp_path, capsys):
+def test_roughness_as_long_as_ridges_is_told(tmp_path, monkeypatch, capsys):
     """By commands, in a sweep, and among a result's cautions."""
+    monkeypatch.setattr("fingerpad.cli.check._picture", lambda *given: "")
     long = ("--set", "roughness.wavelength=532 um")
     sweep = ("sweep", "--over", "voltage=0,100", "--model", "cylinders", "--out")
     check = ("check", "--out", str(tmp_path / "b"))
@@ -218,7 +220,7 @@ def test_map_wider_than_any_skin_is_refused(tmp_path, capsys):
 def test_laws_of_ones_own_have_no_remark():
     """They do not read the roughness of the scene."""
     scene = load(None, {"roughness.wavelength": 532e-6})
-    assert remarks(scene) and not remarks(scene.with_laws(closure=scene.closure()))
+    assert remarks(scene) and not remarks(scene.replace(roughness=Held()))
 
 
 def test_values_that_a_scene_refuses_are_told(tmp_path, capsys):

@@ -82,7 +82,7 @@ def pressed():
         size = MeshSize(contact=15 * UM, interface=60 * UM, touching_fraction=FLAT.mesh.touching_fraction)
         mesh = load(MPI.COMM_SELF, partial(strip.build, finger, size, 1), strip.LAYERS)
         skins = {tag: solid for tag, solid in FLAT.solids().items() if tag in strip.LAYERS}
-        interface = Interface(FLAT.contact.law(), FLAT.friction_law(), FLAT.h_0)
+        interface = Interface(FLAT.contact.law, FLAT.friction_law(), FLAT.h_0)
         made = Body(mesh, skins, interface, FLAT.closure(), moving_sides=mesh.facets(tags.SIDES))
         walk, states = made.continuation, []
         for target in (Target("press", f_ext=5.0), Target("charge", voltage=170.0)):

@@ -154,7 +154,7 @@ def test_no_half_where_the_finger_is_not_its_own_mirror_image(history, moves):
     """An own material may have fibres at an angle; one of the program's may not."""
     scene = from_data(NINE | {"history": history, "mesh": MESH})
     straight, inclined = (
-        plan(scene.with_laws(materials={"dermis": solid})) for solid in (NeoHooke(2.5e3), Fibres(2.5e3))
+        plan(scene.replace(materials={"dermis": solid})) for solid in (NeoHooke(2.5e3), Fibres(2.5e3))
     )
     assert (straight.both_halves, straight.symmetric_start) == (moves, moves)
     assert (inclined.both_halves, inclined.symmetric_start) == (True, False)

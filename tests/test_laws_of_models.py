@@ -14,7 +14,7 @@ from variational.materials.ogden import Ogden
 def test_cylinders_take_any_friction_law():
     """f_T is the limit at each state's mean pressure over its length. Tolerance: roundoff."""
     for law in (DERJAGUIN, OWN["friction"], Coulomb(0.25)):
-        slip = cylinders.solve(Scene().with_laws(friction=law)).full_slip
+        slip = cylinders.solve(Scene(friction=law)).full_slip
         length = slip.contact_length
         assert slip.f_t == pytest.approx(law.limit(slip.f_contact / length) * length, rel=1e-14)
         assert slip.mu_app == pytest.approx(slip.f_t / 75.0, rel=1e-14)
@@ -22,14 +22,14 @@ def test_cylinders_take_any_friction_law():
 
 def test_cylinders_take_any_closure():
     """Each ridge is Maugis's cylinder at the closure's own gap."""
-    found = cylinders.solve(Scene().with_laws(closure=Held()))
-    assert found.record["slip_d_eq"] == 2e-6
+    found = cylinders.solve(Scene(roughness=Held()))
+    assert found.record["full_slip_d_eq"] == 2e-6
     assert found.full_slip.f_electrostatic != cylinders.solve(Scene()).full_slip.f_electrostatic
 
 
 def test_cylinders_know_the_default_fingers_lengths_alone():
-    scene = Scene().with_laws(materials={"stratum_corneum": NeoHooke(1e5)})
-    with pytest.raises(SceneError, match="materials are given for stratum_corneum, and a contact length is known of"):
+    scene = Scene(materials={"stratum_corneum": NeoHooke(1e5)})
+    with pytest.raises(SceneError, match="materials is not that of the default finger, whose contact length is known"):
         cylinders.solve(scene)
     given = cylinders.given(1.5e-3, 15)
     own, default = (cylinders.solve(one, given).full_slip.f_electrostatic for one in (scene, Scene()))
@@ -38,19 +38,19 @@ def test_cylinders_know_the_default_fingers_lengths_alone():
 
 def test_modulus_of_the_skin_is_the_given_materials():
     """The same solid given as a key and as an object has the same modulus. Tolerance: roundoff."""
-    own = Scene().with_laws(materials={"stratum_corneum": Ogden(86.76e3, -14.53, 0.48)})
+    own = Scene(materials={"stratum_corneum": Ogden(86.76e3, -14.53, 0.48)})
     assert laws.skin_modulus(own) == pytest.approx(laws.skin_modulus(Scene()), rel=1e-12)
 
 
 def test_cylinders_take_no_mesh(tmp_path):
     file = tmp_path / "mine.msh"
     file.write_text("", encoding="utf-8")
-    scene = Scene().with_laws(mesh=file)
+    scene = Scene(geometry={"file": file})
     with pytest.raises(SceneError, match="answers for fingers of the scene's own geometry"):
         cylinders.solve(scene)
 
 
 def test_rule_of_thumb_takes_a_law():
     """More friction rolls the finger further, by the coefficient at a ridge's pressure."""
-    plain, rough = (touching.by_rule(Scene().with_laws(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
+    plain, rough = (touching.by_rule(Scene(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
     assert rough.mesh.touching_half_arc > plain.mesh.touching_half_arc

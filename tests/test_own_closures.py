@@ -70,7 +70,7 @@ def test_notes_are_of_the_pressures_that_the_closure_gets(tmp_path):
     data = {key: value for key, value in SMALL.items() if isinstance(value, dict)} | {"history": history}
     told = {}
     for length in ("pressure", "gap"):
-        scene = from_data(data | {"contact": {"length": length}}).with_laws(closure=Telling())
+        scene = from_data(data | {"contact": {"length": length}}).replace(roughness=Telling())
         full.run(scene, RunContext(tmp_path / length, MPI.COMM_SELF))
         with (tmp_path / length / "ridges.csv").open(encoding="utf-8") as file:
             rows = [row for row in csv.DictReader(file) if float(row["p_c"]) > 0]

@@ -20,7 +20,7 @@ def main(argv: Sequence[str]) -> int:
     parser.add_file("--plot", PICTURE, "picture of the mesh")
     args = parser.read(argv)
     scene = scene_of(args)
-    if scene.laws.mesh is not None:
+    if scene.geometry.file is not None:
         raise SceneError("geometry.file is given, which is a mesh already; fingerpad check draws it")
     from fingerpad.cli import section
 

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Any
 
 from fingerpad.cli.arguments import Parser, echo
-from fingerpad.scene import Scene
 from fingerpad.scene.keys import Key, every
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.schema import schema
@@ -71,7 +70,6 @@ def table(found: Sequence[Key]) -> str:
 
 def toml(found: Sequence[Key]) -> str:
     """Return a scene file of the defaults; keys without one, and those another choice would read, are comments."""
-    unread = {f"contact.{name}" for name in Scene().contact.unread()}
     lines = ["# A scene of fingerpad with every key at its default. SI units; forces per metre of finger (N/m)."]
     table = ""
     for key in found:
@@ -81,7 +79,7 @@ def toml(found: Sequence[Key]) -> str:
             plain = where.replace("[]", "")
             lines += ["", f"# [[{plain}]]" if many else f"[{plain}]" if _read(found, where) else f"# [{plain}]"]
         lines += textwrap.wrap(key.meaning, _WIDTH, initial_indent="# ", subsequent_indent="# ")
-        off = key.default is None or key.name in unread or "[]" in key.name
+        off = key.default is None or bool(key.law) or "[]" in key.name
         given = f"{'# ' * off}{name} ={'' if key.default is None else ' ' + _value(key.default)}"
         lines.append(f"{given}  # {', '.join(filter(None, (key.unit, key.allowed)))}")
     return "\n".join(lines)

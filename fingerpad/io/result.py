@@ -11,10 +11,11 @@ from fingerpad.io import dataset, terminal
 from fingerpad.io.files import read_object
 from fingerpad.io.quantities import CHANGES, FRICTION, QUANTITIES, STABILITY, Output, checked, valued
 from fingerpad.io.quantities import read as read_outputs
-from fingerpad.io.states import PREFIXES, STATES, LoadResult, load_results
+from fingerpad.io.states import STATES, LoadResult, load_results
 from fingerpad.scene import Scene, SceneError, as_kept
 from fingerpad.scene.laws import coefficient
 from fingerpad.scene.messages import clip
+from fingerpad.scene.reading import DEFAULT_MODEL
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
 
 if TYPE_CHECKING:
@@ -98,11 +99,6 @@ class Result:
         """The last accepted state; without a loading path the last named state."""
         return self.steps[-1] if self.steps else (self.full_slip or self.charged or self.uncharged)
 
-    @property
-    def asked_force(self) -> float | None:
-        """Force on the whole finger (N) that the run was asked for; None of a run of a cross-section."""
-        return (self.record.get("asked") or {}).get("force")
-
     def plot(self, kind: str = "surface", path: str | Path | None = None) -> "Figure | None":
         """Draw the skin, the deformed finger, the history of sliding, or the footprint of the whole finger.
 
@@ -128,11 +124,9 @@ class Result:
             return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None
         if self.drawing is not None:
             return self.drawing.figure(kind, None if path is None else Path(path))
-        if self.model != "full":
-            raise ValueError(f"the model {self.model!r} has no skin to draw; use model='full'")
-        if terminal.rank() == 0:
-            raise ValueError("the result has no states to draw")
-        return None
+        if not self.steps:
+            raise ValueError(f"the result of the model {self.model!r} has no steps to draw; those of model='full' have")
+        return None  # on the other ranks
 
     def to_xarray(self) -> "xarray.Dataset":
         """Return steps, loads, ridges, sites and named states as one dataset with units, as ``result.nc`` has it.
@@ -170,13 +164,13 @@ class Result:
 
     # -- files -----------------------------------------------------------------------------------------
     def values(self) -> dict[str, Any]:
-        """Return conditions and results of the named states, flat: ``slip_mu_app``; None where a state is missing."""
+        """Return what is known of the named states, flat: ``full_slip_mu_app``; None where a state is missing."""
         found: dict[str, Any] = {}
-        for name, prefix in PREFIXES.items():
+        for name in STATES:
             state = getattr(self, name)
-            found |= {f"{prefix}_{key}": None if state is None else getattr(state, key) for key in self._kept()}
+            found |= {f"{name}_{key}": None if state is None else getattr(state, key) for key in self._kept()}
             for kind in CHANGES if state is not None else ():
-                found |= {f"{prefix}_{key}_{kind}": value for key, value in getattr(state, kind).known().items()}
+                found |= {f"{name}_{key}_{kind}": value for key, value in getattr(state, kind).known().items()}
         return {key: None if value != value else value for key, value in found.items()}
 
     def _kept(self) -> tuple[str, ...]:
@@ -187,7 +181,7 @@ class Result:
         """Return the content of ``summary.json``, ready for JSON; SI units."""
         last, values = self.last, self.values()
         nested = {
-            name: {key: values[f"{PREFIXES[name]}_{key}"] for key in self._kept()}
+            name: {key: values[f"{name}_{key}"] for key in self._kept()}
             | {kind: getattr(state, kind).known() for kind in CHANGES}
             for name, state in self.named.items()
         }
@@ -218,7 +212,7 @@ class Result:
         from fingerpad.slices.finger import WholeFinger  # it takes names of this module's wing
 
         parameters, named = summary["parameters"], summary.get("states", {})
-        bare = cls(as_kept(parameters), summary.get("model", "full"), None, None, None)
+        bare = cls(as_kept(parameters), summary.get("model", DEFAULT_MODEL), None, None, None)
         states: dict[str, Any] = {name: _state(name, named[name]) for name in STATES if name in named}
         bare = replace(
             bare,
@@ -233,9 +227,7 @@ class Result:
             finger=WholeFinger.from_dict(summary["finger"], bare.scene.slices) if "finger" in summary else None,
         )
         used = {*bare.to_dict(), "failure", "interrupted", "notes", "cautions", "outputs", "finger"}
-        used |= {
-            f"{PREFIXES[name]}_{field.name}_{kind}" for name in STATES for field in fields(Errors) for kind in CHANGES
-        }
+        used |= {f"{name}_{field.name}_{kind}" for name in STATES for field in fields(Errors) for kind in CHANGES}
         record = {key: value for key, value in summary.items() if key not in used}
         if "laws" in parameters:  # objects of Python, of which only the names are kept
             record["parameters"] = parameters
@@ -259,7 +251,7 @@ class Result:
             found = cls.from_dict(summary, folder)
             if (kept := dataset.read(folder, [each.name for each in found.outputs])) is not None:
                 found = replace(found, steps=kept[0], **kept[1])  # type: ignore[arg-type]
-            elif found.model == "full" and (folder / "steps.csv").exists():
+            elif (folder / "steps.csv").exists():
                 found = replace(found, steps=steps_of(folder))
             if not found.steps:
                 return found  # of no path, or of one without an accepted step

@@ -10,7 +10,7 @@ from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.messages import clip, show
 
 _FREE = re.compile(
-    r"(history\[\d+\]\.)?(f_ext|voltage)"  # the conditions of a measurement,
+    r"(history\[\d+\]\.)?(f_ext|force|voltage)"  # the conditions of a measurement,
     r"|history\[\d+\]\.(bone_height|name)"  # the force by another control, and a word for it,
     r"|output\.(errors|each_load|receptors)|numerics\.memory"  # and what changes no value
 )
@@ -25,9 +25,6 @@ class _Difference(NamedTuple):
 
 def refuse_mixed(runs: Sequence[Result]) -> None:
     """Refuse runs that differ in more than force and voltage: their values are no function of the two.
-
-    A run of a force in newtons ends with a trace, whose history has forces of its own. It counts as the scene that was
-    given.
 
     Raises:
         SceneError: the first key that differs, its two values and the two folders.
@@ -50,10 +47,10 @@ def folder(run: Result) -> str:
 
 
 def _conditions(run: Result) -> dict[str, Any]:
-    """Return the model of a run and every key of its scene, and its laws."""
-    kept = run.record.get("asked", run.record).get("parameters") or run.scene.parameters()
+    """Return the model of a run and every key of its scene."""
+    kept = run.record.get("parameters") or run.scene.parameters()
     scene = as_kept(kept)
-    return {"model": run.model} | scene.model_dump(mode="json") | {"laws": kept.get("laws", {})}
+    return {"model": run.model} | scene.model_dump(mode="json")
 
 
 def _difference(one: Any, other: Any, key: str = "") -> _Difference | None:

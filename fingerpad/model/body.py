@@ -28,7 +28,7 @@ from fingerpad.model import cautions
 from fingerpad.model.balance import force_error, refuse_strained, steady
 from fingerpad.model.gathered import Nodes, Points
 from fingerpad.model.state import contact_state, step_record
-from fingerpad.scene.laws import refuse_thickness
+from fingerpad.scene.contradictions import refuse_thickness
 from fingerpad.startup import MPI
 from geometry.mesh import TaggedMesh, load
 from geometry.meshfile import file

@@ -2,7 +2,7 @@
 
 import re
 
-from fingerpad.model.memory import refuse_beyond
+from fingerpad.model.memory import refuse_sizes
 from fingerpad.model.options import plan
 from fingerpad.model.touching import by_rule
 from fingerpad.scene.messages import SceneError, qualify
@@ -17,17 +17,13 @@ def check(scene: Scene) -> None:
 
     Raises:
         SceneError: layers touch or cross, ridges do not fit, the bone touches the skin, elements are too large, or so
-            many that they need more memory than the scene allows; or an accuracy is asked of a mesh of a file.
+            many that they need more memory than the scene allows.
     """
-    if scene.laws.mesh is not None:  # checked when it is read
-        if scene.accuracy is not None:
-            raise SceneError(
-                "accuracy is given and the mesh is of a file, which cannot be refined; leave one of the two out"
-            )
+    if scene.geometry.file is not None:  # checked when it is read
         return
     try:
         sizing.check(scene.geometry, scene.mesh)
-        refuse_beyond(scene.geometry, by_rule(scene).mesh, scene.numerics, plan(scene))
+        refuse_sizes(scene.geometry, by_rule(scene).mesh, scene.numerics, plan(scene))
     except GeometryError as error:
         message = re.sub(r"\bcontact size (\S+) m is", r"mesh.contact is \1 m,", str(error))
         raise SceneError(qualify(message, "geometry.", Fingertip.model_fields)) from None

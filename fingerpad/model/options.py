@@ -10,11 +10,13 @@ expected to touch are another matter (:mod:`fingerpad.model.touching`).
 from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from fingerpad.scene import Load, Numerics, Scene
 from geometry.parameters import Fingertip, MeshSize
 from geometry.sizing import touching_ridges
 from variational.contact.formulation import Formulation
+from variational.materials.material import Material
 
 
 @dataclass(frozen=True)
@@ -78,15 +80,15 @@ def plan(scene: Scene) -> ModelOptions:
     errors = scene.output.errors or scene.accuracy is not None
     if not errors:
         omitted.append(Omission("discretisation errors", "output.errors is false"))
-    symmetric = all(solid.keeps_symmetry() for solid in scene.laws.materials.values())
+    symmetric = all(solid.keeps_symmetry() for solid in scene.own_laws().values() if isinstance(solid, Material))
     both_halves = any(load.moves for load in scene.loads()) or not symmetric
-    if scene.laws.mesh is not None:  # the whole of it, and no other mesh of the same finger
+    if scene.geometry.file is not None:  # the whole of it, and no other mesh of the same finger
         if receptors:
             omitted.append(Omission("receptor sites", _FILE))
         if errors:
             omitted.append(Omission("discretisation errors", f"{_FILE} and cannot be refined"))
         return ModelOptions(voltage, friction, False, True, False, False, tuple(omitted))
-    symmetric_start = both_halves and symmetric and scene.contact.law().symmetric_start
+    symmetric_start = both_halves and symmetric and scene.contact.law.symmetric_start
     if not both_halves:
         omitted.append(_HALF)
     return ModelOptions(voltage, friction, receptors, both_halves, symmetric_start, errors, tuple(omitted))
@@ -122,9 +124,10 @@ class FingerModel:
         self.options = options
         self.geometry: Fingertip = scene.geometry
         self.mesh: MeshSize = scene.mesh
-        self.mesh_file, self.mesh_sha256 = scene.laws.mesh, scene.laws.mesh_sha256
+        self.mesh_file = None if scene.geometry.file is None else Path(scene.geometry.file)
+        self.mesh_sha256 = scene.geometry.file_sha256
         self.solids = scene.solids()
-        self.contact: Formulation = scene.contact.law()
+        self.contact: Formulation = scene.contact.law
         self.by_gap = scene.contact.length == "gap"
         self.friction = scene.friction_law()
         self.closure = scene.closure() if options.voltage else None

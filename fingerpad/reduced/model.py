@@ -121,9 +121,9 @@ def refuse_others(scene: Scene, model: str) -> None:
     Raises:
         SceneError: it has a history, or a mesh.
     """
-    if scene.laws.mesh is not None:
+    if scene.geometry.file is not None:
         raise SceneError(
-            f"mesh is {show(str(scene.laws.mesh))}; the model '{model}' answers for fingers of the scene's own "
+            f"geometry.file is {show(scene.geometry.file)}; the model '{model}' answers for fingers of the scene's own "
             "geometry, so use the model 'full'"
         )
     if scene.history is not None:

@@ -122,7 +122,7 @@ def _share(error: float, value: float) -> float:
 
 def _facets(result: Result, state: ContactState) -> Iterator[Finding]:
     """Find contacts of few facets, on which the effect of the penalty's springs is not resolved."""
-    springs = result.scene.contact.law().over_stiffer_screen() is not None
+    springs = result.scene.contact.law.over_stiffer_screen() is not None
     if not (springs and state.ridges_in_contact and state.mesh_contact):
         return
     facets = state.contact_length / state.ridges_in_contact / state.mesh_contact

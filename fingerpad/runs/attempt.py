@@ -1,19 +1,19 @@
 """One attempt at a run: the path of its loads on one mesh, and the errors of its states."""
 
-from collections.abc import Sequence
+import logging
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
-from fingerpad.accuracy.recompute import State, StateRecorder
 from fingerpad.accuracy.refinement import Refinement, with_errors
+from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.io import petsc_options
 from fingerpad.io.checkpoint import Checkpoint, CheckpointError
 from fingerpad.io.console import Console
-from fingerpad.io.drawing import Profile
 from fingerpad.io.interrupt import Interrupt, Interrupted
-from fingerpad.io.left import in_words
 from fingerpad.io.over_time import NOTE, long_steps
+from fingerpad.io.pace import in_words
 from fingerpad.io.provenance import provenance
 from fingerpad.io.quantities import Output, valued
 from fingerpad.io.result import Result
@@ -21,13 +21,11 @@ from fingerpad.io.writing import Writer
 from fingerpad.model import cautions
 from fingerpad.model.balance import broken, force_error
 from fingerpad.model.cost import Clock
-from fingerpad.model.finger import Step
+from fingerpad.model.finger import Finger, Step, meshed
 from fingerpad.model.hints import finer_mesh_may_help, hint
-from fingerpad.model.memory import refuse_beyond
 from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Report
 from fingerpad.model.simulation import RestartRequired, Simulation
-from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene
 from fingerpad.scene.laws import coefficient, used
 from fingerpad.scene.reading import DEFAULT_MODEL
@@ -37,42 +35,91 @@ from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
 from variational.solvers.checkpoint import OtherBody
 from variational.solvers.continuation import StepFailed
-from variational.solvers.equations import Control
-from variational.solvers.target import Progress
-from variational.solvers.timing import Counts
-from variational.solvers.transfer import SkinState, StateSnapshot
-from variational.state import ContactState, Errors, RidgeStates, StepRecord
+from variational.state import ContactState
 
 STEPS = 5
 """Accepted steps from one checkpoint to the next, at most; there is one at the end of each load."""
 FINEST = 5e-6
 """Contact size (m) down to which a run starts again by itself where the path of its loads cannot be followed."""
 
-_KEPT = (
-    *(ContactState, RidgeStates, StepRecord, Errors, Profile, Control, Counts, Progress),
-    *(State, StateSnapshot, SkinState),
-)
-"""Classes of what a checkpoint holds."""
 
+class Restarts:
+    """Reports restarts and keeps them.
 
-def read(checkpoint: Checkpoint, comm: MPI.Comm) -> dict[str, Any]:
-    """Return what the last checkpoint holds, on every rank; collective.
-
-    Raises:
-        CheckpointError: a run cannot go on from there; on every rank.
+    Attributes:
+        table: the restarts, ready for JSON.
+        notes: remarks for a reader of the result, on the restarts with smaller elements.
     """
-    kept: dict[str, Any] | CheckpointError | None = None
-    if comm.rank == 0:
-        try:
-            checkpoint.check()
-            kept = checkpoint.read(_KEPT)
-        except CheckpointError as error:
-            kept = error
-    kept = comm.bcast(kept)
-    if isinstance(kept, CheckpointError):
-        raise kept
-    assert kept is not None
-    return kept
+
+    def __init__(self, log: logging.Logger, console: Console) -> None:
+        """Start without any."""
+        self._log, self._console = log, console
+        self.table: list[dict[str, Any]] = []
+        self.notes: list[str] = []
+        self._seconds = 0.0
+
+    def kept(self) -> dict[str, Any]:
+        """Return what another process needs to go on."""
+        return {"table": self.table, "notes": self.notes, "seconds": self._seconds}
+
+    def resume(self, kept: Mapping[str, Any]) -> None:
+        """Go on from what another process kept."""
+        self.table, self.notes, self._seconds = kept["table"], kept["notes"], kept["seconds"]
+
+    def record(self, restart: RestartRequired, states: Sequence[ContactState], finger: Finger, clock: Clock) -> None:
+        """Record a restart; collective.
+
+        Args:
+            restart: what is to be added, and why.
+            states: accepted until here.
+            finger: with the model until here.
+            clock: of the run.
+        """
+        mesh = restart.model.mesh
+        step, load = (states[-1].step, states[-1].load) if states else (0, "start")
+        whole, seconds = restart.model.options.both_halves, clock.processor_seconds()
+        halves = " and both halves of the finger" if whole and not finger.options.both_halves else ""
+        added = f"mesh.touching_half_arc {mesh.touching_half_arc:g} m{halves}"
+        if mesh.contact < finger.size.contact:
+            added = f"mesh.contact {mesh.contact:g} m"
+            size = finger.size.contact * 1e6
+            self.notes.append(
+                f"No equilibrium was found with a contact size of {size:g} µm; the run started again with half of it."
+            )
+        text = f"step {step} ({load}): {restart.reason}; all loads again with {added}"
+        self._console.show(f"fingerpad: {text}")
+        self._log.warning(text)
+        counts = finger.solver.counts
+        self.table.append(
+            {
+                "step": step,
+                "load": load,
+                "reason": restart.reason,
+                "contact": mesh.contact,
+                "touching_half_arc": mesh.touching_half_arc,
+                "both_halves": whole,
+                "unknowns": finger.unknowns,
+                "newton_iterations": counts.newton,
+                "factorisations": counts.factorisations,
+                "processor_seconds": seconds - self._seconds,
+            }
+        )
+        self._seconds = seconds
+
+
+@dataclass(frozen=True)
+class Session:
+    """What all attempts of a run share."""
+
+    comm: MPI.Comm
+    writer: Writer
+    console: Console
+    clock: Clock
+    interrupt: Interrupt
+    outputs: Sequence[Output]
+    restarts: Restarts
+    checkpoint: Checkpoint | None
+    """None to keep nothing."""
 
 
 class Attempt:
@@ -83,28 +130,18 @@ class Attempt:
         report: its states, as they are written.
     """
 
-    def __init__(
-        self,
-        model: FingerModel,
-        comm: MPI.Comm,
-        writer: Writer,
-        console: Console,
-        clock: Clock,
-        interrupt: Interrupt,
-        restarts: Restarts,
-        checkpoint: Checkpoint | None = None,
-        outputs: Sequence[Output] = (),
-    ) -> None:
+    def __init__(self, model: FingerModel, session: Session) -> None:
         """Mesh the finger; collective."""
-        self._outputs = outputs
-        self._model, self._checkpoint, self._restarts = model, checkpoint, restarts
-        self._comm, self._interrupt = comm, interrupt
-        self._writer, self._console, self._clock = writer, console, clock
-        console.phase("meshing the finger and setting up its equations")
-        with clock.phase("setup"):
-            self.simulation = Simulation(model, comm, self._on_step, self._on_load)
+        self._model, self._outputs = model, session.outputs
+        self._comm, self._interrupt = session.comm, session.interrupt
+        self._checkpoint, self._restarts = session.checkpoint, session.restarts
+        self._writer, self._console, self._clock = session.writer, session.console, session.clock
+        self._console.phase("meshing the finger and setting up its equations")
+        with self._clock.phase("setup"):
+            self.simulation = Simulation(model, self._comm, self._on_step, self._on_load)
         loads = [load.name for load in model.loads]
-        self.report = Report(self.simulation, model.omitted, loads, writer, console, clock, outputs)
+        writer, console, clock = self._writer, self._console, self._clock
+        self.report = Report(self.simulation, model.omitted, loads, writer, console, clock, self._outputs)
         self._recorder = StateRecorder(self.simulation) if model.options.errors else None
         self._refinement: Refinement | None = None
         self._ended: dict[str, str] = {}
@@ -159,7 +196,7 @@ class Attempt:
         self._has_kept = True
 
     def resume(self, kept: dict[str, Any]) -> None:
-        """Go on from a checkpoint, as :func:`read` gives it; collective.
+        """Go on from a checkpoint, as :func:`fingerpad.runs.full.read` gives it; collective.
 
         Raises:
             CheckpointError: it is of another mesh.
@@ -186,7 +223,7 @@ class Attempt:
             return
         number = len(self._refinement.parameters) + (self._refinement.stiffer is not None)
         text = f"estimating discretisation errors: solve {self._solves} of {number}"
-        self._console.phase(text, (self._solves - 0.5) / number)
+        self._console.phase(text, (self._solves - 1) / number)
 
     def follow(self) -> RestartRequired | None:
         """Reach every load, and estimate or refine; return what must be added to the model, if anything; collective."""
@@ -204,14 +241,14 @@ class Attempt:
             self._ended["failure"] = "; ".join(filter(None, (str(error), tip)))
             if isinstance(error, Interrupted):
                 self._ended["interrupted"] = error.signal.name
-            return None if reached else _finer(self._model, error)
+            return None if reached else _finer(self._model, error, self._comm)
 
     def _affordable(self, restart: RestartRequired | None) -> RestartRequired | None:
         """Return a restart within the memory allowed; None, with a failure, for another one."""
         if restart is None:
             return None
         try:
-            _refuse_beyond(restart.model)
+            meshed(restart.model, self._comm)
         except GeometryError as error:
             self._ended["failure"] = f"{restart.reason}; all loads again would need more memory: {error}"
             return None
@@ -296,12 +333,13 @@ class Attempt:
         }
 
 
-def _finer(model: FingerModel, error: StepFailed) -> RestartRequired | None:
-    """Return a restart with half the contact size, where that may help and is possible.
+def _finer(model: FingerModel, error: StepFailed, comm: MPI.Comm) -> RestartRequired | None:
+    """Return a restart with half the contact size, where that may help and is possible; collective.
 
     Args:
         model: whose loads were not reached.
         error: why not.
+        comm: communicator of the run.
     """
     helps = model.mesh_file is None and finer_mesh_may_help(error, bool(model.asked))
     contact = model.mesh.contact / 2
@@ -309,11 +347,7 @@ def _finer(model: FingerModel, error: StepFailed) -> RestartRequired | None:
         return None
     finer = model.changed(mesh=model.mesh.model_copy(update={"contact": contact}))
     try:
-        _refuse_beyond(finer)
+        meshed(finer, comm)
     except GeometryError:  # more than the memory allowed
         return None
     return RestartRequired(str(error), finer)
-
-
-def _refuse_beyond(model: FingerModel) -> None:
-    refuse_beyond(model.geometry, model.mesh, model.numerics, model.options)

@@ -5,7 +5,7 @@ where they are quoted, and their control characters are written out.
 """
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from difflib import SequenceMatcher
 from typing import Any, get_args
 
@@ -39,6 +39,7 @@ _BOUNDS = {
 }
 
 
+LAW = "law"  # kind of the errors of a law, whose context has the text and the place
 NUMBER, WAVE = "a number", "a waveform"
 """What a voltage can be: parts of the place of an error that are no keys."""
 
@@ -92,13 +93,23 @@ def key_of(parts: Iterable[int | str]) -> str:
 def first_error(error: ValidationError, root: type[BaseModel]) -> str:
     """Return the first error of a validation of ``root`` as a message."""
     first = error.errors(include_url=False)[0]
-    kind, context, given = first["type"], first.get("ctx", {}), show(first["input"])
-    loc = tuple(part for part in first["loc"] if part not in (NUMBER, WAVE))
-    key = key_of(loc)
+    kind, context = first["type"], first.get("ctx", {})
+    loc = tuple(part for part in (*first["loc"], *context.get("at", ())) if part not in (NUMBER, WAVE))
+    if loc[:2] == ("contact", "law"):  # whose formulation's keys stand in the table itself
+        loc = ("contact", *("formulation" if part == "law" else part for part in loc[2:]))
+    key, value = key_of(loc), context.get("value", first["input"])
+    given = show(value)
+    if kind == LAW:
+        text = context["text"]  # of a whole law it is a sentence, which may begin with one of its keys
+        if "keys" not in context:
+            return f"{key} {text}"
+        return f"{key}.{text}" if re.split(r"\W", text)[0] in context["keys"] else f"{key}: {text}"
     if kind == OUT_OF_RANGE:
         return f"{key} {context['range'].words(context['number'], context['slip'], _default(root, loc))}"
     if kind == "extra_forbidden":
-        return f"{key} is not a key of {key_of(loc[:-1]) or 'a scene'}; {_instead(root, loc)}"
+        of = f" with the law {context['of']}" if "of" in context else ""
+        own = context.get("keys") or tuple(getattr(_model_at(root, loc[:-1]), "model_fields", ()))
+        return f"{key} is not a key of {key_of(loc[:-1]) or 'a scene'}{of}; {_instead(loc, own)}"
     if kind == "missing":
         return f"{key} is missing; it must be given"
     if kind == "value_error":
@@ -115,10 +126,10 @@ def first_error(error: ValidationError, root: type[BaseModel]) -> str:
         return f"{key} is empty; it must have at least one entry"
     if kind == "too_long":
         return f"{key} has too many entries; it must have at most {context['max_length']}"
-    if kind == NO_QUANTITY and key == "f_ext" and _newtons(first["input"]):
-        return f"{key} is {given}; it must be in N/m; a force on the whole finger is given by run --force {given}"
-    if kind in ("int_type", "int_from_float") and isinstance(first["input"], float):
-        given = repr(first["input"])  # 5.0, which show writes as 5
+    if kind == NO_QUANTITY and key == "f_ext" and _newtons(value):
+        return f"{key} is {given}; it must be in N/m; a force on the whole finger is the key force"
+    if kind in ("int_type", "int_from_float") and isinstance(value, float):
+        given = repr(value)  # 5.0, which show writes as 5
     if kind in _TYPES:
         return f"{key or 'a scene'} is {given}; it must be {_TYPES[kind]}"
     return f"{key or 'a scene'} is {given}; {first['msg']}"
@@ -158,18 +169,21 @@ def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
 
 
 # -- unknown keys --------------------------------------------------------------------------------------
-def _instead(root: type[BaseModel], loc: tuple[int | str, ...]) -> str:
-    """Return what may have been meant by an unknown key: the nearest key of all tables, or those of its own."""
+def _instead(loc: tuple[int | str, ...], own: Sequence[str]) -> str:
+    """Return what may have been meant by an unknown key: the nearest key of all tables, or those of its own.
+
+    Args:
+        loc: place of the key.
+        own: keys that its table has.
+    """
+    from fingerpad.scene.keys import every  # it reads the models, whose messages these are
+
     table, name = key_of(loc[:-1]), str(loc[-1])
-    if (table, name.lower()) == ("", "force"):
-        return (
-            "a force on the whole finger in newtons is asked of a run (fingerpad run --force, or fp.run(force=…)), or "
-            "swept (fingerpad sweep --over force=…)"
-        )
-    own = list(getattr(_model_at(root, loc[:-1]), "model_fields", ()))
     wanted = clip(name, _MOST_KEY).lower().replace("-", "_")
     keys = [(table, key, _NEAR) for key in own]
-    keys += [(where, key, _ELSEWHERE) for where, key in _keys(root) if where != table]
+    names = [key.name.replace("[]", "[0]").split(".") for key in every()]
+    tables = dict.fromkeys((".".join(name[:depth]), name[depth]) for name in names for depth in range(len(name)))
+    keys += [(at, key, _ELSEWHERE) for at, key in tables if (at, key) != (table, wanted)]
     near = [
         (likeness, -k)
         for k, (_, key, least) in enumerate(keys)
@@ -180,16 +194,6 @@ def _instead(root: type[BaseModel], loc: tuple[int | str, ...]) -> str:
         return f"did you mean {where}{'.' * bool(where)}{key}?"
     known = ", ".join(own)
     return f"keys are {known if len(known) <= _MOST_LIST else known[:_MOST_LIST].rpartition(',')[0] + ' and others'}"
-
-
-def _keys(model: type[BaseModel], table: str = "") -> Iterator[tuple[str, str]]:
-    """Yield every table and key that a model has, from the top down."""
-    for name in model.model_fields:
-        yield table, name
-    for name, field in model.model_fields.items():
-        for inner in _models_in(field.annotation):
-            entry = "[0]" if "tuple" in str(field.annotation) else ""
-            yield from _keys(inner, f"{table}{'.' * bool(table)}{name}{entry}")
 
 
 def qualify(message: str, prefix: str, names: Iterable[str]) -> str:

@@ -1,19 +1,22 @@
 """From a scene file, or from changes of one, to plain data: read within bounds, whatever is in it."""
 
-import hashlib
 import json
 import os
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
+from dataclasses import is_dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from pydantic import BaseModel
 
+from fingerpad.scene.law_keys import table
 from fingerpad.scene.messages import SceneError, clip, key_of, show
 from variational import files
+from variational.coefficients import Law
+from variational.roughness.closure import Closure
 
 DEFAULT_MODEL = "full"
 """Model of a run whose files name none, by :data:`fingerpad.reduced.models.MODELS`."""
@@ -26,8 +29,6 @@ _PATH = 80  # characters of a path in a message
 _AFTER_VALUE = "Expected newline or end of document after a statement"  # tomllib, of 50,0 and of 50 N/m
 _NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
 _FILES = r"geometry\.file|roughness\.topography\.file|history\[\d+\]\.voltage\.file"
-_LAWS = "laws of its own, which are no part of a scene; run it from Python"
-_FORCE = "a force on the whole finger, which is no part of a scene; its report.html has the command"
 _QUOTED = re.compile(
     r'''#[^\n]*|"""(?:[^\\]|\\.)*?(?:"""|\Z)|\'{3}.*?(?:\'{3}|\Z)|"(?:[^"\\\n]|\\.)*"?|'[^'\n]*'?''', re.DOTALL
 )  # comments and texts of TOML
@@ -98,23 +99,8 @@ def model_of(path: Path | None) -> str:
 
 
 def _of_run(path: Path) -> dict[str, Any]:
-    """Return the data of the scene of a run's folder; a mesh of its own is the key ``geometry.file``."""
-    name, data = f"scene file {clip(str(path), _PATH)}", _kept(path)
-    laws = data.pop("laws", {})
-    more = [words for words, there in ((_LAWS, set(laws) - {"mesh"}), (_FORCE, "trace" in data)) if there]
-    if more:
-        raise SceneError(f"{name} is of a run with {more[0]}")
-    if laws:
-        file, shape = laws["mesh"]["path"], data.pop("geometry")
-        try:
-            same = hashlib.sha256(files.read(file)).hexdigest() == laws["mesh"]["sha256"]
-        except OSError:
-            same = False
-        if not same:
-            raise SceneError(f"{name} has the mesh {show(file)}, which is gone or was changed; put that one back")
-        data["geometry"] = {"file": file} | {key: shape[key] for key in ("sc_thickness",) if key in shape}
-        data.pop("mesh", None)
-    return {key: value for key, value in data.items() if key != "model"}
+    """Return the data of the scene of a run's folder."""
+    return {key: value for key, value in _kept(path).items() if key != "model"}
 
 
 def _kept(path: Path) -> dict[str, Any]:
@@ -174,8 +160,10 @@ def plain(value: Any, place: tuple[int | str, ...] = ()) -> Any:
         raise _too_deep(place)
     if isinstance(value, np.generic | np.ndarray):
         value = float(value) if isinstance(value, np.floating) else value.tolist()
+    if is_dataclass(value) or isinstance(value, type | Law | Closure):
+        return value  # a law, its class, or what was meant to be one
     if isinstance(value, BaseModel):
-        value = {name: inner for name, inner in value if name in value.model_fields_set}
+        value = {name: table(inner) for name, inner in value if name in value.model_fields_set}
     if isinstance(value, Mapping):
         return {_text(str(key)): plain(inner, (*place, _text(str(key)))) for key, inner in value.items()}
     if isinstance(value, list | tuple):

@@ -20,6 +20,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from variational.coefficients import parameter
 from variational.contact.formulation import Contact, Formulation, History, Skin, Springs, SurfaceState
 from variational.contact.friction import CONE_ROUNDOFF, Friction
 
@@ -28,9 +29,13 @@ from variational.contact.friction import CONE_ROUNDOFF, Friction
 class AugmentedLagrangian(Formulation):
     """Stiffness, normal and tangential (Pa/m of reference area), and what is left of penetration and slip (m)."""
 
-    eps_n: float = 1.5e13
-    eps_t: float = 5e11
-    tolerance: float = 5e-9
+    eps_n: float = parameter(1e7, 1e17, "Pa/m", default=1.5e13)
+    """Normal stiffness (Pa/m of reference area)."""
+    eps_t: float = parameter(1e6, 1e17, "Pa/m", default=5e11)
+    """Tangential stiffness (Pa/m of reference area)."""
+    tolerance: float = parameter(1e-12, 1e-6, "m", default=5e-9)
+    """Penetration and elastic slip (m) at which the augmented Lagrangian's iteration ends. The default is a
+    three-hundredth of the smallest d_eq. Range: from roundoff to the size of the air gap."""
 
     symmetric_start: ClassVar[bool] = False  # its multipliers, corrected within a step, are not put on the whole
     caution: ClassVar[str] = (

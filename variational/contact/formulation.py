@@ -17,7 +17,7 @@ The history variable of friction is the anchor s, see :mod:`~variational.contact
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -172,11 +172,6 @@ class Formulation(ABC):
             ValueError: one that is not greater than 0 and finite.
         """
         refuse_not_positive(self)
-
-    @classmethod
-    def parameters(cls) -> dict[str, Any]:
-        """Return the defaults of the formulation's parameters by name."""
-        return {each.name: each.default for each in fields(cls)}  # type: ignore[arg-type]
 
     @abstractmethod
     def springs(self, skin: Skin) -> Springs:
