@@ -1,4 +1,4 @@
-"""A path while it is followed: each accepted state is kept, with what pictures need, printed and written at once."""
+"""A path while it is followed: each accepted state kept, printed and written at once."""
 
 import json
 import logging
@@ -6,111 +6,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-from mpi4py import MPI
-
 from fingerpad.io import states
 from fingerpad.io.console import Console
-from fingerpad.io.drawing import Drawing, End, Profile, View
+from fingerpad.io.drawing import End, View
 from fingerpad.io.quantities import Output, valued
 from fingerpad.io.writing import Writer, ridge_rows, site_rows
 from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Step
 from fingerpad.model.options import Omission
+from fingerpad.model.record import PathRecord, Viewer
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.stability import Checked
-from fingerpad.model.viewer import Viewer
-from fingerpad.scene import Load
+from variational.solvers import checkpoint
 from variational.state import ContactState
-
-
-class PathRecord:
-    """Keeps accepted states.
-
-    Attributes:
-        states: in order, on every rank.
-        profiles: the skin by step, on rank 0.
-        ends: the finger at the end of each load, by load, on rank 0.
-    """
-
-    def __init__(self, comm: MPI.Comm, checks: Mapping[int, Checked]) -> None:
-        """Keep nothing yet.
-
-        Args:
-            comm: communicator of the run.
-            checks: stability by step, as far as it is examined.
-        """
-        self._comm, self._checks = comm, checks
-        self.states: list[ContactState] = []
-        self.profiles: dict[int, Profile] = {}
-        self.ends: dict[str, End] = {}
-
-    def named(self, final: Mapping[str, View], loads: Sequence[str]) -> dict[str, ContactState]:
-        """Return the named states with their stability and, on every rank, their skin; collective.
-
-        Args:
-            final: states on the mesh that the run ended with, whose skin is to be shown, by name.
-            loads: names of the loads in order.
-        """
-        found = {}
-        for name, state in states.named(self.states, loads).items():
-            profile = final[name].profile if name in final else self.profiles.get(state.step)
-            numbers = np.arange(0) if state.ridges is None else state.ridges.number
-            skin = self._comm.bcast(None if profile is None else profile.skin(numbers))
-            # A full slip counts because it was held; the row of its first step is of before that.
-            found[name] = replace(state, skin=skin, slip_held=state.slip_held or name == "full_slip")
-            check = self._check(state)
-            if check is not None:
-                verdict, least = check.stable, check.frozen.lambda_min
-                found[name] = replace(found[name], stable=verdict, lambda_min=least, gain=check.gain)
-        return found
-
-    def _check(self, state: ContactState) -> Checked | None:
-        """Return the stability of a state, or of another one of the same full slip; None where none was examined."""
-        same = [other.step for other in self.states if other.slip_began == state.slip_began > 0]
-        return next((self._checks[k] for k in (state.step, *same) if k in self._checks), None)
-
-    def loads(self, loads: Sequence[Load]) -> list[states.LoadResult]:
-        """Return the result of each load of a history."""
-
-        def stable(k: int, end: ContactState) -> bool | None:
-            check = self._check(end)
-            return None if check is None else check.stable
-
-        return list(states.load_results(self.states, loads, stable))
-
-    def drawing(
-        self, mu_0: float | None, final: Mapping[str, View], size: float | None, named: Mapping[str, ContactState]
-    ) -> Drawing | None:
-        """Return what the pictures are drawn from, on rank 0; None without a state.
-
-        Args:
-            mu_0: friction coefficient; None where the law of friction is not Coulomb's.
-            final: as of :meth:`named`.
-            size: contact size (m) of the path's mesh, where an accuracy was asked for.
-            named: the named states, with their estimated errors.
-        """
-        if not self.states or self._comm.rank != 0:
-            return None
-        whole = Drawing(mu_0, self.states, self.profiles, self.ends, final, size, named)
-        shown = whole.steps_along()
-        return replace(whole, profiles={step: p for step, p in self.profiles.items() if step in shown})
-
-    def totals(self) -> dict[str, Any]:
-        """Return sums and largest values over all states, ready for JSON."""
-        records = [s.record for s in self.states if s.record is not None]
-        jumps = [r for r in records if r.jump]
-        return {
-            "steps": len(self.states),
-            "jumps": len(jumps),
-            "cutbacks": sum(r.cutbacks for r in records),
-            "penetration": max((r.penetration for r in records), default=0.0),
-            "imbalance": max((r.imbalance for r in records), default=0.0),
-            "energy_released": sum(r.energy_released for r in jumps),
-            "energy_released_error": sum(r.released_error for r in jumps),
-            "dissipation": sum(r.dissipation for r in records),
-            "floor": max((r.floor for r in records), default=0.0),
-        }
 
 
 class Report:
@@ -124,6 +31,7 @@ class Report:
         self,
         simulation: Simulation,
         omitted: Sequence[Omission],
+        loads: Sequence[str],
         writer: Writer,
         console: Console,
         clock: Clock,
@@ -134,6 +42,7 @@ class Report:
         Args:
             simulation: set up, at its start.
             omitted: parts that its model leaves out.
+            loads: names of its loads in order.
             writer: writes into the folder.
             console: prints.
             clock: of the run.
@@ -145,6 +54,8 @@ class Report:
         self.record = PathRecord(finger.problem.mesh.comm, checks)
         self._viewer = Viewer(finger)
         self._written = self._logged = 0
+        self._ends: list[tuple[int, Any]] = []  # step and unknowns at the end of each load, whole on rank 0
+        self._loads = loads
         for omission in omitted:
             console.show(f"{omission}")
             writer.log.info("%s", omission)
@@ -199,11 +110,54 @@ class Report:
             last = done[-1].step if done else 0
             if self._written != last == self._simulation.finger.continuation.steps:
                 self._written = last
-                self._writer.fields(last, done[-1].load if done else "")
                 self._log_checks()
-                snapshot, merkel = self._viewer.picture()
-                if snapshot is not None:
-                    self.record.ends[done[-1].load] = End(done[-1], snapshot, merkel)
+                self._ends.append((last, checkpoint.unknowns(self._simulation.finger.continuation)))
+                self._end(done[-1])
+
+    def _end(self, state: ContactState) -> None:
+        """Write the present fields, those at the end of a load, and keep them for the pictures; collective."""
+        self._writer.fields(state.step, state.load)
+        snapshot, merkel = self._viewer.picture()
+        if snapshot is not None:
+            self.record.ends[state.load] = End(state, snapshot, merkel)
+
+    def kept(self) -> dict[str, Any]:
+        """Return what another process needs to go on with all tables and pictures, whole on rank 0."""
+        self.record.prune(self._loads)
+        return {
+            "states": self.record.states,
+            "profiles": self.record.profiles,
+            "ends": self._ends,
+            "logged": self._logged,
+            "tables": self._writer.kept(),
+        }
+
+    def resume(self, kept: Mapping[str, Any], places: Mapping[str, Any], done: float) -> None:
+        """Go on from what another process kept; collective.
+
+        Args:
+            kept: what it kept, on every rank.
+            places: of the unknowns at the ends of loads, see :func:`variational.solvers.checkpoint.take`.
+            done: part of the whole history that is done.
+        """
+        finger = self._simulation.finger
+        self._writer.resume(kept["tables"])
+        self._writer.take(finger.problem)
+        self.record.states, self._logged = kept["states"], kept["logged"]
+        self._ends, self._written = kept["ends"], kept["ends"][-1][0] if kept["ends"] else 0
+        if finger.problem.mesh.comm.rank == 0:
+            self.record.profiles = kept["profiles"]
+        by_step = {state.step: state for state in self.record.states}
+        now = finger.solver.x.array_r.copy()
+        mine = checkpoint.order(finger.continuation, dict(places))
+        for step, unknowns in self._ends:
+            finger.solver.x.array_w[:] = mine("unknowns", unknowns)
+            finger.solver.equations.to_fields(finger.solver.x)
+            self._end(by_step[step])
+        finger.solver.x.array_w[:] = now
+        finger.solver.equations.to_fields(finger.solver.x)
+        for state in self.record.states:
+            self._console.step(state, done)
 
     def _log_checks(self) -> None:
         for step, check in list(self._simulation.checks.items())[self._logged :]:

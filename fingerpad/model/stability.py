@@ -4,7 +4,7 @@ Stability is examined once a state. Full slip is steady if the forces stay the s
 since the screen is uniform.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,9 +13,10 @@ import numpy as np
 from fingerpad.io.states import SLIDE_ON, full_slip
 from fingerpad.model.finger import Finger
 from fingerpad.model.state import steady
-from variational.solvers.continuation import StepFailed, Target
+from variational.solvers.continuation import StepFailed
 from variational.solvers.failure import NotConverged
 from variational.solvers.stability import Stability, StabilityCheck
+from variational.solvers.target import Target
 from variational.state import ContactState
 
 
@@ -45,10 +46,10 @@ class Checked:
 class StabilityChecks(dict[int, Checked]):
     """Stability by step."""
 
-    def __init__(self, finger: Finger, examine: Callable[[StabilityCheck], Stability] = StabilityCheck.check) -> None:
-        """Take the finger, and how its present state is examined."""
+    def __init__(self, finger: Finger) -> None:
+        """Take the finger."""
         super().__init__()
-        self._finger, self._check, self._examine = finger, StabilityCheck(finger.solver), examine
+        self._finger, self._check = finger, StabilityCheck(finger.solver)
 
     def check(self, load: str) -> Checked:
         """Return the stability of the present state; collective.
@@ -65,7 +66,7 @@ class StabilityChecks(dict[int, Checked]):
             known = gain[np.isfinite(gain)]
             largest = float(known.max()) if len(known) and finger.voltage != 0 else 0.0
             try:
-                self[step] = Checked(self._examine(self._check), largest)
+                self[step] = Checked(self._check.check(), largest)
             except NotConverged as failure:
                 raise StepFailed(f"step {step} ({load}): its stability cannot be examined: {failure}") from failure
         return self[step]
@@ -91,7 +92,8 @@ class FullSlip:
             speed: of the bone (m/s); 0 where it takes no time.
         """
         path, solver = self._finger.continuation, self._finger.solver
-        before, x = solver.reaction[0], solver.control.x
+        begun = path.begun()
+        before, x = begun.reaction[0], begun.control.x
         path.run(Target(load, bone_x=x + direction * SLIDE_ON, duration=SLIDE_ON / speed if speed else 0.0))
         return path.slip[1] and self._unchanged(before, solver.reaction[0])
 
