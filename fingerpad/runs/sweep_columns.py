@@ -13,6 +13,7 @@ from typing import Any
 from fingerpad.io.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import PREFIXES, STATES, LoadResult
+from fingerpad.scene import Scene
 from fingerpad.scene.keys import Key, every
 from fingerpad.slices.finger import WholeFinger
 from fingerpad.slices.force import NEWTONS
@@ -170,4 +171,4 @@ def described(key: str) -> Key | None:
     """Return what is known of a dotted key of a scene, or of the force on the whole finger; None of a table."""
     if key == FORCE:
         return Key(FORCE, "N", None, f"{NEWTONS.low:g} to {NEWTONS.high:g} N", "external force on the whole finger")
-    return next((each for each in every() if each.name == re.sub(r"\[\d+\]", "[]", key)), None)
+    return next((each for each in every(Scene) if each.name == re.sub(r"\[\d+\]", "[]", key)), None)
