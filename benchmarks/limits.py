@@ -29,7 +29,7 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from fingerpad.accuracy.recompute import Solve, StateRecorder, solve_again
+from fingerpad.accuracy.solves import Solve, StateRecorder, solve_again
 from fingerpad.io.files import replace
 from fingerpad.io.states import PREFIXES
 from fingerpad.model.finger import Step

@@ -69,11 +69,16 @@ def whole() -> tuple[tuple[str, bytes], ...]:
     plain += [(".npy", b"\x93NUMPY\x02\x00" + len(h).to_bytes(4, "little") + h.encode() + bytes(400)) for h in _HEADERS]
     matrix = "\n".join(";".join(f"{z:.6f}" for z in row) for row in heights)
     points = "\n".join(f"{a} {b} {z:.6f}" for a, b, z in zip(x.ravel(), y.ravel(), heights.ravel(), strict=True))
-    plain += [(".csv", matrix.encode()), (".xyz", points.encode())] * 3
+    header = "# Channel: Height\n# Width: 32 µm\n# Height: 24 µm\n# Value units: µm\n"
+    gwyddion = header + matrix.replace(";", " ")
+    plain += [(".csv", matrix.encode()), (".xyz", points.encode()), (".txt", gwyddion.encode())] * 3
     voltages = "time (s),voltage (V)\n" + "".join(f"{k / 10},{20 * k % 150}\n" for k in range(8))
     table = "# source: Surname 2020\n# people: 5\nforce (N/m), voltage (V), friction (1), spread (1)\n"
     table += "".join(f"{10 * k}, 100, 0.{k}, 0.0{k}\n" for k in range(1, 8))
-    tables = [(".volts", voltages.encode()), (".measured", table.encode())]
+    tables = [
+        (".volts", voltages.encode()),
+        *((".measured", table.replace(", ", mark).encode()) for mark in (", ", ";")),
+    ]
     return (*plain, *_instruments(heights), *_meshes() * 2, *tables * 4)
 
 

@@ -10,9 +10,9 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.accuracy import solves
-from fingerpad.accuracy.recompute import Solve, State
 from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.accuracy.rigid_screen import ORDER
+from fingerpad.accuracy.solves import Solve, State
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.touching import by_rule
 from fingerpad.richardson import MORE, ONCE
@@ -24,7 +24,7 @@ from variational.solvers.equations import Control
 from variational.solvers.transfer import StateSnapshot
 from variational.state import ContactState
 
-NOTHING = StateSnapshot(*(np.zeros(0) for _ in range(2)), {}, {}, {}, np.zeros(2), Control(), 0.0)
+NOTHING = StateSnapshot(*(np.zeros(0) for _ in range(2)), {}, {}, {}, {}, np.zeros(2), Control(), 0.0)
 EXACT = 0.5
 
 

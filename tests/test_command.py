@@ -153,21 +153,11 @@ def test_quiet_ranks(monkeypatch, capsys):
     assert capsys.readouterr() == ("", "")
 
 
-@pytest.mark.parametrize(
-    ("kind", "text", "words"),
-    [
-        (int, "0", "0 is not allowed; it must be a whole number greater than 0"),
-        (int, "two", "two is not allowed; it must be a whole number greater than 0"),
-        (float, "-1", "-1 is not allowed; it must be a number greater than 0"),
-        (float, "nan", "nan is not allowed; it must be a number greater than 0"),
-        (float, "inf", "inf is not allowed; it must be a number greater than 0"),
-    ],
-)
-def test_positive_arguments(kind, text, words):
-    with pytest.raises(argparse.ArgumentTypeError) as refusal:
-        positive(kind)(text)
-    assert str(refusal.value) == words
-    assert positive(kind)("3") == 3
+@pytest.mark.parametrize("text", ["0", "two", "-1", "1.5", "nan", ""])
+def test_positive_arguments(text):
+    with pytest.raises(argparse.ArgumentTypeError, match="is not allowed; it must be a whole number greater than 0"):
+        positive(text)
+    assert positive("03") == 3
 
 
 # -- commands ----------------------------------------------------------------------------------------------

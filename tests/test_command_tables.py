@@ -86,7 +86,7 @@ def test_colours_of_voltages_go_up_to_the_largest_amount(command, voltages, tmp_
         ("estimate --csv nowhere/mu.csv", "its folder is not there"),
         ("estimate --plot same.png --csv same.png", "same.png is given twice, once to be written;"),
         ("estimate demos/scenes/unload.toml", "history is given; the model 'cylinders' answers for press, charge and"),
-        ("microscale --p 0:1e5:3", "--p has the value 0.0;"),
+        ("microscale --p 0:1e5:3", "--p: 0.0 is not allowed; it must be greater than 0"),
         ("microscale demos/scenes/sine_while_sliding.toml", "name those wanted by --voltage"),
         ("params zebra", "no key of a scene has zebra in its name"),
         ("compare --ridges 3", "one of --contact-length and --ridges is given without the other"),

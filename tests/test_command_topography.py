@@ -160,8 +160,9 @@ def test_map_of_ridges_is_told(tmp_path, capsys):
     assert REMARK not in text and "a scene refuses" not in text
 
 
-def test_roughness_as_long_as_ridges_is_told(tmp_path, capsys):
+def test_roughness_as_long_as_ridges_is_told(tmp_path, monkeypatch, capsys):
     """By commands, in a sweep, and among a result's cautions."""
+    monkeypatch.setattr("fingerpad.cli.check._picture", lambda *given: "")
     long = ("--set", "roughness.wavelength=532 um")
     sweep = ("sweep", "--over", "voltage=0,100", "--model", "cylinders", "--out")
     check = ("check", "--out", str(tmp_path / "b"))

@@ -105,7 +105,10 @@ def test_what_is_compared(grid):
 @pytest.mark.parametrize(
     ("columns", "words"),
     [
-        ({}, "has the columns Fn .N., U, CoF, and must have one of friction, .* as in {'CoF': 'friction .1.'}"),
+        (
+            {},
+            "no quantity; it has the columns Fn .N., U, CoF, and must have one of .* as in {'CoF': 'friction .1.'}",
+        ),
         ({"CoF": "friction"}, "column 3: 'CoF' has no unit; write 'friction .1.' in the head or by columns"),
         ({"CoF": "frction (1)"}, "the column 'CoF' is 'frction'; it must be one of force, voltage, friction,"),
         ({"Cof": "friction (1)"}, "the table has no column 'Cof'; it has Fn .N., U, CoF$"),

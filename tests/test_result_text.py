@@ -31,7 +31,7 @@ def test_states_of_two_meshes_name_them():
 
 
 def test_whole_finger_comes_first_where_newtons_were_asked_for():
-    run = fp.Result(fp.Scene(), "full", None, None, slip(), finger=whole())
+    run = fp.Result(fp.Scene(), "full", None, None, slip(), steps=(slip(),), finger=whole())
     assert text(run).startswith("Result\n") and text(run).endswith(str(run.finger))
     asked = replace(run, record={"asked": {"force": 0.5}})
     assert text(asked).startswith(str(run.finger))

@@ -10,7 +10,7 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fingerpad.accuracy.recompute import StateRecorder
+from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.io import console, drawing, writing
 from fingerpad.io.drawing import Profile
 from fingerpad.io.states import RESULTS, named

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fingerpad.accuracy.recompute import StateRecorder
+from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.model import balance, full_slip
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation

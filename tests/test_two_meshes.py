@@ -5,8 +5,8 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.accuracy import solves
-from fingerpad.accuracy.recompute import Solve, State
 from fingerpad.accuracy.refinement import Refinement, with_errors
+from fingerpad.accuracy.solves import Solve, State
 from tests.test_accuracy import NOTHING, contact, model_of
 
 

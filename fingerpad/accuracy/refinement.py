@@ -30,9 +30,8 @@ from typing import Any
 
 from mpi4py import MPI
 
-from fingerpad.accuracy.recompute import Solve, quantities, words
 from fingerpad.accuracy.rigid_screen import rigid
-from fingerpad.accuracy.solves import Solves
+from fingerpad.accuracy.solves import Solve, Solves, quantities, words
 from fingerpad.io.interrupt import Interrupted
 from fingerpad.io.quantities import QUANTITIES
 from fingerpad.io.states import PREFIXES, WORDS

@@ -6,7 +6,7 @@ import os
 import re
 import shlex
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
@@ -263,29 +263,20 @@ def path(text: str) -> Path:
     return Path(text)
 
 
-def positive(kind: type[int] | type[float]) -> Callable[[str], float]:
-    """Return a type of arguments: positive numbers of a kind."""
-
-    def read(text: str) -> float:
-        try:
-            value = kind(text)
-        except ValueError:
-            value = kind(0)
-        if not 0 < value < math.inf:
-            words = "whole number" if kind is int else "number"
-            raise argparse.ArgumentTypeError(f"{clip(text)} is not allowed; it must be a {words} greater than 0")
-        return value
-
-    return read
+def positive(text: str) -> int:
+    """Return a positive whole number."""
+    if not re.fullmatch(r"0*[1-9]\d{0,17}", text):
+        raise argparse.ArgumentTypeError(f"{clip(text)} is not allowed; it must be a whole number greater than 0")
+    return int(text)
 
 
-def length(text: str) -> float:
-    """Return a positive length in m, of a text with a unit or in m."""
+def quantity(text: str, unit: str = "m") -> float:
+    """Return a positive number in a unit, of a text with a unit or without."""
     try:
         value = float(text)
     except ValueError:
         try:
-            value = to_si(text, "m")
+            value = to_si(text, unit)
         except ValueError as error:
             raise argparse.ArgumentTypeError(f"{clip(text)} is not allowed; {error}") from None
     if not 0 < value < math.inf:

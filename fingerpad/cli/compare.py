@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from fingerpad.cli.arguments import Parser, echo, length, path, positive, scene_of
+from fingerpad.cli.arguments import Parser, echo, path, positive, quantity, scene_of
 from fingerpad.ctrl_c import raises
 from fingerpad.io.files import below, check_folder
 from fingerpad.io.quantities import PLUS_MINUS, QUANTITIES, cell
@@ -38,8 +38,8 @@ def main(argv: Sequence[str]) -> int:
         default=list(MODELS),
         help="models to compare (default: all; full takes minutes)",
     )
-    parser.add_argument("--contact-length", type=length, metavar="M", help="cylinders: the length in contact, 1.6 mm")
-    parser.add_argument("--ridges", type=positive(int), metavar="N", help="cylinders: on so many ridges")
+    parser.add_argument("--contact-length", type=quantity, metavar="M", help="cylinders: the length in contact, 1.6 mm")
+    parser.add_argument("--ridges", type=positive, metavar="N", help="cylinders: on so many ridges")
     parser.add_argument("--run", type=path, metavar="DIR", help="cylinders: contact lengths of this full run")
     parser.add_argument("--quiet", action="store_true", help="print the table alone: no steps, no progress bar")
     args, petsc = parser.read_with_petsc(argv)

@@ -1,5 +1,6 @@
 """``fingerpad microscale``: air gap, attraction and real area of contact of a rough ridge over its pressure."""
 
+from argparse import ArgumentTypeError
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -7,12 +8,11 @@ from typing import Any
 import numpy as np
 
 from fingerpad.cli import ranges, tables
-from fingerpad.cli.arguments import Parser, echo, scene_of, several
+from fingerpad.cli.arguments import Parser, echo, quantity, scene_of, several
 from fingerpad.model.cautions import on_closure
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from fingerpad.scene.remarks import remarks
-from geometry.units import to_si
 from variational.roughness.bam import STICKING, BearingArea
 
 _PRESSURES = "1e3:1e6:13:log"
@@ -63,16 +63,10 @@ def main(argv: Sequence[str]) -> int:
 
 
 def _pressures(text: str) -> list[float]:
-    found = []
-    for value in ranges.read("--p", text):
-        try:
-            p = to_si(value, "Pa") if isinstance(value, str) else float(value)
-        except ValueError as error:
-            raise SceneError(f"--p has the value {value}; {error}") from None
-        if not p > 0:
-            raise SceneError(f"--p has the value {value}; pressures are numbers greater than 0, in Pa")
-        found.append(p)
-    return found
+    try:
+        return [quantity(str(value), "Pa") for value in ranges.read("--p", text)]
+    except ArgumentTypeError as error:
+        raise SceneError(f"--p: {error}") from None
 
 
 def _sticking(closure: BearingArea) -> str:

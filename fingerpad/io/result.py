@@ -15,6 +15,7 @@ from fingerpad.io.states import PREFIXES, STATES, LoadResult, load_results
 from fingerpad.scene import Scene, SceneError, as_kept
 from fingerpad.scene.laws import coefficient
 from fingerpad.scene.messages import clip
+from fingerpad.scene.reading import DEFAULT_MODEL
 from variational.state import CONDITIONS, RESULTS, ContactState, Errors
 
 if TYPE_CHECKING:
@@ -128,11 +129,9 @@ class Result:
             return footprint(self.finger, None if path is None else Path(path)) if terminal.rank() == 0 else None
         if self.drawing is not None:
             return self.drawing.figure(kind, None if path is None else Path(path))
-        if self.model != "full":
-            raise ValueError(f"the model {self.model!r} has no skin to draw; use model='full'")
-        if terminal.rank() == 0:
-            raise ValueError("the result has no states to draw")
-        return None
+        if not self.steps:
+            raise ValueError(f"the result of the model {self.model!r} has no steps to draw; those of model='full' have")
+        return None  # on the other ranks
 
     def to_xarray(self) -> "xarray.Dataset":
         """Return steps, loads, ridges, sites and named states as one dataset with units, as ``result.nc`` has it.
@@ -218,7 +217,7 @@ class Result:
         from fingerpad.slices.finger import WholeFinger  # it takes names of this module's wing
 
         parameters, named = summary["parameters"], summary.get("states", {})
-        bare = cls(as_kept(parameters), summary.get("model", "full"), None, None, None)
+        bare = cls(as_kept(parameters), summary.get("model", DEFAULT_MODEL), None, None, None)
         states: dict[str, Any] = {name: _state(name, named[name]) for name in STATES if name in named}
         bare = replace(
             bare,
@@ -259,7 +258,7 @@ class Result:
             found = cls.from_dict(summary, folder)
             if (kept := dataset.read(folder, [each.name for each in found.outputs])) is not None:
                 found = replace(found, steps=kept[0], **kept[1])  # type: ignore[arg-type]
-            elif found.model == "full" and (folder / "steps.csv").exists():
+            elif (folder / "steps.csv").exists():
                 found = replace(found, steps=steps_of(folder))
             if not found.steps:
                 return found  # of no path, or of one without an accepted step

@@ -10,7 +10,7 @@ from fingerpad.scene import SceneError, as_kept
 from fingerpad.scene.messages import clip, show
 
 _FREE = re.compile(
-    r"(history\[\d+\]\.)?(f_ext|voltage)"  # the conditions of a measurement,
+    r"(history\[\d+\]\.)?(f_ext|force|voltage)"  # the conditions of a measurement,
     r"|history\[\d+\]\.(bone_height|name)"  # the force by another control, and a word for it,
     r"|output\.(errors|each_load|receptors)|numerics\.memory"  # and what changes no value
 )

@@ -131,9 +131,10 @@ def read(
         others = (SECTION | WHOLE).keys() - {column.name for column in quantities}
         used = {key: column for key, column in used.items() if key not in others}
     if len(quantities) != 1:
-        has = ", ".join(column.name for column in quantities) or f"the columns {', '.join(map(str, frame))}"
+        heads = clip(", ".join(map(str, frame)), 100)
+        has = ", ".join(column.name for column in quantities) or f"no quantity; it has the columns {heads}"
         raise SceneError(
-            f"{name} has {clip(has, 100)}, and must have one of {', '.join(SECTION | WHOLE)}, by its heads or by "
+            f"{name} has {has}, and must have one of {', '.join(SECTION | WHOLE)}, by its heads or by "
             "columns, as in {'CoF': 'friction (1)'}"
         )
     quantity, whole = quantities[0].name, any(_is_whole(column) for column in used.values())

@@ -1,12 +1,13 @@
 """One attempt at a run: the path of its loads on one mesh, and the errors of its states."""
 
+import logging
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
-from fingerpad.accuracy.recompute import StateRecorder
 from fingerpad.accuracy.refinement import Refinement, with_errors
+from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.io import petsc_options
 from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt, Interrupted
@@ -19,14 +20,13 @@ from fingerpad.io.writing import Writer
 from fingerpad.model import cautions
 from fingerpad.model.balance import broken, force_error
 from fingerpad.model.cost import Clock
-from fingerpad.model.finger import Step
+from fingerpad.model.finger import Finger, Step
 from fingerpad.model.hints import finer_mesh_may_help, hint
 from fingerpad.model.journal import Journal
 from fingerpad.model.memory import refuse_beyond
 from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Report
 from fingerpad.model.simulation import RestartRequired, Simulation
-from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene
 from fingerpad.scene.laws import coefficient, used
 from fingerpad.scene.reading import DEFAULT_MODEL
@@ -35,9 +35,80 @@ from fingerpad.slices.estimate import with_newtons
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
 from variational.solvers.continuation import StepFailed
+from variational.state import ContactState
 
 FINEST = 5e-6
 """Contact size (m) down to which a run starts again by itself where the path of its loads cannot be followed."""
+
+
+class Restarts:
+    """Reports restarts and keeps them.
+
+    Attributes:
+        table: the restarts, ready for JSON.
+        notes: remarks for a reader of the result, on the restarts with smaller elements.
+    """
+
+    def __init__(self, log: logging.Logger, console: Console) -> None:
+        """Start without any."""
+        self._log, self._console = log, console
+        self.table: list[dict[str, Any]] = []
+        self.notes: list[str] = []
+        self._seconds = 0.0
+
+    def record(self, restart: RestartRequired, states: Sequence[ContactState], finger: Finger, clock: Clock) -> None:
+        """Record a restart; collective.
+
+        Args:
+            restart: what is to be added, and why.
+            states: accepted until here.
+            finger: with the model until here.
+            clock: of the run.
+        """
+        mesh = restart.model.mesh
+        step, load = (states[-1].step, states[-1].load) if states else (0, "start")
+        whole, seconds = restart.model.options.both_halves, clock.processor_seconds()
+        halves = " and both halves of the finger" if whole and not finger.options.both_halves else ""
+        added = f"mesh.touching_half_arc {mesh.touching_half_arc:g} m{halves}"
+        if mesh.contact < finger.size.contact:
+            added = f"mesh.contact {mesh.contact:g} m"
+            size = finger.size.contact * 1e6
+            self.notes.append(
+                f"No equilibrium was found with a contact size of {size:g} µm; the run started again with half of it."
+            )
+        text = f"step {step} ({load}): {restart.reason}; all loads again with {added}"
+        self._console.show(f"fingerpad: {text}")
+        self._log.warning(text)
+        counts = finger.solver.counts
+        self.table.append(
+            {
+                "step": step,
+                "load": load,
+                "reason": restart.reason,
+                "contact": mesh.contact,
+                "touching_half_arc": mesh.touching_half_arc,
+                "both_halves": whole,
+                "unknowns": finger.unknowns,
+                "newton_iterations": counts.newton,
+                "factorisations": counts.factorisations,
+                "processor_seconds": seconds - self._seconds,
+            }
+        )
+        self._seconds = seconds
+
+
+@dataclass(frozen=True)
+class Session:
+    """What all attempts of a run share."""
+
+    comm: MPI.Comm
+    writer: Writer
+    console: Console
+    clock: Clock
+    interrupt: Interrupt
+    journal: Journal | None
+    """Keeps what solves leave; None to keep nothing."""
+    outputs: Sequence[Output]
 
 
 class Attempt:
@@ -48,26 +119,15 @@ class Attempt:
         report: its states, as they are written.
     """
 
-    def __init__(
-        self,
-        model: FingerModel,
-        comm: MPI.Comm,
-        writer: Writer,
-        console: Console,
-        clock: Clock,
-        interrupt: Interrupt,
-        journal: Journal | None = None,
-        outputs: Sequence[Output] = (),
-    ) -> None:
+    def __init__(self, model: FingerModel, session: Session) -> None:
         """Mesh the finger; collective."""
-        self._outputs = outputs
-        self._model, self._journal = model, journal
-        self._comm, self._interrupt = comm, interrupt
-        self._writer, self._console, self._clock = writer, console, clock
-        console.phase("meshing the finger and setting up its equations")
-        with clock.phase("setup"):
-            self.simulation = Simulation(model, comm, self._on_step, self._on_load, journal)
-        self.report = Report(self.simulation, model.omitted, writer, console, clock, outputs)
+        self._model, self._outputs = model, session.outputs
+        self._comm, self._interrupt, self._journal = session.comm, session.interrupt, session.journal
+        self._writer, self._console, self._clock = session.writer, session.console, session.clock
+        self._console.phase("meshing the finger and setting up its equations")
+        with self._clock.phase("setup"):
+            self.simulation = Simulation(model, self._comm, self._on_step, self._on_load, self._journal)
+        self.report = Report(self.simulation, model.omitted, self._writer, self._console, self._clock, self._outputs)
         self._recorder = StateRecorder(self.simulation) if model.options.errors else None
         self._refinement: Refinement | None = None
         self._ended: dict[str, str] = {}

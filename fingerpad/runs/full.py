@@ -2,7 +2,6 @@
 
 import json
 import signal
-from collections.abc import Sequence
 from pathlib import Path
 
 import fingerpad.startup  # noqa: F401
@@ -12,7 +11,7 @@ from fingerpad.io.checkpoint import Checkpoint
 from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt
 from fingerpad.io.provenance import provenance
-from fingerpad.io.quantities import Output, checked
+from fingerpad.io.quantities import checked
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
 from fingerpad.model import expected
@@ -21,9 +20,8 @@ from fingerpad.model.journal import Journal
 from fingerpad.model.memory import estimate
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.touching import by_rule
-from fingerpad.runs.attempt import Attempt
+from fingerpad.runs.attempt import Attempt, Restarts, Session
 from fingerpad.runs.context import RunContext
-from fingerpad.runs.restarts import Restarts
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import coefficient
 from fingerpad.scene.reading import DEFAULT_MODEL
@@ -64,7 +62,8 @@ def run(scene: Scene, context: RunContext) -> Result:
             journal = None
             if place is not None and context.asked is None:
                 journal = Journal(comm, _checkpoint(scene, place.folder), context.resume)
-            return _run(scene, Writer(place, comm), comm, console, journal, outputs)
+            writer, clock, interrupt = Writer(place, comm), Clock(comm), Interrupt(comm)
+            return _run(scene, Session(comm, writer, console, clock, interrupt, journal, outputs))
     except GeometryError as error:
         what = "the finger cannot be meshed" if scene.geometry.file is None else "mesh"
         raise SceneError(f"{what}: {error}") from error
@@ -76,17 +75,12 @@ def _checkpoint(scene: Scene, folder: Path) -> Checkpoint:
     return Checkpoint(folder, scene.parameters(), {"source": versions["source"], "dolfinx": versions["dolfinx"]})
 
 
-def _run(
-    scene: Scene,
-    writer: Writer,
-    comm: MPI.Comm,
-    console: Console,
-    journal: Journal | None,
-    outputs: Sequence[Output],
-) -> Result:
+def _run(scene: Scene, session: Session) -> Result:
     """Run a scene until nothing must be added to its model."""
+    comm, writer, console = session.comm, session.writer, session.console
+    clock, journal = session.clock, session.journal
     writer.log.info("scene %s", json.dumps(scene.parameters()))
-    clock, restarts = Clock(comm), Restarts(writer.log, console)
+    restarts = Restarts(writer.log, console)
     if journal is not None:
         clock.earlier(*journal.seconds)
         if journal.parts:
@@ -94,10 +88,10 @@ def _run(
             console.show(f"fingerpad: going on with a run of {journal.seconds[0]:.0f} s; its steps are listed again")
     model = FingerModel(by_rule(scene), plan(scene))
     try:
-        with Interrupt(comm) as interrupt:
+        with session.interrupt:
             while True:
                 _expect(scene, model, comm, console)
-                attempt = Attempt(model, comm, writer, console, clock, interrupt, journal, outputs)
+                attempt = Attempt(model, session)
                 if model.mesh_file is not None:
                     _expect(scene, model, comm, console, attempt.simulation.finger.unknowns)
                 restart = attempt.follow()
