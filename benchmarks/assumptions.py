@@ -118,8 +118,8 @@ _KEYS = ("mu_app", "f_t", "contact_length")
 
 def _row(summary: Summary) -> dict[str, float | None]:
     """Return the numbers of a summary at full slip, and the contact length of normal contact; SI."""
-    found = {key: summary[f"slip_{key}"] for key in _KEYS}
-    return found | {"error": summary.get("slip_mu_app_error"), "normal": summary["normal_contact_length"]}
+    found = {key: summary[f"full_slip_{key}"] for key in _KEYS}
+    return found | {"error": summary.get("full_slip_mu_app_error"), "charged": summary["charged_contact_length"]}
 
 
 def compute(args: argparse.Namespace) -> None:
@@ -133,10 +133,10 @@ def compute(args: argparse.Namespace) -> None:
     found: dict[str, dict[str, Any]] = {"full": {}, "smooth": {}}
     for name, scene in scenes.items():
         run = Run(scene, args.out)
-        gaps = {state: run.on_ridges(run.row(state), "d_eq")[1].tolist() for state in ("normal", "slip")}
+        gaps = {state: run.on_ridges(run.row(state), "d_eq")[1].tolist() for state in ("charged", "full_slip")}
         found["full"][name] = _row(full[name]) | {"gaps": gaps, "penetration": float(run.steps["penetration"].max())}
     for name, scene in finger.items():
-        pressure = small[name]["slip_f_contact"] / small[name]["slip_contact_length"]
+        pressure = small[name]["full_slip_f_contact"] / small[name]["full_slip_contact_length"]
         more = {"pressure": pressure, "d_eq": float(scene.closure()(pressure).d_eq)}
         found["smooth"][name] = _row(small[name]) | more
     harness.keep("assumptions", found, harness.made(full.values()), args.docs)
@@ -144,7 +144,7 @@ def compute(args: argparse.Namespace) -> None:
 
 # -- page ----------------------------------------------------------------------------------------------------
 _LENGTHS = ("L_R, full slip (mm)", "L_R, normal contact (mm)")
-_OF_LENGTHS = ("contact_length", "normal")
+_OF_LENGTHS = ("contact_length", "charged")
 _HEAD = ("µ_app", "f_T (N/m)", *_LENGTHS)
 
 
@@ -207,7 +207,7 @@ def _flat(full: Mapping[str, Any]) -> str:
 
 def _gaps(row: Mapping[str, Any]) -> Array:
     """Return the air gaps of both states (m)."""
-    return np.concatenate([row["gaps"][state] for state in ("normal", "slip")])
+    return np.concatenate([row["gaps"][state] for state in ("charged", "full_slip")])
 
 
 def _counts(row: Mapping[str, Any]) -> tuple[int, int, int]:
@@ -260,9 +260,9 @@ def values(found: Mapping[str, Any]) -> dict[str, Any]:
         "both_off": 100 * (both["mu_app"] / PAPER - 1),
         "both_gaps": _counts(both),
         "both_range": _micro(lowest.min(), lowest.max()),
-        "light_normal": change(*light, "normal", finger),
+        "light_normal": change(*light, "charged", finger),
         "light_slip": change(*light, "contact_length", finger),
-        "heavy_normal": change("flat 200", "flat 0", "normal"),
+        "heavy_normal": change("flat 200", "flat 0", "charged"),
         "heavy_slip": change("flat 200", "flat 0", "contact_length"),
     }
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from benchmarks import harness
 from benchmarks.runs import FORCES, VOLTAGES, trace
-from fingerpad.io.states import PREFIXES, WORDS
+from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
 from fingerpad.runs.batch import Summary
 from fingerpad.scene import Scene, load
@@ -29,10 +29,10 @@ _LIMIT = 3600.0  # s of processor time for one run
 SIZE = 10e-6  # m, contact size
 MODELS = {"cylinders": "charged cylinders"}
 QUANTITIES = {
-    "slip_mu_app": f"µ_app, {WORDS['full_slip']}",
-    "slip_contact_length": f"contact length, {WORDS['full_slip']}",
-    "normal_contact_length": f"contact length, {WORDS['charged']}",
-    "normal_f_electrostatic": f"attraction, {WORDS['charged']}",
+    "full_slip_mu_app": f"µ_app, {WORDS['full_slip']}",
+    "full_slip_contact_length": f"contact length, {WORDS['full_slip']}",
+    "charged_contact_length": f"contact length, {WORDS['charged']}",
+    "charged_f_electrostatic": f"attraction, {WORDS['charged']}",
 }
 _COST = ("seconds", "factorisations", "unknowns")
 HELD_OUT = ((8.2, 153.0), (20.8, 124.0), (34.2, 136.0), (38.7, 153.0))  # N/m, V; no model has a number from these loads
@@ -46,7 +46,7 @@ BEYOND = {  # words: changes of the default scene, beside the mesh's
     HALF_STEPS: ("f_ext=120", "voltage=150", "numerics.step_scale=0.5"),
 }
 _ROUNDOFF = 1e-6  # of a tenth of a per cent
-_KEPT = ("slip_mu_app", "slip_ridges_in_contact", "factorisations", "newton_iterations")
+_KEPT = ("full_slip_mu_app", "full_slip_ridges_in_contact", "factorisations", "newton_iterations")
 
 
 # -- numbers -------------------------------------------------------------------------------------------------
@@ -74,7 +74,7 @@ def answer(summary: Summary) -> dict[str, Any]:
     """Return the numbers of a run or of a reduced model that docs/models.json has."""
     if "failure" in summary:
         return {"failure": summary["failure"]}
-    keys = (f"{PREFIXES[state]}_{key}" for state in ("charged", "full_slip") for key in RESULTS)
+    keys = (f"{state}_{key}" for state in ("charged", "full_slip") for key in RESULTS)
     found = {"full_slip": summary["full_slip"]} | {key: summary[key] for key in keys if summary[key] is not None}
     cost = {key: summary["processor_seconds" if key == "seconds" else key] for key in _COST}
     return {"summary": found, "cost": cost}
@@ -187,9 +187,9 @@ def draw(docs: Path) -> Path:
     kept, text = harness.kept("models", docs), harness.prose("models")
     scenes, held = kept.numbers["scenes"], kept.numbers["held_out"]
     every = scenes | held
-    largest = {model: _largest(every, model, "slip_mu_app") for model in MODELS}
-    largest |= {f"{model}_pull": _largest(every, model, "normal_f_electrostatic") for model in MODELS}
-    largest |= {f"{model}_length": _largest(every, model, "normal_contact_length") for model in MODELS}
+    largest = {model: _largest(every, model, "full_slip_mu_app") for model in MODELS}
+    largest |= {f"{model}_pull": _largest(every, model, "charged_f_electrostatic") for model in MODELS}
+    largest |= {f"{model}_length": _largest(every, model, "charged_contact_length") for model in MODELS}
     full = [each["full"] for each in every.values() if "full" in each]
     slips = sum(bool(each.get("summary", {}).get("full_slip")) for each in full)
     finding = text["finding"].format(**largest, slips=slips, n=len(full), which=_which(every))
@@ -198,7 +198,7 @@ def draw(docs: Path) -> Path:
     body += [part for model in MODELS for part in _section(scenes, model)]
     body += [
         "## Full runs",
-        f"**{QUANTITIES['slip_mu_app']}**\n\n{_matrix(scenes, 'full', 'slip_mu_app')}",
+        f"**{QUANTITIES['full_slip_mu_app']}**\n\n{_matrix(scenes, 'full', 'full_slip_mu_app')}",
         text["beyond"].format(half=kept.numbers["beyond"][HALF_STEPS], table=_beyond(kept.numbers["beyond"])),
     ]
     path, command = docs / "models.md", "python3 -m benchmarks.models"

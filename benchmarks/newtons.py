@@ -21,7 +21,7 @@ from benchmarks import harness, three_dimensions
 from benchmarks.models import SIZE, name
 from benchmarks.runs import FORCES, VOLTAGES, Run, trace
 from fingerpad.io import style
-from fingerpad.io.states import PREFIXES, WORDS
+from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene
 from fingerpad.scene.slices import Slices
@@ -50,8 +50,8 @@ def states(scenes: Found, model: str, voltage: float, state: str) -> list[Contac
     """Return the kept states of a model over force, at a voltage (V)."""
     found = []
     for f_ext in FORCES:
-        summary, prefix = scenes[name(f_ext, voltage)][model]["summary"], PREFIXES[state]
-        values = {key: summary[f"{prefix}_{key}"] for key in RESULTS if f"{prefix}_{key}" in summary}
+        summary = scenes[name(f_ext, voltage)][model]["summary"]
+        values = {key: summary[f"{state}_{key}"] for key in RESULTS if f"{state}_{key}" in summary}
         if model == "cylinders":
             values["bone_height"] = -cylinders.indentation(f_ext, state)
         found.append(ContactState(f_ext=f_ext, voltage=voltage, **values))

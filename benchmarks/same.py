@@ -12,8 +12,8 @@ A change that moves numbers by roundoff alone has ``--within``: a number may the
 of its key, and the records of the solver's steps are left out. Two ranks, which add in another order in each run,
 always have it.
 
-Numbers that a change is meant to change are left out by a word of their key, as in ``--but sed`` for slip_sed_0. Then
-the two commits are the same for those pages alone whose programs do not have the word.
+Numbers that a change is meant to change are left out by a word of their key, as in ``--but sed`` for full_slip_sed_0.
+Then the two commits are the same for those pages alone whose programs do not have the word.
 """
 
 import argparse

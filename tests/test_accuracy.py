@@ -89,7 +89,7 @@ def test_no_more_solves_are_announced_than_come(monkeypatch, asked):
 def test_true_error_is_within_what_is_asked_for(monkeypatch, tolerance):
     found = search(monkeypatch, {"mu_app": tolerance})
     assert not found.failure
-    assert found.estimates()["slip_mu_app"] <= tolerance * mu_app(found.base.mesh)
+    assert found.estimates()["full_slip_mu_app"] <= tolerance * mu_app(found.base.mesh)
     assert abs(mu_app(found.base.mesh) / EXACT - 1) <= tolerance
 
 
@@ -98,7 +98,7 @@ def test_estimate_is_of_the_true_errors_size(monkeypatch):
     found = search(monkeypatch, {"mu_app": 0.01})
     mesh = found.base.mesh
     parts = EXACT * (0.08 * mesh.contact / 20e-6 + 0.02 * (mesh.growth / 0.5) ** 2)
-    told = found.summary()["quantities"]["slip_mu_app"]
+    told = found.summary()["quantities"]["full_slip_mu_app"]
     assert parts * (1 - 1e-9) <= told["estimate"] <= 3 * parts
     assert MORE * told["estimate"] * (1 - 1e-9) <= told["error"] <= ONCE * told["estimate"] * (1 + 1e-9)
 
@@ -140,8 +140,8 @@ def test_steps_are_halved_where_normal_contact_feels_them(monkeypatch):
     found.run()
     assert paths == [4.0, 1.0, 0.5]
     assert found.refinements == {"contact": 1, "bulk": 1, "steps": 2}
-    assert found.base.values()["normal_contact_length"] == pytest.approx(1.025e-3, rel=1e-12)
-    assert found.estimates()["normal_contact_length"] == pytest.approx(MORE * 0.025e-3, rel=1e-9)
+    assert found.base.values()["charged_contact_length"] == pytest.approx(1.025e-3, rel=1e-12)
+    assert found.estimates()["charged_contact_length"] == pytest.approx(MORE * 0.025e-3, rel=1e-9)
     assert found.summary()["step_scale"] == 0.5, "a quarter of the scene's"
 
 
@@ -150,8 +150,10 @@ def test_receptors_are_halved_where_energy_density_is_asked_for(monkeypatch):
     found = search(monkeypatch, {"sed": 0.005})
     assert found.refinements["receptor"] > 1
     assert found.refinements["contact"] == 1
-    largest = found.base.values()["slip_sed_0"]
-    assert found.allowed() == pytest.approx({"slip_sed_0": 0.005 * largest, "slip_sed_1": 0.005 * largest}, rel=1e-12)
+    largest = found.base.values()["full_slip_sed_0"]
+    assert found.allowed() == pytest.approx(
+        {"full_slip_sed_0": 0.005 * largest, "full_slip_sed_1": 0.005 * largest}, rel=1e-12
+    )
 
 
 def test_estimate_alone_refines_nothing(monkeypatch):
@@ -172,7 +174,7 @@ def test_estimate_alone_refines_nothing(monkeypatch):
         (1, 1, 1),
     ]
     parts = EXACT * (0.08 * own.contact / 20e-6 + 0.02 * (own.growth / 0.5) ** 2)
-    told = found.summary()["quantities"]["slip_mu_app"]
+    told = found.summary()["quantities"]["full_slip_mu_app"]
     assert parts * (1 - 1e-9) <= told["estimate"] <= 3 * parts
     assert told["error"] == pytest.approx(ONCE * told["estimate"], rel=1e-12)
 
@@ -194,7 +196,7 @@ def test_what_the_penalty_changes_is_told_beside_the_error(monkeypatch):
     found.run()
     state = with_errors(found, {"full_slip": contact()})["full_slip"]
     assert state.penalty.contact_length == pytest.approx(-1e-5, rel=1e-9)
-    assert found.summary()["quantities"]["slip_contact_length"]["penalty"] == state.penalty.contact_length
+    assert found.summary()["quantities"]["full_slip_contact_length"]["penalty"] == state.penalty.contact_length
     assert state.error.contact_length == 0
     assert "penalty: a rigid screen would change" in lines[-1]
     assert all("estimated discretisation error" in line for line in lines if "±" in line)
@@ -221,7 +223,7 @@ def test_penalty_that_cannot_be_told_is_noted(monkeypatch):
     found = search(monkeypatch, {}, lost)
     assert not found.failure
     assert found.notes == ["the effect of the penalty could not be estimated: full slip found no equilibrium"]
-    assert found.estimates()["slip_mu_app"] > 0
+    assert found.estimates()["full_slip_mu_app"] > 0
 
 
 def test_estimate_alone_that_is_lost_is_no_failure(monkeypatch):
@@ -295,14 +297,23 @@ def test_small_finger_tells_what_its_penalty_changes(tmp_path: Path):
     mesh = SMALL["mesh"] | {"contact": 15e-6}
     summary = run(from_data(SMALL | {"f_ext": 3.0, "mesh": mesh}), tmp_path, MPI.COMM_WORLD)
     quantities = summary["accuracy"]["quantities"]
-    assert {"normal_contact_length", "slip_contact_length", "slip_f_t", "slip_mu_app", "slip_sed_0"} <= set(quantities)
-    for name in ("slip_f_t", "slip_mu_app"):
+    assert {
+        "charged_contact_length",
+        "full_slip_contact_length",
+        "full_slip_f_t",
+        "full_slip_mu_app",
+        "full_slip_sed_0",
+    } <= set(quantities)
+    for name in ("full_slip_f_t", "full_slip_mu_app"):
         assert 0 < summary[f"{name}_error"] == quantities[name]["error"] < quantities[name]["value"]
-    for name in ("normal_contact_length", "slip_contact_length"):  # of few facets; below the value in test_results
+    for name in (
+        "charged_contact_length",
+        "full_slip_contact_length",
+    ):  # of few facets; below the value in test_results
         assert 0 < summary[f"{name}_error"] == quantities[name]["error"]
-    for state in ("normal", "slip"):
+    for state in ("charged", "full_slip"):
         assert -0.03 < summary[f"{state}_contact_length_penalty"] / summary[f"{state}_contact_length"] < -0.003
-    assert abs(summary["slip_mu_app_penalty"]) < 0.01 * summary["slip_mu_app"]
+    assert abs(summary["full_slip_mu_app_penalty"]) < 0.01 * summary["full_slip_mu_app"]
     spent = summary["accuracy"]["solves"]
     assert spent[-1]["mesh"] == spent[0]["mesh"], "on the same mesh"
     assert spent[-1]["factorisations"] < spent[0]["factorisations"] / 2
@@ -311,7 +322,7 @@ def test_small_finger_tells_what_its_penalty_changes(tmp_path: Path):
 def test_run_without_errors_says_none(tmp_path: Path):
     """And what it took, which grows from step to step up to what the summary says."""
     summary = run(from_data(SMALL | {"output": {"errors": False}}), tmp_path, MPI.COMM_WORLD)
-    assert "accuracy" not in summary and "slip_mu_app_error" not in summary
+    assert "accuracy" not in summary and "full_slip_mu_app_error" not in summary
     with (tmp_path / "steps.csv").open(encoding="utf-8", newline="") as file:
         seconds = [float(row["processor_seconds"]) for row in csv.DictReader(file)]
     assert 0 < seconds[0]

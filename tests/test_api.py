@@ -12,7 +12,7 @@ from mpi4py import MPI
 import fingerpad as fp
 from fingerpad import runs
 from fingerpad.io.result import Cost
-from fingerpad.io.states import PREFIXES, STATES
+from fingerpad.io.states import STATES
 from fingerpad.model.hints import finer_mesh_may_help
 from fingerpad.runs import attempt, full, sweep
 from fingerpad.runs.processes import End
@@ -80,7 +80,7 @@ def test_summary_is_the_result(ran):
     for name in STATES:
         state = getattr(result, name)
         for key in (*CONDITIONS, *RESULTS):
-            assert kept[f"{PREFIXES[name]}_{key}"] == kept["states"][name][key] == getattr(state, key), key
+            assert kept[f"{name}_{key}"] == kept["states"][name][key] == getattr(state, key), key
 
 
 def test_result_is_read_again(ran):
@@ -231,7 +231,7 @@ def test_sweep_is_taken_up_again(tmp_path, monkeypatch):
     """One of two points is there; the other one is run, and its crash is in the table."""
     asked = []
 
-    def run(module, arguments, limit):
+    def run(module, arguments, limit, folders):
         scene = json.loads(Path(arguments[0]).read_text(encoding="utf-8"))
         asked.append((scene["voltage"], arguments[3]))
         if scene["voltage"] > 0:

@@ -123,7 +123,7 @@ def test_errors_without_a_force_are_those_of_the_friction_force(monkeypatch):
     monkeypatch.setattr(solves, "solve_again", unpressed)
     found = Refinement(model, unpressed(model, {}, MPI.COMM_SELF), MPI.COMM_SELF, shown.append, lambda: None)
     found.run()
-    assert "slip_f_t" in found.estimates() and "slip_mu_app" not in found.estimates()
+    assert "full_slip_f_t" in found.estimates() and "full_slip_mu_app" not in found.estimates()
     assert any("friction force" in line for line in shown) and not any("nan" in line for line in shown)
 
 

@@ -38,12 +38,12 @@ def test_default_is_that_of_other_pages(found):
     """The same scene at 10 µm, run for the models' page; the other counts the ridges that can touch by a rule."""
     models = kept("models").numbers["scenes"]["75 N/m, 200 V"]["full"]["summary"]
     reference = found["full"]["reference"]
-    assert reference["mu_app"] == pytest.approx(models["slip_mu_app"], rel=1e-5)
-    assert reference["normal"] == pytest.approx(models["normal_contact_length"], rel=1e-3)
+    assert reference["mu_app"] == pytest.approx(models["full_slip_mu_app"], rel=1e-5)
+    assert reference["charged"] == pytest.approx(models["charged_contact_length"], rel=1e-3)
 
 
 def test_air_gaps_are_counted_by_the_range_of_the_paper():
-    row = {"gaps": {"normal": [1.71e-6, 1.69e-6, 3.1e-6], "slip": [2.99e-6, 1.5e-6]}}
+    row = {"gaps": {"charged": [1.71e-6, 1.69e-6, 3.1e-6], "full_slip": [2.99e-6, 1.5e-6]}}
     assert assumptions._counts(row) == (2, 2, 5)
 
 
@@ -67,7 +67,7 @@ def test_sentences_hold_of_the_numbers(found):
     assert max(changes[name] for name in assumptions.LITTLE) < min(changes[name] for name in profiles)
     flat, inside = full["flat"], words["flat"]
     assert inside[0] == inside[2] and abs(flat["mu_app"] / PAPER - 1) <= NEAR  # both statements at 170 V
-    assert max(flat["gaps"]["slip"]) in (flat["gaps"]["slip"][0], flat["gaps"]["slip"][-1])
+    assert max(flat["gaps"]["full_slip"]) in (flat["gaps"]["full_slip"][0], flat["gaps"]["full_slip"][-1])
     at_200 = [row for name, row in finger.items() if name.endswith("] at 200 V")]
     assert len(at_200) == 15 and not any(
         row["d_eq"] >= LEAST_GAP and abs(row["mu_app"] / PAPER - 1) <= NEAR for row in at_200

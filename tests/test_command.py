@@ -72,11 +72,11 @@ def test_options_of_petsc_are_told_from_the_others(words, own, petsc):
         (["--set", "f_ext=nan"], "f_ext is nan; it must be a finite number"),
         (
             ["--set", "f_ext=0.5 N"],
-            "f_ext is '0.5 N'; it must be in N/m; a force on the whole finger is given by run --force",
+            "f_ext is '0.5 N'; it must be in N/m; a force on the whole finger is the key force",
         ),
-        (["--force", "0.5"], "command line: argument --force: 0.5 has no unit; give one, as in '0.5 N'"),
-        (["--force", "nan"], "force is 'nan'; "),
-        (["--force", "0.5 N", "--set", "f_ext = 50"], "--set f_ext is given and --force too; give one of the two"),
+        (["--force", "nan"], "force is nan; "),
+        (["--force", "0.5 N", "--set", "force = 1"], "--set force is given and --force too; give one of the two"),
+        (["--force", "0.5 N", "--set", "f_ext = 50"], "force is 0.5 N and f_ext is 50 N/m; give one of the two"),
         (["--set", "voltage=50", "--set", " voltage = 100"], "--set voltage is given twice; give one value"),
         (
             ["--set", "roughness.young=1e5", "--set", "roughness={h_rms=1e-6}"],

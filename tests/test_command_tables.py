@@ -199,7 +199,7 @@ def test_sweep_prints_and_keeps_a_table(tmp_path, capsys):
     with (tmp_path / "table.csv").open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
     assert [float(row["voltage"]) for row in rows] == [0.0, 200.0]
-    assert float(rows[0]["slip_mu_app"]) == pytest.approx(0.25, rel=1e-12)
+    assert float(rows[0]["full_slip_mu_app"]) == pytest.approx(0.25, rel=1e-12)
 
 
 @pytest.mark.parametrize(

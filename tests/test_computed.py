@@ -14,7 +14,6 @@ from fingerpad.measurements.computed import computed
 from fingerpad.measurements.table import read
 from fingerpad.runs.solve import run
 from fingerpad.scene import Scene, SceneError
-from fingerpad.slices import traces
 from fingerpad.slices.errors import MESH
 from fingerpad.slices.finger import WholeFinger
 from fingerpad.slices.total import Total
@@ -111,7 +110,7 @@ def test_sites_that_are_left_out_change_no_value(table):
 
 def test_smaller_forces_are_those_of_the_traces(table):
     """Of one run to the largest force, as of runs to each; a run of its own wins, and what no trace reaches is left."""
-    runs = [fp.run(fp.Scene(voltage=150.0), model="cylinders", force=force) for force in (0.5, 1.0)]
+    runs = [fp.run(fp.Scene(voltage=150.0, force=force), model="cylinders") for force in (0.5, 1.0)]
     asked = read(table("force (N), friction force (N)\n0.3, 0.1\n0.5, 0.1\n1, 0.1\n3, 0.1\n"))
     one, both = (computed(given, asked) for given in (runs[1:], runs))
     at = np.array([0.3, 0.5, 1.0, 3.0]), np.full(4, 150.0)
@@ -167,7 +166,7 @@ def together(table, tmp_path, monkeypatch):
     def together(*scenes, force="0.3 N"):
         folders = [f"run{k}" for k in range(len(scenes))]
         for place, changes in zip(folders, scenes, strict=True):
-            run(Scene(**{"voltage": 100} | changes), model="cylinders", force=force, out=place)
+            run(Scene(**{"voltage": 100, "force": force} | changes), model="cylinders", out=place)
         return ["compare-data", str(file), "--run", *folders]
 
     return together
@@ -200,17 +199,15 @@ def test_runs_of_other_laws_are_refused():
         one_scene.refuse_mixed(runs)
 
 
-def test_traces_count_as_the_scene_that_was_given():
-    """Histories of the full model for newtons have forces of their own; other histories differ in force and voltage."""
+def test_forces_on_the_finger_may_differ():
+    """And be those at its centre; all else may not."""
 
-    def traced(force, **changes):
-        scene = Scene(**changes)
-        record = {"asked": {"force": force, "parameters": scene.parameters()}}
-        return Result(traces.history(scene, "full_slip", 100 * force), "full", None, None, None, record=record)
+    def under(force, **changes):
+        return Result(Scene(force=force, **changes), "full", None, None, None)
 
-    one_scene.refuse_mixed([traced(0.3, voltage=100), traced(0.5, voltage=150), Result(Scene(), "full", *[None] * 3)])
+    one_scene.refuse_mixed([under(0.3, voltage=100), under(0.5, voltage=150), Result(Scene(), "full", *[None] * 3)])
     with pytest.raises(SceneError, match=r"friction is 0\.25 in a run and 0\.3 in a run"):
-        one_scene.refuse_mixed([traced(0.3), traced(0.5, friction=0.3)])
+        one_scene.refuse_mixed([under(0.3), under(0.5, friction=0.3)])
 
 
 def test_histories_may_differ_in_force_and_voltage():

@@ -276,7 +276,7 @@ def test_swept_keys_are_coordinates(tmp_path):
     np.testing.assert_array_equal(data["state_mu_app"].sel(state="full_slip"), found.array("mu_app"))
     for row in rows_of(tmp_path, "table"):
         at = data.sel(voltage=float(row["voltage"]), f_ext=float(row["f_ext"]), state="full_slip")
-        assert float(at["state_f_t"]) == float(row["slip_f_t"])
+        assert float(at["state_f_t"]) == float(row["full_slip_f_t"])
     assert "voltage" not in data.attrs and data.attrs["friction"] == 0.25
 
 

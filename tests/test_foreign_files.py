@@ -27,8 +27,6 @@ from fingerpad.scene import Scene, SceneError
 
 DEEP = pytest.param("[" * 100_000 + "]" * 100_000, id="deep")
 NO_SCENES = (
-    '{"trace": 5}',
-    '{"trace": {"force": "x", "parameters": {}}}',
     '{"laws": 5}',
     '{"laws": {"mesh": {}}}',
     DEEP,
@@ -78,7 +76,7 @@ def answered(tmp_path_factory) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("key", ["slip_mu_app", "parameters", "finger", "notes", "provenance", "asked", "laws"])
+@pytest.mark.parametrize("key", ["full_slip_mu_app", "parameters", "finger", "notes", "provenance", "asked", "laws"])
 @pytest.mark.parametrize("value", [5, "x", [], {"a": [1]}, [[1]]])
 def test_summary_with_a_value_of_another_kind(answered, tmp_path, key, value):
     """The report is made, or refused in a sentence; so is a run that another model is to take its contact from."""
@@ -146,4 +144,4 @@ def test_arrays_of_no_skin_are_none(tmp_path):
     np.savez(tmp_path / "whole.npz", **skin)
     np.savez(tmp_path / "other.npz", **(skin | {"end_p": np.zeros(5)}))
     assert len(skin_of(tmp_path / "whole.npz", "end")) == 7
-    assert skin_of(tmp_path / "other.npz", "end") == skin_of(tmp_path / "whole.npz", "normal") == {}
+    assert skin_of(tmp_path / "other.npz", "end") == skin_of(tmp_path / "whole.npz", "charged") == {}

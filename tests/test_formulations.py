@@ -1,6 +1,7 @@
 """Penalty, Nitsche and augmented Lagrangian solve the same contact problems, on any number of ranks."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -8,12 +9,18 @@ from ffcx.naming import compute_signature
 from mpi4py import MPI
 from scipy.optimize import brentq
 
+from fingerpad.cli.check import _model
+from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.touching import by_rule
+from fingerpad.scene import SceneError, from_data
+from fingerpad.scene.laws import used
 from geometry import tags
 from geometry.bodies import block, ridge
 from geometry.mesh import load
 from variational.body import Body
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.formulation import Formulation, Springs
+from variational.contact.formulations import FORMULATIONS
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
@@ -83,6 +90,9 @@ class OneSpring(Formulation):
 
     eps: float = 1.5e12
 
+    symmetric_start: ClassVar[bool] = False
+    caution: ClassVar[str] = "contact by one spring"
+
     def springs(self, skin) -> Springs:
         """Return springs without preload."""
         return Springs(0.0, 0.0, skin.constant(self.eps), skin.constant(self.eps))
@@ -99,6 +109,19 @@ def test_formulation_of_one_s_own():
         run.run(Target("slide", bone_x=1e-6))
     assert contact_force(mine) == contact_force(springs)
     assert (mine.solver.reaction == springs.solver.reaction).all()
+
+
+def test_formulation_of_one_s_own_is_a_key_of_a_scene(monkeypatch):
+    """One line of the registry: scenes, refusals, the check and what a run leaves out take it from its class."""
+    monkeypatch.setitem(FORMULATIONS, "one spring", OneSpring)
+    scene = from_data({"contact": {"formulation": "one spring", "eps": 2e12}})
+    model = FingerModel(by_rule(scene), plan(scene))
+    assert model.contact == OneSpring(2e12)
+    assert not model.options.symmetric_start and plan(from_data({})).symmetric_start
+    assert from_data(scene.parameters()) == scene
+    with pytest.raises(SceneError, match="eps_n"):
+        from_data({"contact": {"formulation": "one spring", "eps_n": 2e12}})
+    assert used(scene)["contact"] == "OneSpring(eps=2e+12)" and "contact by one spring" in [*_model(scene, plan(scene))]
 
 
 # -- one ridge -----------------------------------------------------------------------------------------

@@ -8,7 +8,6 @@ import pytest
 from fingerpad.cli import compare
 from fingerpad.io.quantities import PLUS_MINUS
 from fingerpad.io.result import Result
-from fingerpad.io.states import PREFIXES
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.model import STATES
 from fingerpad.scene import SceneError, from_data
@@ -49,7 +48,7 @@ def test_default_scene_is_near_the_full_model(default):
 def test_what_it_cannot_know_is_absent(default):
     unknown = [(state, name) for state, s in default.named.items() for name in RESULTS if np.isnan(getattr(s, name))]
     assert unknown == [("charged", "bone_height"), ("full_slip", "bone_height")]
-    assert default.to_dict()["slip_bone_height"] is None and default.uncharged is None
+    assert default.to_dict()["full_slip_bone_height"] is None and default.uncharged is None
     assert any("bone's height" in note for note in default.notes)
 
 
@@ -114,16 +113,12 @@ def test_ridge_without_a_round_tip_is_refused():
 
 # -- lengths of a run --------------------------------------------------------------------------------------
 def keep(folder, **values):
-    names = {f"{state}_{name}": 1.0 for state in ("normal", "slip") for name in RESULTS}
-    lengths = {"normal_contact_length": 1.7e-3, "slip_contact_length": 1.6e-3}
-    ridges = {"normal_ridges_in_contact": 17, "slip_ridges_in_contact": 16}
+    names = {f"{state}_{name}": 1.0 for state in ("charged", "full_slip") for name in RESULTS}
+    lengths = {"charged_contact_length": 1.7e-3, "full_slip_contact_length": 1.6e-3}
+    ridges = {"charged_ridges_in_contact": 17, "full_slip_ridges_in_contact": 16}
     cost = {"wall_seconds": 9.0, "factorisations": 3, "unknowns": 5, "full_slip": True}
     flat, at = names | lengths | ridges, {"f_ext": 75.0, "voltage": 200.0}
-    states = {
-        name: at | {key: flat[f"{prefix}_{key}"] for key in RESULTS}
-        for name, prefix in PREFIXES.items()
-        if name in STATES
-    }
+    states = {name: at | {key: flat[f"{name}_{key}"] for key in RESULTS} for name in STATES}
     summary = at | {"parameters": scene().parameters(), "states": states} | flat | cost | values
     (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     return summary
@@ -144,7 +139,7 @@ def test_length_of_a_run(tmp_path, sign):
     [
         ({"model": "cylinders"}, "is one of the model 'cylinders'; give a full run"),
         ({"voltage": 50.0}, "is one at voltage 50 V"),
-        ({"slip_contact_length": None}, "did not reach full slip"),
+        ({"full_slip_contact_length": None}, "did not reach full slip"),
         (
             {"parameters": scene(geometry={"ridge_amplitude": 50e-6}).parameters()},
             r"is one of another finger \(its geometry.ridge_amplitude was 5e-05, and is 0.0001 now\)",

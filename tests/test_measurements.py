@@ -226,7 +226,7 @@ def at(known, force, voltage):
 def test_computed_values_are_those_of_the_sweep(folder):
     """At its points to roundoff; between them a power law of the force, and linear in U²; not beyond."""
     with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
-        rows = {(float(r["f_ext"]), float(r["voltage"])): float(r["slip_mu_app"]) for r in csv.DictReader(file)}
+        rows = {(float(r["f_ext"]), float(r["voltage"])): float(r["full_slip_mu_app"]) for r in csv.DictReader(file)}
     found = computed(folder, asked())
     for (force, voltage), value in rows.items():
         assert at(found, [force * (1 + 1e-9)], [voltage])[0] == pytest.approx(value, rel=1e-12)
@@ -261,7 +261,7 @@ def test_failed_run_leaves_the_uncharged_state_of_another(tmp_path):
 def test_missing_points_are_not_compared(tmp_path):
     """A failed run leaves its neighbours as they are."""
     rows = "25,0,0.2,\n75,0,0.2,\n25,100,,lost\n75,100,0.3,\n"
-    (tmp_path / "table.csv").write_text(f"f_ext,voltage,slip_mu_app,failure\n{rows}")
+    (tmp_path / "table.csv").write_text(f"f_ext,voltage,full_slip_mu_app,failure\n{rows}")
     found = at(computed(tmp_path, asked()), [25.0, 25.0, 75.0, 50.0], [0.0, 100.0, 100.0, 100.0])
     assert list(np.isnan(found)) == [False, True, False, True]
 
@@ -331,7 +331,8 @@ def test_picture_has_the_values_of_the_table(folder, table):
 
 def test_errors_of_a_sweep_count_with_the_spread(folder, table, tmp_path, capsys):
     """They are interpolated as the values are; a value without an error has a dash."""
-    rows = "f_ext,voltage,slip_mu_app,slip_mu_app_error,failure\n25,0,0.30,0.02,\n25,100,0.40,0.04,\n25,200,0.5,,\n"
+    heads = "f_ext,voltage,full_slip_mu_app,full_slip_mu_app_error,failure"
+    rows = f"{heads}\n25,0,0.30,0.02,\n25,100,0.40,0.04,\n25,200,0.5,,\n"
     place = tmp_path / "kept"
     shutil.copytree(folder, place)
     (place / "table.csv").write_text(rows)

@@ -201,7 +201,7 @@ def fingers(tmp_path_factory):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", ["f_ext", "normal_f_contact", "normal_f_electrostatic", "normal_contact_length"])
+@pytest.mark.parametrize("name", ["f_ext", "charged_f_contact", "charged_f_electrostatic", "charged_contact_length"])
 def test_half_the_finger_has_the_whole_s_numbers(fingers, name):
     """Within the air gaps' tolerance of 1e-6: the whole's mesh is the half's and its mirror image."""
     half, whole = fingers[0]
@@ -225,16 +225,16 @@ def test_half_the_finger_has_the_whole_s_tables(fingers):
 @pytest.mark.long
 def test_half_the_finger_comes_with_its_error(fingers):
     """Two halves of a length are not known better than one: of the size of the whole's, of which a facet is a fifth."""
-    half, whole = (summary["normal_contact_length_error"] for summary in fingers[0])
+    half, whole = (summary["charged_contact_length_error"] for summary in fingers[0])
     assert whole / 5 < half < 5 * whole
-    assert set(fingers[0][0]["accuracy"]["quantities"]) >= {"normal_contact_length", "normal_sed_0", "normal_sed_1"}
+    assert set(fingers[0][0]["accuracy"]["quantities"]) >= {"charged_contact_length", "charged_sed_0", "charged_sed_1"}
 
 
 @pytest.mark.long
 def test_half_the_finger_costs_half(fingers):
     (half, whole), _ = fingers
     assert half["unknowns"] < 0.55 * whole["unknowns"]
-    assert half["normal_f_t"] == 0.0
+    assert half["charged_f_t"] == 0.0
 
 
 def test_picture_shows_the_whole_finger(tmp_path, monkeypatch):

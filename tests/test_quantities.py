@@ -85,7 +85,7 @@ def test_output_of_a_sweep(tmp_path):
     values = [each.full_slip.f_contact / each.full_slip.contact_length for each in found]
     assert found.array("p_mean").tolist() == values
     with (tmp_path / "table.csv").open(encoding="utf-8", newline="") as file:
-        assert [float(row["slip_p_mean"]) for row in csv.DictReader(file)] == values
+        assert [float(row["full_slip_p_mean"]) for row in csv.DictReader(file)] == values
     assert found.to_xarray()["state_p_mean"].sel(state="full_slip").values.tolist() == values
     cell = f"{1e-3 * values[1]:.2f}"
     assert str(found).splitlines()[3].split()[-1] == cell

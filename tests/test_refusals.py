@@ -149,7 +149,6 @@ def test_impossible_geometry_and_mesh():
     ("text", "start"),
     [
         ("volts = 3", "volts is not a key of a scene; did you mean voltage?"),
-        ("force = 0.5", "force is not a key of a scene; a force on the whole finger in newtons is asked of a run"),
         ("[mesh]\ncontcat = 1", "mesh.contcat is not a key of mesh; did you mean mesh.contact?"),
         (
             "[materials.dermis]\nnu = 0.4",
@@ -247,7 +246,7 @@ def test_dots_that_are_no_key(write):
         ("voltage = " + "9" * 30, "voltage is 1e+30 V; it must be 0 or from 0.001 to 5000 V"),
         ("f_ext = " + "[" * 5000 + "]" * 5000, "nested too deep"),
         (f"{'a.' * 3000}a = 1", "a.a.a has lists or tables that are nested too deep"),
-        ('"" = 1', "'' is not a key of a scene; keys are f_ext, voltage,"),
+        ('"" = 1', "'' is not a key of a scene; keys are f_ext, force, voltage,"),
         ('"mesh.contact" = 1', "'mesh.contact' is not a key of a scene;"),
         ('"a\\nb" = 1', "'a\\nb' is not a key of a scene;"),
         (f"{'k' * 100_000} = 1", f"{'k' * 37}... is not a key of a scene;"),

@@ -72,15 +72,15 @@ def test_charged_while_it_slides(tmp_path, titles):
     rows = rows_of(tmp_path)
     last = rows[-1]
     assert summary["full_slip"] is True
-    assert summary["slip_step"] == len(rows) and summary["slip_load"] == "charge while sliding"
-    assert summary["slip_mu_app"] == float(last["mu_app"]) > 0.5
-    assert (summary["slip_voltage"], summary["slip_bone_x"]) == (100.0, pytest.approx(0.6e-3, rel=1e-12))
-    assert (summary["normal_voltage"], summary["normal_load"]) == (0.0, "press")
+    assert summary["full_slip_step"] == len(rows) and summary["full_slip_load"] == "charge while sliding"
+    assert summary["full_slip_mu_app"] == float(last["mu_app"]) > 0.5
+    assert (summary["full_slip_voltage"], summary["full_slip_bone_x"]) == (100.0, pytest.approx(0.6e-3, rel=1e-12))
+    assert (summary["charged_voltage"], summary["charged_load"]) == (0.0, "press")
     press, slide, end = summary["loads"]
     assert (press["full_slip_reached"], slide["full_slip_held"], end["full_slip_held"]) == (False, True, True)
     assert slide["end"]["mu_app"] == pytest.approx(MU_0, rel=1e-6)
     assert slide["stable"] is press["stable"] is True
-    assert end["extremes"]["mu_app"]["max_step"] == summary["slip_step"]
+    assert end["extremes"]["mu_app"]["max_step"] == summary["full_slip_step"]
     assert "$U$ = 100 V, bone at $x$ = 0.6 mm" in titles["finger_charge_while_sliding"]
     assert "$U$ = 0 V" in titles["Normal contact"] and "$U$ = 100 V" in titles["Full slip"]
     assert "$f_{ext}$ = 1 N/m, $U$ = 0 to 100 V" in titles["history"] and "$U$ = 0 to 100 V" in titles["surface"]
@@ -112,10 +112,10 @@ BACK = {"name": "back", "bone_x": 0.0}
 def test_headline_is_the_last_full_slip(tmp_path, history, load, f_ext):
     """Whatever came after the full slip, and whichever of height and force was given."""
     summary = run(from_data(LEAN | {"history": history}), tmp_path, MPI.COMM_WORLD, pictures=True)
-    assert summary["slip_load"] == load
-    assert f_ext is None or summary["slip_f_ext"] == pytest.approx(f_ext, rel=1e-9)
-    assert (summary["normal_load"], summary["normal_bone_x"]) == ("press", 0.0)
-    assert abs(summary["normal_mu_app"]) < 0.01
+    assert summary["full_slip_load"] == load
+    assert f_ext is None or summary["full_slip_f_ext"] == pytest.approx(f_ext, rel=1e-9)
+    assert (summary["charged_load"], summary["charged_bone_x"]) == ("press", 0.0)
+    assert abs(summary["charged_mu_app"]) < 0.01
     assert float(rows_of(tmp_path)[-1]["f_ext"]) == summary["f_ext"]
 
 
@@ -173,12 +173,12 @@ def test_force_error_bounds_the_balance(tmp_path, name):
     data = LEAN | {"f_ext": 1.0, "voltage": 100.0} | COARSE_RUNS[name]
     s = run(scene := from_data(data), tmp_path, MPI.COMM_WORLD)
     assert "failure" not in s
-    cone = data.get("friction", MU_0) * s["slip_f_contact"]
-    assert abs(s["slip_f_contact"] - s["slip_f_electrostatic"] - s["slip_f_ext"]) <= s["force_error"]
-    assert abs(s["slip_f_t"] - cone) <= s["force_error"] + CONE_ROUNDOFF * cone
+    cone = data.get("friction", MU_0) * s["full_slip_f_contact"]
+    assert abs(s["full_slip_f_contact"] - s["full_slip_f_electrostatic"] - s["full_slip_f_ext"]) <= s["force_error"]
+    assert abs(s["full_slip_f_t"] - cone) <= s["force_error"] + CONE_ROUNDOFF * cone
     # Charged before it slides, in whatever formulation: some hundred nodal imbalances of the tolerance times the load.
-    assert s["normal_f_electrostatic"] > 0
-    force = s["normal_f_contact"] - s["normal_f_electrostatic"]
+    assert s["charged_f_electrostatic"] > 0
+    force = s["charged_f_contact"] - s["charged_f_electrostatic"]
     assert force == pytest.approx(s["f_ext"], abs=100 * scene.numerics.tolerance * s["f_ext"])
 
 
@@ -204,7 +204,7 @@ def test_state_that_is_no_equilibrium_is_neither_written_nor_kept(tmp_path, kspo
     summary = run(from_data(LEAN | {"history": [{"name": "press", "bone_height": -20e-6}]}), tmp_path, MPI.COMM_WORLD)
     assert "is left at a node; forces are not balanced to 1e-06" in summary["failure"]
     assert not (tmp_path / "steps.csv").exists() and not list(tmp_path.glob("*.png"))
-    assert summary["steps"] == 0 and summary["normal_f_contact"] is None and summary["loads"] == []
+    assert summary["steps"] == 0 and summary["charged_f_contact"] is None and summary["loads"] == []
 
 
 def test_rejected_state_leaves_the_one_before(tmp_path, monkeypatch):
@@ -229,7 +229,7 @@ def test_rejected_state_leaves_the_one_before(tmp_path, monkeypatch):
     summary = run(from_data(LEAN | {"history": history}), tmp_path, MPI.COMM_WORLD, pictures=True)
     assert "step 3 (charge): a force of 0.001 N/m is left at a node" in summary["failure"]
     assert [row["step"] for row in rows_of(tmp_path)] == ["1", "2"]
-    assert (summary["normal_step"], summary["normal_voltage"]) == (2, 0.0)
+    assert (summary["charged_step"], summary["charged_voltage"]) == (2, 0.0)
     assert written == [2.0]
     assert not (tmp_path / "finger_charge.png").exists()
 
@@ -252,14 +252,14 @@ def test_refined_states_come_with_their_errors(refined):
     assert "failure" not in summary
     found = summary["accuracy"]
     assert found["reached"]
-    assert 0 < summary["slip_mu_app_error"] <= 0.2 * summary["slip_mu_app"]
-    for name in ("normal_contact_length", "slip_contact_length"):
+    assert 0 < summary["full_slip_mu_app_error"] <= 0.2 * summary["full_slip_mu_app"]
+    for name in ("charged_contact_length", "full_slip_contact_length"):
         assert 0 < summary[f"{name}_error"] < summary[name]
-    assert set(found["quantities"]["normal_contact_length"]["shares"]) == {"contact", "bulk"}
-    assert set(found["quantities"]["slip_mu_app"]["shares"]) == {"contact", "bulk"}
+    assert set(found["quantities"]["charged_contact_length"]["shares"]) == {"contact", "bulk"}
+    assert set(found["quantities"]["full_slip_mu_app"]["shares"]) == {"contact", "bulk"}
     again = found["solves"][1]
     assert again["factorisations"] < found["solves"][0]["factorisations"] / 2
-    assert summary["slip_f_t"] == pytest.approx(0.25 * summary["slip_f_contact"], rel=1e-6)
+    assert summary["full_slip_f_t"] == pytest.approx(0.25 * summary["full_slip_f_contact"], rel=1e-6)
 
 
 def test_headline_states_are_shown_on_the_final_mesh(refined):
@@ -276,15 +276,15 @@ def test_headline_states_are_shown_on_the_final_mesh(refined):
         assert end in titles[name], name
     ridges = [row for row in rows_of(folder, "ridges_final") if row["of"] == "full_slip"]
     assert sum(float(row["f_friction"]) for row in ridges) == pytest.approx(
-        -summary["slip_f_t"], abs=summary["force_error"]
+        -summary["full_slip_f_t"], abs=summary["force_error"]
     )
     assert {float(row["mesh_contact"]) for row in ridges} == {final}
     assert {row["of"] for row in rows_of(folder, "receptors_final")} == {"charged", "full_slip"}
     with np.load(folder / "surface.npz") as arrays:
-        x, p = arrays["slip_x"], arrays["slip_p"]
+        x, p = arrays["full_slip_x"], arrays["full_slip_p"]
     known = np.isfinite(x[1:] + x[:-1])
     force = float((np.diff(x) * (p[1:] + p[:-1]) / 2)[known].sum())
-    assert force == pytest.approx(summary["slip_f_contact"], rel=0.1), "the trapezoidal rule on few facets"
+    assert force == pytest.approx(summary["full_slip_f_contact"], rel=0.1), "the trapezoidal rule on few facets"
 
 
 # -- jumps -------------------------------------------------------------------------------------------------
@@ -318,10 +318,10 @@ def test_way_through_the_air_is_no_sliding(tmp_path, titles):
     away = {"name": "away", "bone_height": 20e-6, "bone_x": place}
     loads = [away, PRESS, {"name": "charge", "voltage": 100.0}, SLIDE | {"bone_x": place + 1e-3}]
     summary = run(from_data(LEAN | {"history": loads}), tmp_path, MPI.COMM_WORLD, pictures=True)
-    assert (summary["normal_load"], summary["normal_voltage"]) == ("charge", 100.0)
+    assert (summary["charged_load"], summary["charged_voltage"]) == ("charge", 100.0)
     assert summary["uncharged_load"] == "press"
-    assert summary["normal_bone_x"] == pytest.approx(place, rel=1e-12)
-    assert summary["slip_mu_app"] > 0.5 and summary["slip_bone_x"] > place
+    assert summary["charged_bone_x"] == pytest.approx(place, rel=1e-12)
+    assert summary["full_slip_mu_app"] > 0.5 and summary["full_slip_bone_x"] > place
     assert "0.5 mm" in titles["Charged normal contact"]
 
 

@@ -34,7 +34,7 @@ def test_stiffer_springs_bear_the_same_friction():
     assert found.skin[4].history["pressure"] is line and found.u is line and found.gain == {4: 0.5}
 
 
-@pytest.mark.parametrize("state", ["uncharged", "normal", "slip"])
+@pytest.mark.parametrize("state", ["uncharged", "charged", "full_slip"])
 def test_order_predicts_the_contact_over_a_stiffer_screen(state):
     """From 500 and 1500 MPa/mm, what 5000 changes of the default scene's contact: to a factor of two."""
     predicted, found = stiffer()[state]

@@ -37,7 +37,7 @@ def test_lengths_by_ridge_are_the_length(path):
     touching = np.flatnonzero(state.lengths)
     assert len(touching) == state.state.ridges_in_contact < 9
     assert abs(touching.mean() - 4) <= 0.5
-    assert path.parts()["slip_contact_length"] is state.lengths
+    assert path.parts()["full_slip_contact_length"] is state.lengths
 
 
 def test_slip_that_is_never_steady_ends_with_the_slide(monkeypatch):

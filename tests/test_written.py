@@ -108,7 +108,7 @@ def test_law_works_from_the_command_line(place):
     again = command(place, "run", place / "one" / "scene.json", "--out", place / "two")
     assert again.returncode == 0, again.stderr
     one, two = (json.loads((place / name / "summary.json").read_text()) for name in ("one", "two"))
-    assert one["slip_mu_app"] == two["slip_mu_app"] == pytest.approx(0.2 * one["slip_f_contact"] / 75.0)
+    assert one["full_slip_mu_app"] == two["full_slip_mu_app"] == pytest.approx(0.2 * one["full_slip_f_contact"] / 75.0)
     assert one["parameters"] == two["parameters"] and one["parameters"]["friction"]["law"] == "mylaws:Mine"
     assert one["laws"]["friction"] == "Mine(k=2, tau=5000)"
 

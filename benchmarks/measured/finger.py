@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from benchmarks import newtons
 from benchmarks.runs import VOLTAGES
-from fingerpad.io.states import PREFIXES
 from fingerpad.scene import Scene
 from fingerpad.scene.slices import Slices
 from fingerpad.slices.total import at_force
@@ -32,7 +31,7 @@ def sums(known: Mapping[str, Any], fine: Mapping[str, Array] | None = None) -> S
 
     Args:
         known: numbers of docs/models.json.
-        fine: contact lengths and counts of ridges on another mesh, ``normal_contact_length`` and so on, of shape
+        fine: contact lengths and counts of ridges on another mesh, ``charged_contact_length`` and so on, of shape
             (forces, voltages), in place of those; indentations are then those of ``known``.
     """
     found = dict[str, Array]()
@@ -40,7 +39,7 @@ def sums(known: Mapping[str, Any], fine: Mapping[str, Array] | None = None) -> S
         points = newtons.states(known["scenes"], "full", voltage, state)
         if fine is not None:
             at = VOLTAGES.index(voltage)
-            other = (fine[f"{PREFIXES[state]}_{key}"][:, at] for key in ("contact_length", "ridges_in_contact"))
+            other = (fine[f"{state}_{key}"][:, at] for key in ("contact_length", "ridges_in_contact"))
             points = [
                 replace(point, contact_length=float(length), ridges_in_contact=int(ridges))
                 for point, length, ridges in zip(points, *other, strict=True)

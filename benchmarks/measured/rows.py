@@ -43,7 +43,7 @@ class Grid(NamedTuple):
     """Kept numbers over force and voltage; arrays of shape (forces, voltages), SI units."""
 
     fine: Mapping[str, Array]
-    """Default mesh: ``normal_…`` and ``slip_…`` of ``f_t``, ``contact_length`` and ``ridges_in_contact``."""
+    """Default mesh: ``charged_…`` and ``full_slip_…`` of ``f_t``, ``contact_length`` and ``ridges_in_contact``."""
     coarse: Mapping[str, Array]
     """Contact size of 10 µm: the same, and ``f_electrostatic``."""
     gaps: tuple[float, float]
@@ -68,7 +68,7 @@ def grid(paper: Mapping[str, Any], known: Mapping[str, Any]) -> Grid:
 def _of(known: Mapping[str, Any]) -> dict[str, Array]:
     """Return the full model's numbers over force and voltage."""
     found = {}
-    for name in (f"{state}_{key}" for state in ("normal", "slip") for key in _KEPT):
+    for name in (f"{state}_{key}" for state in ("charged", "full_slip") for key in _KEPT):
         values = [[models.value(known["scenes"][models.name(f, u)], "full", name) for u in VOLTAGES] for f in FORCES]
         found[name] = np.array(values, dtype=float)
     return found
@@ -98,8 +98,10 @@ def _trend(g: Grid, holds: Callable[[Mapping[str, Array]], NDArray[np.bool_]], *
 
 
 def _friction_slip(g: Grid) -> Row:
-    f_t = g.fine["slip_f_t"]
-    return _trend(g, lambda a: a["slip_f_t"][:, -1] > a["slip_f_t"][:, 0], least=(f_t[:, -1] / f_t[:, 0]).min() - 1)
+    f_t = g.fine["full_slip_f_t"]
+    return _trend(
+        g, lambda a: a["full_slip_f_t"][:, -1] > a["full_slip_f_t"][:, 0], least=(f_t[:, -1] / f_t[:, 0]).min() - 1
+    )
 
 
 # -- of the whole finger -------------------------------------------------------------------------------------
@@ -162,12 +164,12 @@ def _ridges(g: Grid) -> Row:
 # -- over the load -------------------------------------------------------------------------------------------
 def _shear(a: Mapping[str, Array]) -> Array:
     """Return the relative change of the contact length from rest to full slip at 0 V, shape (forces,)."""
-    return np.asarray(a["slip_contact_length"][:, 0] / a["normal_contact_length"][:, 0] - 1)
+    return np.asarray(a["full_slip_contact_length"][:, 0] / a["charged_contact_length"][:, 0] - 1)
 
 
 def _friction_load(g: Grid) -> dict[str, Row]:
     """Judge by µ without voltage over the load whether it depends on the load, falls, and by how much."""
-    mu = g.fine["slip_f_t"][:, 0] / np.array(FORCES)
+    mu = g.fine["full_slip_f_t"][:, 0] / np.array(FORCES)
     factor, fall = float(mu.max() / mu.min()), float(1 - mu[-1] / mu[0])
     depends = factor - 1 > SIMILAR
     verdicts = {
@@ -183,7 +185,9 @@ def _gap_sliding(g: Grid) -> Row:
     """Impedance of equal plates: attraction F over length L gives the capacitance, in proportion to (F L)^(1/2)."""
 
     def rise(a: Mapping[str, Array]) -> Array:
-        plates = [np.sqrt(a[f"{s}_f_electrostatic"] * a[f"{s}_contact_length"])[:, 1:] for s in ("normal", "slip")]
+        plates = [
+            np.sqrt(a[f"{s}_f_electrostatic"] * a[f"{s}_contact_length"])[:, 1:] for s in ("charged", "full_slip")
+        ]
         return np.asarray(plates[0] / plates[1] - 1)
 
     found = rise(g.coarse)
@@ -249,9 +253,9 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, Row]:
     low, high = (1e6 * each for each in g.gaps)
     of_load = _friction_load(g)
     return {
-        "friction_voltage": _power(g, "slip_f_t", VOLTAGES[1:]),
-        "friction_range": _power(g, "slip_f_t", *AMPLITUDES),
-        "area_voltage": _power(g, "slip_contact_length", *AMPLITUDES),
+        "friction_voltage": _power(g, "full_slip_f_t", VOLTAGES[1:]),
+        "friction_range": _power(g, "full_slip_f_t", *AMPLITUDES),
+        "area_voltage": _power(g, "full_slip_contact_length", *AMPLITUDES),
         "frequency": _without_numbers(HIT),
         "frequency_wide": _without_numbers(MISS),
         "cut_off": _without_numbers(HIT),
@@ -285,5 +289,7 @@ def numbers(g: Grid, runs: Mapping[str, Any]) -> dict[str, Row]:
 
 def curves(g: Grid) -> dict[str, list[float]]:
     """Return what the page draws: values at full slip over the voltages, by name and force; depth (m) and force (N)."""
-    shown = {f"{name} {f:g}": g.fine[f"slip_{name}"][FORCES.index(f)].tolist() for name in DRAWN for f in DRAWN_FORCES}
+    shown = {
+        f"{name} {f:g}": g.fine[f"full_slip_{name}"][FORCES.index(f)].tolist() for name in DRAWN for f in DRAWN_FORCES
+    }
     return shown | {"depth": g.full_finger["charged_0_depth"].tolist(), "force": list(finger.NEWTONS)}

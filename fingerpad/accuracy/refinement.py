@@ -34,7 +34,7 @@ from fingerpad.accuracy.rigid_screen import rigid
 from fingerpad.accuracy.solves import Solve, Solves, quantities, words
 from fingerpad.io.interrupt import Interrupted
 from fingerpad.io.quantities import QUANTITIES
-from fingerpad.io.states import PREFIXES, WORDS
+from fingerpad.io.states import WORDS
 from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import RestartRequired
 from fingerpad.richardson import MeshParameter, errors, plus_minus, to_refine
@@ -172,7 +172,7 @@ class Refinement:
         found = {}
         for name, state in self.base.states.items():
             for quantity, value in quantities(name, state).items():
-                key = f"{PREFIXES.get(name, name)}_{quantity}"
+                key = f"{name}_{quantity}"
                 if "sed" in self.asked and quantity.startswith("sed_"):
                     found[key] = self.asked["sed"] * max(state.sed.values(), default=0.0)
                 elif quantity in self.asked:
@@ -272,22 +272,21 @@ def with_errors(refinement: Refinement, path: Mapping[str, ContactState]) -> dic
 
 def errors_of(name: str, changes: Mapping[str, float]) -> Errors:
     """Return the changes of a named state's quantities, of those by key; densities at receptors are left out."""
-    prefix = f"{PREFIXES[name]}_"
     known = {field.name for field in fields(Errors)}
-    return Errors(**{k: v for key, v in changes.items() if (k := key.removeprefix(prefix)) in known and k != key})
+    return Errors(**{k: v for key, v in changes.items() if (k := key.removeprefix(f"{name}_")) in known and k != key})
 
 
 def _in_words(key: str) -> str:
-    """Return a key such as ``slip_mu_app`` in words: quantity and state."""
-    name = next((name for name, prefix in PREFIXES.items() if key.startswith(f"{prefix}_")), None)
+    """Return a key such as ``full_slip_mu_app`` in words: quantity and state."""
+    name = next((name for name in WORDS if key.startswith(f"{name}_")), None)
     if name is None:
         return key
-    quantity = key.removeprefix(f"{PREFIXES[name]}_")
+    quantity = key.removeprefix(f"{name}_")
     words = QUANTITIES[quantity].words if quantity in QUANTITIES else quantity
     return f"{words} at {WORDS[name]}"
 
 
 def _scaled(key: str, value: float) -> tuple[float, str]:
-    """Return the value of a key such as ``slip_contact_length`` (in SI) in the unit of tables, and this unit."""
+    """Return the value of a key such as ``full_slip_contact_length`` (in SI) in the unit of tables, and this unit."""
     known = [q for name, q in QUANTITIES.items() if key == name or key.endswith(f"_{name}")]
     return (value * known[0].scale, known[0].unit) if known else (value, "")

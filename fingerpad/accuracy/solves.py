@@ -12,9 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from fingerpad.accuracy.rigid_screen import over_stiffer
 from fingerpad.io.drawing import View
-from fingerpad.io.states import PREFIXES, WORDS, before_sliding
+from fingerpad.io.states import WORDS, before_sliding
 from fingerpad.model.finger import Step
-from fingerpad.model.memory import refuse_beyond
 from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.viewer import Viewer
@@ -65,14 +64,14 @@ class Solve:
     def values(self) -> dict[str, float]:
         """Return the quantities of interest, by the prefix of the state and the name of the quantity."""
         return {
-            f"{PREFIXES.get(name, name)}_{quantity}": value
+            f"{name}_{quantity}": value
             for name, state in self.states.items()
             for quantity, value in quantities(name, state).items()
         }
 
     def parts(self) -> dict[str, ArrayLike]:
         """Return the same, contact lengths by ridge, shape (ridges,)."""
-        lengths = {f"{PREFIXES.get(name, name)}_contact_length": state.lengths for name, state in self.states.items()}
+        lengths = {f"{name}_contact_length": state.lengths for name, state in self.states.items()}
         return {**self.values(), **lengths}
 
 
@@ -185,12 +184,10 @@ class Solves:
             states: as they were found on another mesh.
 
         Raises:
-            GeometryError: the mesh would need too much memory.
+            GeometryError: the mesh needs too much memory.
             StepFailed: a state was not found.
         """
-        model = self._model
-        refuse_beyond(model.geometry, mesh, model.numerics, model.options)
-        return self._again(model.changed(mesh=mesh), states)
+        return self._again(self._model.changed(mesh=mesh), states)
 
     def over_stiffer_screen(self, base: Solve, contact: Formulation) -> Solve:
         """Return states over a screen of twice the stiffness; collective.

@@ -24,7 +24,7 @@ def page() -> str:
         for name in ("page.css", "closed_form.js", "plot.js", "page.js")
     )
     values = {
-        "error": f"{100 * known.KNOWN_ERROR['cylinders']['full_slip']['mu_app']:.1f} %",
+        "error": f"{100 * known.KNOWN_ERROR['full_slip']['mu_app']:.1f} %",
         "runs": str(known.KNOWN_RUNS),
         "where": known.where(),
         "leakage": html.escape(LEAKAGE),

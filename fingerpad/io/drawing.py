@@ -14,7 +14,7 @@ from fingerpad.io import finger_picture, history_picture, skin_picture, style
 from fingerpad.io.files import replace
 from fingerpad.io.over_time import without_parts_of_jumps
 from fingerpad.io.skin_picture import SurfaceProfile
-from fingerpad.io.states import PREFIXES, WORDS, before_sliding, called, named, partial_slip
+from fingerpad.io.states import WORDS, before_sliding, called, named, partial_slip
 from geometry.parameters import MeshSize
 from variational.state import ContactState, Skin
 
@@ -222,14 +222,14 @@ class Drawing:
     def _shown(self) -> "dict[str, tuple[str, ContactState, View | None]]":
         """Return the states along whose skin is drawn: title, state, and its view on the final mesh if there is one."""
         found, partial = named(self.states), partial_slip(self.states)
-        shown = {"normal": (_title("charged", found["charged"]), found["charged"])} if "charged" in found else {}
+        shown = {"charged": (_title("charged", found["charged"]), found["charged"])} if "charged" in found else {}
         if partial is not None:
             shown["partial"] = ("Partial slip", partial)
         if "full_slip" in found:
-            shown["slip"] = _title("full_slip", found["full_slip"]), found["full_slip"]
+            shown["full_slip"] = _title("full_slip", found["full_slip"]), found["full_slip"]
         elif self._slides():
-            shown["slip"] = "Last state", self.states[-1]
-        final = {PREFIXES[name]: view for name, view in self.finer.items() if view.profile is not None}
+            shown["full_slip"] = "Last state", self.states[-1]
+        final = {name: view for name, view in self.finer.items() if view.profile is not None}
         return {
             name: (title, final[name].state if name in final else state, final.get(name))
             for name, (title, state) in shown.items()

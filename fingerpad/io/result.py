@@ -11,7 +11,7 @@ from fingerpad.io import dataset, terminal
 from fingerpad.io.files import read_object
 from fingerpad.io.quantities import CHANGES, FRICTION, QUANTITIES, STABILITY, Output, checked, valued
 from fingerpad.io.quantities import read as read_outputs
-from fingerpad.io.states import PREFIXES, STATES, LoadResult, load_results
+from fingerpad.io.states import STATES, LoadResult, load_results
 from fingerpad.scene import Scene, SceneError, as_kept
 from fingerpad.scene.laws import coefficient
 from fingerpad.scene.messages import clip
@@ -99,11 +99,6 @@ class Result:
         """The last accepted state; without a loading path the last named state."""
         return self.steps[-1] if self.steps else (self.full_slip or self.charged or self.uncharged)
 
-    @property
-    def asked_force(self) -> float | None:
-        """Force on the whole finger (N) that the run was asked for; None of a run of a cross-section."""
-        return (self.record.get("asked") or {}).get("force")
-
     def plot(self, kind: str = "surface", path: str | Path | None = None) -> "Figure | None":
         """Draw the skin, the deformed finger, the history of sliding, or the footprint of the whole finger.
 
@@ -169,13 +164,13 @@ class Result:
 
     # -- files -----------------------------------------------------------------------------------------
     def values(self) -> dict[str, Any]:
-        """Return conditions and results of the named states, flat: ``slip_mu_app``; None where a state is missing."""
+        """Return what is known of the named states, flat: ``full_slip_mu_app``; None where a state is missing."""
         found: dict[str, Any] = {}
-        for name, prefix in PREFIXES.items():
+        for name in STATES:
             state = getattr(self, name)
-            found |= {f"{prefix}_{key}": None if state is None else getattr(state, key) for key in self._kept()}
+            found |= {f"{name}_{key}": None if state is None else getattr(state, key) for key in self._kept()}
             for kind in CHANGES if state is not None else ():
-                found |= {f"{prefix}_{key}_{kind}": value for key, value in getattr(state, kind).known().items()}
+                found |= {f"{name}_{key}_{kind}": value for key, value in getattr(state, kind).known().items()}
         return {key: None if value != value else value for key, value in found.items()}
 
     def _kept(self) -> tuple[str, ...]:
@@ -186,7 +181,7 @@ class Result:
         """Return the content of ``summary.json``, ready for JSON; SI units."""
         last, values = self.last, self.values()
         nested = {
-            name: {key: values[f"{PREFIXES[name]}_{key}"] for key in self._kept()}
+            name: {key: values[f"{name}_{key}"] for key in self._kept()}
             | {kind: getattr(state, kind).known() for kind in CHANGES}
             for name, state in self.named.items()
         }
@@ -232,9 +227,7 @@ class Result:
             finger=WholeFinger.from_dict(summary["finger"], bare.scene.slices) if "finger" in summary else None,
         )
         used = {*bare.to_dict(), "failure", "interrupted", "notes", "cautions", "outputs", "finger"}
-        used |= {
-            f"{PREFIXES[name]}_{field.name}_{kind}" for name in STATES for field in fields(Errors) for kind in CHANGES
-        }
+        used |= {f"{name}_{field.name}_{kind}" for name in STATES for field in fields(Errors) for kind in CHANGES}
         record = {key: value for key, value in summary.items() if key not in used}
         if "laws" in parameters:  # objects of Python, of which only the names are kept
             record["parameters"] = parameters

@@ -26,8 +26,6 @@ STILL = 1e-12  # m, largest sideways displacement of a bone at rest
 SLIDE_ON = 0.2e-3  # m, further sliding over which the forces of full slip are constant
 STATES = ("uncharged", "charged", "full_slip")
 WORDS = {"uncharged": "uncharged normal contact", "charged": "charged normal contact", "full_slip": "full slip"}
-PREFIXES = {"uncharged": "uncharged", "charged": "normal", "full_slip": "slip"}
-"""Prefixes of the quantities of a state in flat tables and in ``summary.json``: ``normal_contact_length``."""
 FIRST_TOUCH = "touch"
 """Name of the steps that press a finger in the air in a little, before a force can control it."""
 _ROUNDOFF = 1e-9  # relative, of a displacement or a voltage

@@ -29,7 +29,7 @@ from numpy.typing import ArrayLike, NDArray
 from fingerpad.io.files import read_object
 from fingerpad.io.place import difference
 from fingerpad.io.result import Cost, Result
-from fingerpad.io.states import PREFIXES, WORDS
+from fingerpad.io.states import WORDS
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import known
 from fingerpad.reduced.model import STATES, Model, Stopwatch, at_rest, at_slip, refuse_others
@@ -173,8 +173,8 @@ def _of_summary(scene: Scene, folder: Path, summary: Mapping[str, Any]) -> Footp
     other = difference(_finger(summary["parameters"]), _finger(scene.parameters()))
     if other:
         raise SceneError(f"run {folder} is one of another finger ({other}); give a run of this scene's finger")
-    length = {state: summary.get(f"{PREFIXES[state]}_contact_length") for state in STATES}
-    ridges = {state: summary.get(f"{PREFIXES[state]}_ridges_in_contact") for state in STATES}
+    length = {state: summary.get(f"{state}_contact_length") for state in STATES}
+    ridges = {state: summary.get(f"{state}_ridges_in_contact") for state in STATES}
     if None in (*length.values(), *ridges.values()):
         raise SceneError(f"run {folder} did not reach full slip, so that its contact length there is not known")
     return Footprint(length, ridges, True, f"contact length of the run in {folder}")  # type: ignore[arg-type]
@@ -220,7 +220,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     footprint = footprint or fitted(scene)
     found: dict[str, ContactState] = {}
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
-    errors = {} if footprint.charged else known.errors(Cylinders.name, scene)
+    errors = {} if footprint.charged else known.errors(scene)
     notes = footprint.source, exact, known.in_words(errors), "the bone's height is not in this model", *leakage(scene)
     cautions, states = [*remarks(scene), *([] if footprint.charged else known.cautions(scene))], {}
     for state in STATES:
@@ -229,7 +229,7 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
         cautions += _others(state, states[state])
     cautions += on_states(found.values(), scene.closure())
     more: dict[str, Any] = {
-        f"{PREFIXES[state]}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
+        f"{state}_{name}": getattr(ridge, name) for state, ridge in states.items() for name in ("p_c", "d_eq")
     }
     more |= {"laws": used(scene), "model_error": errors}
     cost = Cost(processor_seconds=clock.seconds())

@@ -1,7 +1,7 @@
-"""Where the error of the reduced models is known: of full runs of the default finger on the default screen.
+"""Where the error of the model "cylinders" is known: of full runs of the default finger on the default screen.
 
 It is the error of the model, beside that of a mesh: the largest difference from the full runs of ``docs/models.json``,
-some of which are at forces that the model "cylinders" has no contact length of.
+some of which are at forces that the model has no contact length of.
 """
 
 from collections.abc import Mapping
@@ -13,13 +13,11 @@ from fingerpad.scene import Scene
 Bands = Mapping[str, Mapping[str, float]]
 """Relative errors by state and quantity."""
 
-KNOWN_ERROR: Mapping[str, Bands] = {
-    "cylinders": {
-        "full_slip": {"mu_app": 0.024, "contact_length": 0.063, "f_electrostatic": 0.05},
-        "charged": {"contact_length": 0.1, "f_electrostatic": 0.14},
-    },
+KNOWN_ERROR: Bands = {
+    "full_slip": {"mu_app": 0.024, "contact_length": 0.063, "f_electrostatic": 0.05},
+    "charged": {"contact_length": 0.1, "f_electrostatic": 0.14},
 }
-"""Largest relative errors by model, rounded up to 0.1 %; tests/test_command_tables.py derives them again."""
+"""Largest relative errors, rounded up to 0.1 %; tests/test_known_error.py derives them again."""
 KNOWN_RUNS, KNOWN_FORCES, KNOWN_VOLTAGES = 44, (5.0, 150.0), (0.0, 200.0)
 """Number of the runs, and the range of their external forces (N/m) and voltages (V)."""
 _TABLES = ("geometry", "materials", "contact", "electric", "roughness")
@@ -43,9 +41,9 @@ def changed(scene: Scene) -> list[str]:
     return [name for name in ("friction", *_TABLES) if given[name] != default[name]]
 
 
-def errors(model: str, scene: Scene) -> Bands:
-    """Return the known relative errors of a model for a scene by state and quantity; empty where none is known."""
-    return {} if outside(scene.f_ext, scene.voltage) or changed(scene) else KNOWN_ERROR[model]
+def errors(scene: Scene) -> Bands:
+    """Return the known relative errors for a scene by state and quantity; empty where none is known."""
+    return {} if outside(scene.f_ext, scene.voltage) or changed(scene) else KNOWN_ERROR
 
 
 def in_words(bands: Bands) -> str:

@@ -68,12 +68,12 @@ def _listed(result: Result) -> Iterator[_Frame]:
             yield _Frame("partial slip", partial, "", "surface", "partial")
             partial = None
         yield frame
-    for name, prefix in (("charged", "normal"), ("full_slip", "slip")):
+    for name in ("charged", "full_slip"):
         stem = f"finger_{_file(WORDS[name])}"
         if result.folder is not None and (result.folder / f"{stem}.npz").is_file():
             state = result.named[name]
             words = f"{called(name, state.voltage)}, final mesh"
-            yield _Frame(words, state, stem, "surface", prefix)
+            yield _Frame(words, state, stem, "surface", name)
 
 
 def _file(words: str) -> str:

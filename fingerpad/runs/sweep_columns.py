@@ -2,7 +2,7 @@
 
 A load over time, such as a drive waveform, has no named state: ``load_NAME_mu_app_max`` is the largest coefficient in
 it, ``load_NAME_f_t_amplitude`` the largest amplitude in the spectrum of friction and ``load_NAME_f_t_frequency`` the
-frequency of that. A sweep over the force in newtons has columns of the whole finger alone.
+frequency of that. Under a force on the whole finger there are columns of that alone.
 """
 
 import math
@@ -12,33 +12,25 @@ from typing import Any
 
 from fingerpad.io.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell
 from fingerpad.io.result import Result
-from fingerpad.io.states import PREFIXES, STATES, LoadResult
+from fingerpad.io.states import STATES, LoadResult
 from fingerpad.scene import Scene
 from fingerpad.scene.keys import Key, every
 from fingerpad.slices.finger import WholeFinger
-from fingerpad.slices.force import NEWTONS
 
 LOAD = "load"
 """Beginning of the columns of a load over time."""
-FORCE = "force"
-"""Axis of the force on the whole finger (N), which is no key of a scene."""
 _WHOLE = ("mu_app", "f_t", "f_electrostatic", "contact_area", "gross_area")
 _NEWTONS = ("f_ext", *_WHOLE, "indentation")
 _IN_TIME = ("mu_app", "f_t", "contact_length")
 _ENDS = {"min": "least", "max": "largest", "mean": "mean"}
 
 
-def row(result: Result, whole: bool = False) -> dict[str, Any]:
-    """Return the values of a point in SI units by column, and its failure.
-
-    Args:
-        result: of the point.
-        whole: whether it is one of several forces in newtons of a run, whose cross-section is of none of them.
-    """
-    if whole:
+def row(result: Result) -> dict[str, Any]:
+    """Return the values of a point in SI units by column, and its failure."""
+    if result.scene.force is not None:
         return (_newtons(result.finger) if result.finger is not None else {}) | {"failure": result.failure}
     values, keys = result.values(), (*SWEPT, *(each.name for each in result.outputs))
-    names = [f"{PREFIXES[state]}_{key}" for state in STATES for key in keys]
+    names = [f"{state}_{key}" for state in STATES for key in keys]
     cells = {key: values.get(key) for name in names for key in (name, f"{name}_error") if key in values}
     if result.finger is not None:
         cells |= _newtons(result.finger)
@@ -80,7 +72,7 @@ def shown(columns: Iterable[str], whole: bool, outputs: Iterable[Output] = ()) -
 
     Args:
         columns: of the sweep.
-        whole: whether it is over the force in newtons.
+        whole: whether forces are those on the whole finger.
         outputs: of the sweep, that are computed from a state.
 
     Returns:
@@ -88,7 +80,7 @@ def shown(columns: Iterable[str], whole: bool, outputs: Iterable[Output] = ()) -
     """
     if not whole:
         known = {key: QUANTITIES[key] for key in SWEPT} | {each.name: each for each in outputs}
-        return "full_slip", {f"{PREFIXES['full_slip']}_{key}": each for key, each in known.items()}
+        return "full_slip", {f"full_slip_{key}": each for key, each in known.items()}
     there = set(columns)
     state = next((name for name in reversed(STATES) if _of_finger(name, "contact_area") in there), "full_slip")
     keys = [key for key in _WHOLE if state == "full_slip" or key not in FRICTION]
@@ -97,7 +89,7 @@ def shown(columns: Iterable[str], whole: bool, outputs: Iterable[Output] = ()) -
 
 def _of_finger(state: str, key: str) -> str:
     """Return the column of a quantity of the whole finger."""
-    return f"{PREFIXES[state]}_finger_{key}"
+    return f"{state}_finger_{key}"
 
 
 def newtons_of(result: Result) -> str:
@@ -168,7 +160,5 @@ def printed(value: Any) -> str:
 
 
 def described(key: str) -> Key | None:
-    """Return what is known of a dotted key of a scene, or of the force on the whole finger; None of a table."""
-    if key == FORCE:
-        return Key(FORCE, "N", None, f"{NEWTONS.low:g} to {NEWTONS.high:g} N", "external force on the whole finger")
+    """Return what is known of a dotted key of a scene; None of a table."""
     return next((each for each in every(Scene) if each.name == re.sub(r"\[\d+\]", "[]", key)), None)
