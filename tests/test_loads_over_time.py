@@ -25,6 +25,7 @@ from fingerpad.scene import Load, Scene, from_data
 from fingerpad.scene.waveform import SAMPLES
 from variational.state import ContactState
 
+pytestmark = pytest.mark.slow
 SMALL = tomllib.loads((Path(__file__).parents[1] / "demos/scenes/small_finger.toml").read_text(encoding="utf-8"))
 FINGER = {
     "geometry": SMALL["geometry"],
