@@ -14,7 +14,7 @@ _FREE = re.compile(
     r"|history\[\d+\]\.(bone_height|name)"  # the force by another control, and a word for it,
     r"|output\.(errors|each_load|receptors)|numerics\.memory"  # and what changes no value
 )
-_MOST = 50  # characters of a folder
+_MAX_LENGTH = 50  # characters of a folder
 
 
 class _Difference(NamedTuple):
@@ -42,8 +42,8 @@ def folder(run: Result) -> str:
     if run.folder is None:
         return "a run"
     name = min(str(run.folder), os.path.relpath(run.folder), key=len)
-    name = name if len(name) <= _MOST else "..." + name[3 - _MOST :]
-    return clip(name, _MOST)
+    name = name if len(name) <= _MAX_LENGTH else "..." + name[3 - _MAX_LENGTH :]
+    return clip(name, _MAX_LENGTH)
 
 
 def _conditions(run: Result) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from variational.problem import Problem
 from variational.solvers.continuation import Attempt, Continuation, Target
 
 Array = NDArray[np.float64]
-_SAME = 1e-9  # m, within which two nodes are one
+_MAX_DISTANCE = 1e-9  # m, within which two nodes are one
 
 
 class HalfFinger:
@@ -76,7 +76,7 @@ class HalfFinger:
             there: the same of the finger.
         """
         far, found = cKDTree(self._together(here)).query(np.column_stack([np.abs(there[:, 0]), there[:, 1:]]))
-        if not self._comm.allreduce(float(np.max(far, initial=0.0)), op=MPI.MAX) < _SAME:
+        if not self._comm.allreduce(float(np.max(far, initial=0.0)), op=MPI.MAX) < _MAX_DISTANCE:
             raise RuntimeError("the finger's mesh is not its own mirror image")
         return np.asarray(found)
 
