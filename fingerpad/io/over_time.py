@@ -80,9 +80,8 @@ def over_time(states: Sequence[ContactState], wave: Waveform | None) -> OverTime
     start, seconds = float(times[0]), float(times[-1] - times[0])
     if not seconds > 0:  # also where no load is over time
         return None
-    last = int(
-        np.flatnonzero(times <= start + _TIME_TOLERANCE * seconds)[-1]
-    )  # of those that take no time, as a first touch
+    # the last of those that take no time, as a first touch
+    last = int(np.flatnonzero(times <= start + _TIME_TOLERANCE * seconds)[-1])
     states, time = states[last:], times[last:] - start
     corners = [] if wave is None else wave.corners(seconds)
     names = (*EXTREMES, *states[-1].own)

@@ -133,9 +133,8 @@ def _view(skins: list[list[dict[str, Any]]]) -> list[float] | None:
 
 def _chosen(stems: list[str]) -> set[str]:
     """Return the states that get an image, spread over all."""
-    places = (
-        np.unique(np.linspace(0, len(stems) - 1, min(len(stems), _MAX_FRAMES)).round().astype(int)) if stems else []
-    )
+    count = min(len(stems), _MAX_FRAMES)
+    places = np.unique(np.linspace(0, len(stems) - 1, count).round().astype(int)) if stems else []
     return {stems[int(k)] for k in places}
 
 
