@@ -8,33 +8,21 @@ from mpi4py import MPI
 
 from fingerpad.accuracy import solves
 from fingerpad.accuracy.refinement import Refinement
-from fingerpad.io import states
 from fingerpad.io.interrupt import Interrupted
 from fingerpad.richardson import plus_minus
 from fingerpad.runs import attempt
-from fingerpad.runs.batch import key
-from fingerpad.scene import SceneError, from_data, load_names
+from fingerpad.scene import SceneError, from_data
 from tests.test_accuracy import change, known, model_of, search
 from variational.solvers.continuation import StepFailed
 from variational.solvers.failure import NotConverged
 
-
 # -- scenes ------------------------------------------------------------------------------------------------
-def test_scene_without_accuracy_keeps_its_key():
-    """What sweeps have run is found again."""
-    assert "accuracy" not in from_data({}).parameters()
-    assert key(from_data({"accuracy": {"f_t": 0.1}})) != key(from_data({}))
 
 
 def test_scene_that_asks_starts_coarse_where_it_gives_no_size():
     mesh = from_data({"accuracy": {"mu_app": 0.01}, "mesh": {"growth": 0.3}}).mesh
     assert (mesh.contact, mesh.growth, mesh.receptor) == (20e-6, 0.3, 40e-6)
     assert from_data({"accuracy": {"sed": 0.01}}).mesh.receptor == 10e-6, "coarser sites do not see the tips"
-
-
-def test_parameters_in_use_give_the_same_scene():
-    scene = from_data({"accuracy": {"mu_app": 0.01}})
-    assert from_data(scene.parameters()) == scene
 
 
 @pytest.mark.parametrize(
@@ -60,10 +48,6 @@ def test_parameters_in_use_give_the_same_scene():
 def test_impossible_accuracy_is_refused(given, words):
     with pytest.raises(SceneError, match=words):
         from_data(given)
-
-
-def test_names_of_states_are_those_of_their_files():
-    assert tuple(states.WORDS[name] for name in ("charged", "full_slip")) == load_names.FINAL_STATES
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,6 @@ The closed form alone takes an interpreter of JavaScript and no browser.
 """
 
 import json
-import math
 import random
 import re
 import shutil
@@ -130,13 +129,6 @@ def test_closed_form_is_that_of_python(tmp_path):
     agree(some, by_script(program, tmp_path))
 
 
-def test_error_function_against_the_standard_library(tmp_path):
-    """To 1e-13 where the series ends at 2, and better elsewhere."""
-    places = [-3.0, -0.5, 0.0, 1e-9, 0.3, 1.0, 1.999, 2.0, 2.5, 5.0, 20.0]
-    found = by_script(f"console.log(JSON.stringify({places}.map(closedForm.erfc)));", tmp_path)
-    assert found == pytest.approx([math.erfc(x) for x in places], rel=1e-13)
-
-
 def test_numbers_are_those_of_python(whole, tmp_path):
     """To 1e-9, by the fields of the page."""
     program = f"""{SET}
@@ -147,26 +139,6 @@ def test_numbers_are_those_of_python(whole, tmp_path):
       return refused || Object.fromEntries(cells.map((cell) => [cell.id.slice(6), Number(cell.dataset.value)]));
     }});"""
     agree(sets(), asked(whole, program, tmp_path))
-
-
-def test_refusal_says_what_python_says(whole, tmp_path):
-    """In the same words, but for the name of the model."""
-    program = f"""{SET} set({{ voltage: 5000 }}); return document.getElementById("refusal").textContent;"""
-    said = asked(whole, program, tmp_path)
-    expected = by_python({"voltage": 5000.0})
-    assert isinstance(expected, str)
-    assert said == f"No answer at this point: {expected.replace(chr(32) + 'of the model ' + repr('cylinders'), '')}."
-
-
-def test_curves_hold_the_estimate_of_the_command(whole, tmp_path):
-    """The points of the table under the curves are those of ``fingerpad estimate``."""
-    program = """return [...document.querySelectorAll("#curves tbody tr")].map(
-      (row) => [...row.cells].map((cell) => Number(cell.textContent)));"""
-    rows = asked(whole, program, tmp_path)
-    assert len(rows) == 82
-    for f_ext, voltage, mu in rows[::9]:
-        expected = by_python({"f_ext": f_ext, "voltage": voltage})
-        assert isinstance(expected, dict) and mu == pytest.approx(expected["mu_app"], abs=6e-5)
 
 
 # -- bounds --------------------------------------------------------------------------------------------
@@ -216,16 +188,6 @@ def test_nothing_is_cut_off(whole, tmp_path, width):
     whole_width, beyond, curves = asked(whole, program, tmp_path, width=width, height=800)
     assert beyond == [] and whole_width <= width
     assert len(curves) == 2 and min(curves) > 0.55 * min(width, 900)
-
-
-def test_curves_are_told_apart_without_colour(whole, tmp_path):
-    """By their strokes: known, of unknown error, and the default's for comparison."""
-    program = f"""{SET} return [{{ voltage: 300 }}, {{ voltage: 300, "roughness.h_rms": 4 }}].flatMap((values) => {{
-      set(values);
-      const lines = [...document.querySelectorAll("#over_voltage polyline")];
-      return lines.map((each) => each.getAttribute("stroke-dasharray"));
-    }});"""
-    assert len(set(asked(whole, program, tmp_path))) == 3
 
 
 def test_page_needs_no_network(whole):

@@ -93,10 +93,3 @@ def test_line_is_solid_up_to_the_last_run(whole, tmp_path):
         assert found["voltage"]["solid"] == 0
     (_, last), (begin, end) = high["force"]["ends"]
     assert (last - begin) / (end - begin) == pytest.approx((150 - 5) / (300 - 5), abs=1e-3)
-
-
-def test_no_line_is_solid_with_another_skin_or_screen(whole, tmp_path):
-    for found in shown(whole, tmp_path, {"roughness.h_rms": 4}, {"friction": 0.3}, {"length": 1.5, "ridges": 16}):
-        for curve in (found["voltage"], found["force"]):
-            assert curve["solid"] == curve["bands"] == 0
-        assert all("dashed, since its error is not known" in words for words in found["captions"])

@@ -3,7 +3,6 @@
 import pytest
 
 from fingerpad.cli import main
-from fingerpad.io.left import between
 from fingerpad.model import expected as cost
 from fingerpad.model.memory import estimate
 from fingerpad.model.options import plan
@@ -60,11 +59,6 @@ def test_rule_of_the_cost_is_that_of_kept_runs():
         assert 0.5 < ratio < 2, name
 
 
-def test_cost_of_a_press_is_a_part():
-    scene = from_data({"history": [{"name": "press", "f_ext": 75.0}]})
-    assert sum(cost.factorisations(scene)) == pytest.approx(cost.SHARES["force"] * cost.RUNS)
-
-
 @pytest.mark.parametrize(
     ("values", "load"),
     [
@@ -107,35 +101,6 @@ def test_mesher_that_fails_is_refused_in_a_sentence(monkeypatch, capsys):
     monkeypatch.setattr("geometry.fingertip.build", lambda *given: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         main(["mesh", "--out", "x.msh"])
-
-
-def test_cost_of_a_slide_is_that_of_its_way():
-    """Given as a place or as a distance."""
-    found = []
-    for way in ("bone_x", "bone_x_by"):
-        scene = from_data({"history": [{"name": "press", "f_ext": 75.0}, {"name": "slide", way: 5e-3}]})
-        found.append(sum(cost.factorisations(scene)))
-    assert found[0] == found[1] == pytest.approx((cost.SHARES["force"] + cost.SHARES["slide"]) * cost.RUNS)
-
-
-@pytest.mark.parametrize(
-    ("seconds", "words"),
-    [(3.0, "1.5 to 6 s"), (80.0, "0.67 to 2.7 minutes"), (1200.0, "10 to 40 minutes"), (7200.0, "1 to 4 hours")],
-)
-def test_time_is_a_range(seconds, words):
-    """Half of it to twice as much, in the unit in which the longer time is read."""
-    assert between(seconds / 2, 2 * seconds) == words
-
-
-def test_cost_names_its_parts(tmp_path, monkeypatch, capsys):
-    """The error estimate where there is one."""
-    monkeypatch.setattr("fingerpad.cli.check._picture", lambda *given: "")
-    argv = ["check", "--out", str(tmp_path), "--set", "mesh.contact=10e-6"]
-    assert main(argv) == 0
-    whole = capsys.readouterr().out
-    assert "for the error estimate" in whole and "when the forms are compiled" in whole
-    assert main([*argv, "--set", "output.errors=false"]) == 0
-    assert "for the error estimate" not in capsys.readouterr().out
 
 
 def test_mesh_is_read_again_with_its_names(tmp_path, capsys):

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import fingerpad as fp
-from fingerpad.cli import main
 from fingerpad.io.result import Result
 from fingerpad.measurements import one_scene
 from fingerpad.measurements.compare import beside
@@ -14,12 +13,10 @@ from fingerpad.measurements.computed import computed
 from fingerpad.measurements.table import read
 from fingerpad.runs.solve import run
 from fingerpad.scene import Scene, SceneError
-from fingerpad.slices import traces
 from fingerpad.slices.errors import MESH
 from fingerpad.slices.finger import WholeFinger
 from fingerpad.slices.total import Total
 from tests.commands import refused
-from variational.contact.friction import Derjaguin
 from variational.state import ContactState, Errors
 
 
@@ -103,12 +100,6 @@ def total(force, area):
     return Total(1e-3, 0 * one, one, 1e-3 * one, force, {name: value * one for name, value in values.items()})
 
 
-def test_sites_that_are_left_out_change_no_value(table):
-    runs = fingers(0.3, 0.3)
-    runs[1] = replace(runs[1], scene=runs[1].scene.replace(output={"receptors": False}))
-    one_scene.refuse_mixed(runs)
-
-
 def test_smaller_forces_are_those_of_the_traces(table):
     """Of one run to the largest force, as of runs to each; a run of its own wins, and what no trace reaches is left."""
     runs = [fp.run(fp.Scene(voltage=150.0), model="cylinders", force=force) for force in (0.5, 1.0)]
@@ -149,14 +140,6 @@ def test_forces_within_a_percent_are_one(table):
     assert ratio(runs, free) == pytest.approx([1.0, 2.0])
 
 
-def test_voltages_that_do_not_reach_a_force_are_named(table):
-    """The forces of all voltages in one span would hold the force that was asked for."""
-    runs = fingers(0.3, 0.32)
-    asked = read(table("force (N), voltage (V), gross area (mm^2)\n0.31, 50, 100\n"))
-    with pytest.raises(SceneError, match="is within the results, which have 0.3 N at 0 V, 0.32 N at 50 V$"):
-        compared(runs, asked)
-
-
 # -- runs together -------------------------------------------------------------------------------------------
 @pytest.fixture
 def together(table, tmp_path, monkeypatch):
@@ -179,38 +162,6 @@ def test_runs_of_other_screens_are_refused(together, capsys):
     assert said == (
         "electric.d_i is 1e-06 in run0 and 5e-06 in run1; give runs that differ in force and voltage alone\n"
     )
-
-
-def test_runs_of_other_voltages_are_joined(together, capsys):
-    """The force in N/m of a result for newtons is another one at each voltage."""
-    assert main(together({}, {"voltage": -150}, {"voltage": 0})) == 0
-    assert "Misfit: computed over measured" in capsys.readouterr().out
-
-
-def test_runs_of_other_models_are_refused(tmp_path):
-    """The model is no key of a scene."""
-    runs = [Result(Scene(), model, None, None, None, folder=tmp_path / model) for model in ("full", "cylinders")]
-    with pytest.raises(SceneError, match="model is 'full' in .*full and 'cylinders' in .*cylinders; give runs"):
-        one_scene.refuse_mixed(runs)
-
-
-def test_runs_of_other_laws_are_refused():
-    runs = [Result(Scene(friction=Derjaguin(0.3, tau)), "full", None, None, None) for tau in (1e3, 2e3)]
-    with pytest.raises(SceneError, match="friction.tau_0 is 1000 in a run and 2000 in a run"):
-        one_scene.refuse_mixed(runs)
-
-
-def test_traces_count_as_the_scene_that_was_given():
-    """Histories of the full model for newtons have forces of their own; other histories differ in force and voltage."""
-
-    def traced(force, **changes):
-        scene = Scene(**changes)
-        record = {"asked": {"force": force, "parameters": scene.parameters()}}
-        return Result(traces.history(scene, "full_slip", 100 * force), "full", None, None, None, record=record)
-
-    one_scene.refuse_mixed([traced(0.3, voltage=100), traced(0.5, voltage=150), Result(Scene(), "full", *[None] * 3)])
-    with pytest.raises(SceneError, match=r"friction is 0\.25 in a run and 0\.3 in a run"):
-        one_scene.refuse_mixed([traced(0.3), traced(0.5, friction=0.3)])
 
 
 def test_histories_may_differ_in_force_and_voltage():

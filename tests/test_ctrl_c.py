@@ -58,14 +58,6 @@ def test_ctrl_c_that_is_ignored_stays_ignored():
     assert (done.returncode, done.stderr) == (0, "") and "f_ext" in done.stdout
 
 
-def test_what_is_in_order_first_gets_an_exception(tmp_path):
-    """A sweep tells its points to stop, and its user that they are kept."""
-    code = "import fingerpad.cli.sweep\nfingerpad.cli.sweep.sweep = lambda *given, **axes: come()\n" + DOORS["script"]
-    done = python(code, "sweep", "--over", "voltage=0,1", "--out", str(tmp_path))
-    assert done.returncode == 130
-    assert done.stderr == f"fingerpad: stopped; points are kept in {tmp_path}, and the same command goes on\n"
-
-
 def test_library_leaves_signals_alone():
     code = "import fingerpad, fingerpad.__main__, fingerpad.cli.run\n"
     code += "assert signal.getsignal(signal.SIGINT) is signal.default_int_handler"

@@ -154,9 +154,6 @@ def test_ranks_agree_with_one(size):
     ("options", "sentence"),
     [
         (("--set", "f_ext=-3"), "f_ext is -3"),
-        (("--set", "voltage=high"), "voltage is 'high'"),
-        (("--set", "voltage=nan"), "voltage is nan"),
-        (("--set", "mesh.contact=1e-3"), "mesh.contact is 0.001"),
         (("--nonsense", "1"), "--nonsense is not an option"),
     ],
 )

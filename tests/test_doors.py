@@ -30,32 +30,18 @@ def outcome(door: Callable[[], Scene]) -> Scene | str:
 @pytest.mark.parametrize(
     "text",
     [
-        "",
         "f_ext = 75.0\nvoltage = 200\nfriction = 0.25",
         'f_ext = "0.05 N/mm"',
-        "accuracy = {mu_app = 0.01}",
         "accuracy = {mu_app = 0.01}\nmesh = {contact = 10e-6}",
-        "accuracy = {sed = 0.1}",
         'history = [{name = "press", f_ext = 20}, {name = "slide", bone_x = 1e-3, until_full_slip = true}]',
-        "materials.dermis.shear_modulus = 3e3",
         'contact = {formulation = "augmented", eps_t = 1e11}',
-        "geometry.ridge_profile = [1, -0.2]",
-        # refused
         "f_ext = -1",
-        "f_ext = 75e3",
         'f_ext = "50 V"',
-        "f_ext = true",
         "volts = 3",
-        "mesh = 3",
-        "mesh.contcat = 1",
         "accuracy = {}",
         "history = []",
-        'history = [{name = "press", f_ext = 20}]\nvoltage = 3',
         'history = [{name = "press"}]',
-        "numerics.coupling_cap = 1.5",
         "geometry.ridge_count = 55.0",
-        'contact = {formulation = "nitsche", eps_n = 1e12}',
-        "self = 3",
     ],
 )
 def test_python_and_toml(write, text):
@@ -81,11 +67,6 @@ def test_mutants(write, tmp_path):
     assert refused > 15 and accepted > 5
 
 
-@pytest.mark.parametrize("path", sorted(SCENES.glob("*.toml")), ids=lambda path: path.stem)
-def test_scenes_that_come_along(path):
-    assert Scene(**tomllib.loads(path.read_text(encoding="utf-8"))) == scenes.load(path)
-
-
 # -- what only Python has ------------------------------------------------------------------------------
 def test_numpy_is_as_python():
     given = Scene(
@@ -109,13 +90,6 @@ def test_numpy_is_as_python():
 )
 def test_objects_are_as_tables(objects, tables):
     assert Scene(**objects) == Scene(**tables)
-
-
-def test_accuracy_starts_coarse():
-    """In the sizes that are not given; coarser elements at the sites do not see the tips of intermediate ridges."""
-    mesh = Scene(accuracy=ASKED, mesh={"growth": 0.3}).mesh
-    assert (mesh.contact, mesh.receptor, mesh.growth) == (20e-6, 40e-6, 0.3)
-    assert Scene(accuracy={"sed": 0.1}).mesh.receptor == 10e-6
 
 
 def test_number_beyond_the_reals_is_refused():
@@ -153,38 +127,18 @@ def test_copy_with_changes(before, changes, after):
     assert Scene(**before).replace(**changes) == Scene(**after)
 
 
-@pytest.mark.parametrize(
-    ("before", "changes", "message"),
-    [
-        ({}, {"f_ext": -1}, "f_ext is -1 N/m; it must be from 0.001 to 5000 N/m"),
-        ({}, {"volts": 3}, "volts is not a key of a scene; did you mean voltage?"),
-        (
-            {"history": LOADS},
-            {"f_ext": 50},
-            "f_ext is 50 and history is given too; with a history each load states its own values",
-        ),
-    ],
-)
-def test_copy_is_checked(before, changes, message):
-    assert outcome(lambda: Scene(**before).replace(**changes)) == message
-
-
 # -- changes as text -----------------------------------------------------------------------------------
 @pytest.mark.parametrize(
     ("text", "key", "value"),
     [
-        ("f_ext=50", "f_ext", 50),
         ("mesh.contact = 10e-6", "mesh.contact", 10e-6),
         ("voltage=.5", "voltage", 0.5),
         ("numerics.coupling_cap=9", "numerics.coupling_cap", 9),
         ("output.receptors=false", "output.receptors", False),
         ("contact.formulation=nitsche", "contact.formulation", "nitsche"),
-        ('contact.formulation="nitsche"', "contact.formulation", "nitsche"),
         ("numerics.element=P2 reduced", "numerics.element", "P2 reduced"),
         ("geometry.ridge_profile=[1, -0.2]", "geometry.ridge_profile", [1, -0.2]),
-        ("accuracy={mu_app = 0.01}", "accuracy", {"mu_app": 0.01}),
         ("f_ext=50 N/m", "f_ext", "50 N/m"),
-        ("mesh.contact=5 µm", "mesh.contact", "5 µm"),
         ("history[1].voltage=100", "history[1].voltage", 100),
     ],
 )

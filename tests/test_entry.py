@@ -76,17 +76,6 @@ def test_nothing_is_taken_from_the_home_folder(tmp_path, clean):
     assert found[1].stdout == clean.replace(" 1.5\n", "\n"), found[1].stderr
 
 
-def test_pictures_are_the_same_with_a_style_in_the_home_folder(tmp_path):
-    """Of a matplotlibrc there; outside of the pictures it is obeyed."""
-    folder = tmp_path / ".config" / "matplotlib"
-    folder.mkdir(parents=True)
-    (folder / "matplotlibrc").write_text("lines.markersize: 77\ntext.usetex: True\n")
-    code = "import matplotlib; from fingerpad.io.style import look\n"
-    code += "r = matplotlib.rcParams; before = r['lines.markersize']\n"
-    code += "with look(): print(before, r['lines.markersize'], r['text.usetex'])\nprint(r['lines.markersize'])"
-    assert python(tmp_path, code, HOME=str(tmp_path)).stdout == "77.0 6.0 False\n77.0\n"
-
-
 def test_the_environment_and_the_command_line_are_obeyed(tmp_path):
     code = "from fingerpad.startup import start; start(['-c', 'line'])\nfrom petsc4py import PETSc\n"
     code += "o = PETSc.Options(); print(*(o.getString(name) for name in 'bc'))"

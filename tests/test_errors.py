@@ -27,14 +27,6 @@ def again():
     return {"path": own, "own": own, "levels": [solve(mesh) for mesh in meshes]}
 
 
-def test_meshes_are_halved_in_everything():
-    first, second, third = limits.meshes(errors.DEFAULT.mesh, 3)
-    for name in ("contact", "growth", "receptor", "interface", "coarsest"):
-        sizes = [getattr(mesh, name) for mesh in (first, second, third)]
-        assert sizes == [sizes[0], sizes[0] / 2, sizes[0] / 4]
-    assert first.touching_half_arc == third.touching_half_arc == errors.DEFAULT.mesh.touching_half_arc
-
-
 def test_reference_is_the_limit(again):
     """Errors of second order are taken away exactly, the bar is Roache's for the finest mesh. Tolerance: roundoff."""
     found = errors.reference(again, exact(errors.DEFAULT.mesh))
@@ -44,16 +36,6 @@ def test_reference_is_the_limit(again):
         assert each.value == pytest.approx(2, rel=1e-12, abs=0)
         assert each.order == pytest.approx(2, rel=1e-9)
         assert each.bar == pytest.approx(1.25 * (exact(finest)[name] - 2), rel=1e-9, abs=0)
-
-
-def test_effect_of_the_path_is_in_the_bar(again):
-    """The default mesh solved again is 0.1 off the whole run there."""
-    whole = exact(errors.DEFAULT.mesh)
-    plain = errors.reference(again, whole)
-    again["own"] = solve(errors.DEFAULT.mesh, off=-0.1)
-    for name, each in errors.reference(again, whole).items():
-        assert each.value == plain[name].value
-        assert each.bar == pytest.approx(plain[name].bar + 0.1, rel=1e-12)
 
 
 def soft(scene):
@@ -83,9 +65,3 @@ def test_page(again, tmp_path):
     for predicted, found in errors.stiffer(tmp_path).values():
         assert predicted == pytest.approx(found, rel=1e-9)
         assert found < 0
-
-
-def test_scenes_of_a_study_differ_in_its_setting():
-    for name in errors.STUDIES:
-        scenes = errors.study(name)
-        assert len({str(scene.parameters()) for scene in scenes.values()}) == len(scenes) >= 3

@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from fingerpad.io.files import read_object
-from fingerpad.io.kept_drawing import finger_of, skin_of
+from fingerpad.io.kept_drawing import finger_of
 from fingerpad.io.place import Place, PlaceError, Serial, full_scene
 from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
@@ -29,7 +29,6 @@ DEEP = pytest.param("[" * 100_000 + "]" * 100_000, id="deep")
 NO_SCENES = (
     '{"trace": 5}',
     '{"trace": {"force": "x", "parameters": {}}}',
-    '{"laws": 5}',
     '{"laws": {"mesh": {}}}',
     DEEP,
 )
@@ -139,11 +138,3 @@ def test_arrays_of_no_finger_are_none(tmp_path, changes):
     np.savez(tmp_path / "whole.npz", **FINGER)
     np.savez(tmp_path / "other.npz", **(FINGER | changes))
     assert finger_of(tmp_path / "whole.npz").keys() == FINGER.keys() and finger_of(tmp_path / "other.npz") == {}
-
-
-def test_arrays_of_no_skin_are_none(tmp_path):
-    skin = {f"end_{name}": np.zeros(4) for name in ("x", "y", "p", "t", "p_el", "d_eq", "ridge")}
-    np.savez(tmp_path / "whole.npz", **skin)
-    np.savez(tmp_path / "other.npz", **(skin | {"end_p": np.zeros(5)}))
-    assert len(skin_of(tmp_path / "whole.npz", "end")) == 7
-    assert skin_of(tmp_path / "other.npz", "end") == skin_of(tmp_path / "whole.npz", "charged") == {}

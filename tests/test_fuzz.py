@@ -5,7 +5,7 @@ import os
 import pytest
 
 from tests import fuzz_files
-from tests.fuzz import bad_refusal, fault, main, mutant, prepare
+from tests.fuzz import bad_refusal, fault, mutant, prepare
 
 SEED = 16
 
@@ -24,11 +24,6 @@ def test_mutants(folder):
     assert 0.1 * len(found) < ready < 0.5 * len(found)
 
 
-def test_mutants_are_repeatable():
-    assert [mutant(SEED, k) for k in range(50)] == [mutant(SEED, k) for k in range(50)]
-    assert mutant(SEED, 1) != mutant(SEED + 1, 1)
-
-
 @pytest.mark.parametrize(
     ("broken", "value"),
     [("fingerpad.scene.reading._MOST_DEPTH", 10**6), ("fingerpad.model.check.refuse_beyond", lambda *given: None)],
@@ -39,11 +34,6 @@ def test_what_is_broken_is_found(folder, monkeypatch, broken, value):
     assert any(fault(mutant(SEED, k), folder)[0] for k in range(400))
 
 
-def test_command(capsys):
-    assert main(["--count", "5", "--seed", "2"]) == 0
-    assert "5 mutants: " in capsys.readouterr().out
-
-
 # -- files -------------------------------------------------------------------------------------------------
 def test_files(folder):
     """Each kind as it is, and mutants of them: there is nothing wrong, some are read and some refused."""
@@ -52,11 +42,6 @@ def test_files(folder):
     found += [fuzz_files.fault(fuzz_files.mutant(SEED, k), folder, bad_refusal) for k in range(8)]
     assert [wrong for wrong, _ in found if wrong] == []
     assert {how == "ready" for _, how in found} == {True, False}
-
-
-def test_mutants_of_files_are_repeatable():
-    cases = [[fuzz_files.mutant(SEED, k) for k in range(20)] for _ in range(2)]
-    assert cases[0] == cases[1]
 
 
 @pytest.mark.parametrize(

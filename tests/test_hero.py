@@ -17,11 +17,3 @@ def test_friction_doubles():
     voltages, mu = zip(*kept("hero").numbers["friction"]["75"], strict=True)
     assert voltages == (0, 50, 100, 150, 200)
     assert abs(mu[0] - 0.25) < 1e-6 and mu[-1] > 2 * mu[0]
-
-
-def test_outlines_are_closed():
-    """A square with a square hole: two closed chains, each vertex once."""
-    outer, inner = [[0, 1], [1, 2], [2, 3], [3, 0]], [[4, 5], [5, 6], [6, 7], [7, 4]]
-    loops = hero._loops(hero.np.array(outer + inner))
-    assert [set(loop) for loop in loops] == [{0, 1, 2, 3}, {4, 5, 6, 7}]
-    assert all(loop[0] == loop[-1] and len(loop) == 5 for loop in loops)

@@ -5,10 +5,9 @@ from dataclasses import fields
 import pytest
 from mpi4py import MPI
 
-from fingerpad.cli import compare, main
+from fingerpad.cli import main
 from fingerpad.io.console import Console
-from fingerpad.io.left import Pace, between, in_words, left
-from fingerpad.io.result import Result
+from fingerpad.io.left import Pace, between, left
 from fingerpad.runs.batch import times_left
 from variational.state import ContactState, StepRecord
 
@@ -27,10 +26,6 @@ def test_pace_alone_counts_from_a_third_on():
     low, high = left(3.0, 100.0, 0.5)
     assert (low, high) == left(3000.0, 100.0, 0.5)
     assert low * high == pytest.approx(100.0**2) and high / low == pytest.approx(2.0)
-
-
-def test_nothing_is_left_at_the_end():
-    assert left(80.0, 100.0, 1.0) == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("part", [0.0, 0.1, 0.3, 0.6, 0.9, 0.99])
@@ -58,25 +53,6 @@ def test_load_that_ends_with_full_slip_is_as_far_as_its_friction():
     assert pace.part == pytest.approx(0.8)
 
 
-def test_time_left_of_a_run_like_none_before_is_not_known():
-    """Until its pace is: the expected times are shares of the whole alone."""
-    times = iter([0.0, 0.0, 50.0])
-    pace = Pace([1e30, 1e30], 0.0, clock=lambda: next(times), unsure=0)
-    pace.on_path(0.05)
-    assert pace.left() == "not known"
-    pace.on_path(0.5)
-    assert pace.left() == "35 to 71 s"
-
-
-def test_full_slip_of_a_load_before_is_none_of_the_next():
-    """The first load has ended, with friction at its largest; and such a load is not done before full slip is held."""
-    pace = Pace([20.0, 80.0], 0.0, clock=lambda: 0.0)
-    pace.on_path(0.5, slipped=1.0)
-    assert pace.part == pytest.approx(0.2)
-    pace.on_path(0.5 + 0.1 / 2, slipped=1.0)
-    assert pace.part < 1
-
-
 def test_time_left_is_not_known_before_a_waveform_has_its_pace():
     """Of 10 s that were expected for the waveform and 1 s for what follows it takes four times as long.
 
@@ -101,7 +77,6 @@ def test_time_left_is_not_known_before_a_waveform_has_its_pace():
     ("low", "high", "words"),
     [
         (9e-10, 1.4e-9, "less than 1 s"),
-        (0.0, 0.0, "less than 1 s"),
         (1.5, 6.0, "1.5 to 6 s"),
         (40.0, 160.0, "0.67 to 2.7 minutes"),
         (3600.0, 14400.0, "1 to 4 hours"),
@@ -109,11 +84,6 @@ def test_time_left_is_not_known_before_a_waveform_has_its_pace():
 )
 def test_range_is_in_the_unit_of_the_longer_time(low, high, words):
     assert between(low, high) == words
-
-
-@pytest.mark.parametrize(("seconds", "words"), [(7.26, "7.3 s"), (119.0, "120 s"), (300.0, "5 minutes")])
-def test_time_is_in_the_unit_in_which_it_is_read(seconds, words):
-    assert in_words(seconds) == words
 
 
 def test_time_left_of_a_sweep_is_by_its_runs():
@@ -160,30 +130,3 @@ def test_run_in_quiet_prints_the_result_alone(tmp_path, write, capsys, quiet):
     assert said.count("ridges in contact") == 1
     assert ("time left" in said, "meshing the finger" in said) == (not quiet, not quiet)
     assert said.endswith(f"Report: {tmp_path / 'out' / 'report.html'}\n") == (not quiet)
-
-
-def test_run_without_a_report_names_none(tmp_path, monkeypatch, capsys):
-    """Where it could not be made."""
-    monkeypatch.setattr("fingerpad.report.write.attempt", lambda folder: None)
-    assert main(["run", "--model", "cylinders", "--out", str(tmp_path / "out")]) == 0
-    assert "Report" not in capsys.readouterr().out
-
-
-@pytest.mark.parametrize("quiet", [False, True])
-def test_compare_in_quiet_has_models_that_print_nothing(tmp_path, monkeypatch, quiet):
-    given = []
-
-    def solved(scene, model, context):
-        given.append((model.name, context.lines, context.bar))
-        return Result(scene, model.name, None, None, None, failure="none")
-
-    monkeypatch.setattr(compare, "solved", solved)
-    main(["compare", "--model", "full", "--out", str(tmp_path), *(["--quiet"] if quiet else [])])
-    assert given == [("full", not quiet, not quiet)]
-
-
-def test_sweep_in_quiet_prints_its_table_alone(tmp_path, write, capsys):
-    """Points that are refused before they are run are in the table."""
-    argv = ["sweep", str(write(PRESS + MESH)), "--over", "friction=0.2,0.3", "--out", str(tmp_path / "out"), "--quiet"]
-    assert main(argv) == 0
-    assert "done" not in capsys.readouterr().out

@@ -52,12 +52,6 @@ def script(file: Path, text: str) -> None:
 CHECKS = [f"ruff {VERSION} check .", f"ruff {VERSION} format --check .", "run mypy"]
 
 
-def test_ruff_on_the_path(lint):
-    """Of the version that pyproject.toml names nothing is fetched."""
-    done = lint(VERSION)
-    assert (done.returncode, done.stderr, done.stdout.splitlines()) == (0, "", CHECKS)
-
-
 def test_ruff_of_another_version(lint):
     """The one named is fetched once."""
     first, second = lint("0.0.1"), lint("0.0.1")

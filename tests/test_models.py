@@ -5,7 +5,6 @@ import pytest
 
 from benchmarks import harness, models
 from fingerpad.reduced import cylinders
-from fingerpad.runs.batch import key
 from fingerpad.scene import from_data
 
 BY = harness.Made("0", "abc", "2026-01-01")
@@ -41,46 +40,11 @@ def test_kept_answers_are_those_of_the_program():
     assert found == pytest.approx(known, rel=1e-9)
 
 
-def test_scenes_differ_and_their_mesh_is_given():
-    """Forty scenes; all of one force share their mesh."""
-    scenes = models.scenes()
-    assert len(scenes) == len({key(scene) for scene in scenes.values()}) == 40
-    assert all(scene.mesh.touching_half_arc is not None for scene in scenes.values())
-
-
-def test_held_out_loads_are_none_of_the_others():
-    """No model has a length of their forces; the mesh is that of the forty, and the kept ones are these."""
-    found = models.held_out()
-    assert not {scene.f_ext for scene in found.values()} & set(cylinders.FORCES)
-    assert {scene.mesh.contact for scene in found.values()} == {models.SIZE}
-    assert list(found) == list(harness.kept("models").numbers["held_out"])
-
-
-def test_scenes_beyond_have_the_mesh_of_the_others():
-    """Their changes are understood, and the contact size is that of the forty."""
-    found = models.beyond()
-    assert {scene.mesh.contact for scene in found.values()} == {models.SIZE}
-    assert found["twice the voltage"].voltage == 400.0 and found[models.HALF_STEPS].numerics.step_scale == 0.5
-    assert found["hardly compressible"].materials.dermis.poisson == 0.499
-
-
 def answer(**values):
     return {
         "summary": {"full_slip": True} | values,
         "cost": {"seconds": 2.0, "factorisations": 3, "unknowns": 5},
     }
-
-
-def test_errors_are_against_the_full_model():
-    """Without an answer of either there is none."""
-    found = {"cylinders": answer(full_slip_mu_app=0.5), "full": answer(full_slip_mu_app=0.4)}
-    assert models.error(found, "cylinders", "full_slip_mu_app") == pytest.approx(0.25, rel=1e-12)
-    assert models.error(found, "cylinders", "full_slip_f_t") is None
-    assert models.error({"cylinders": found["cylinders"]}, "cylinders", "full_slip_mu_app") is None
-
-
-def test_failure_is_kept_alone():
-    assert models.answer({"failure": "TIME_LIMIT: not done", "full_slip": False}) == {"failure": "TIME_LIMIT: not done"}
 
 
 def test_page(tmp_path):

@@ -68,12 +68,6 @@ def test_what_matters_for_a_while_stays(data):
     assert needed.friction
 
 
-def test_wanted_output_is_no_new_name_for_old_runs():
-    """A scene that wants everything has the parameters it had before the key was there, and finds its runs again."""
-    assert "output" not in Scene().parameters()
-    assert not from_data({"output": {"receptors": False}}).parameters()["output"]["receptors"]
-
-
 # -- forms -------------------------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def body():

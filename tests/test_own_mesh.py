@@ -1,6 +1,5 @@
 """A scene on the mesh of a gmsh file: the same numbers as on its own mesh, what is left out, and what is refused."""
 
-import csv
 import hashlib
 import html
 import json
@@ -173,18 +172,6 @@ def test_check_reads_and_draws_the_file(place, tmp_path, capsys):
     assert "is no mesh of gmsh" in capsys.readouterr().err
 
 
-def test_study_with_a_mesh_runs_its_points(place, tmp_path):
-    """Each in a process of its own, from what is kept of the scene; the path starts at the file of the study."""
-    write(place)
-    file = place.with_name("study.toml")
-    text = 'friction = 0.0\n[geometry]\nfile = "mine.msh"\n[[history]]\nname = "press"\nf_ext = 2.0\n'
-    file.write_text(f'{text}[output]\nerrors = false\n[sweep]\n"history[0].f_ext" = [1.0, 2.0]\n', encoding="utf-8")
-    assert main(["sweep", str(file), "--out", str(tmp_path / "out"), "--jobs", "1", "--quiet"]) == 0
-    with (tmp_path / "out" / "table.csv").open(encoding="utf-8", newline="") as rows:
-        forces = [float(row["history[0].f_ext"]) for row in csv.DictReader(rows) if not row["failure"]]
-    assert forces == [1.0, 2.0]
-
-
 def test_skin_outside_the_ridges_touches(place):
     """With ridge 0 alone ready for contact, its neighbours come down: the run stops and says what the file lacks."""
     with pytest.warns(UserWarning, match="outer skin"):
@@ -192,13 +179,6 @@ def test_skin_outside_the_ridges_touches(place):
     assert "skin of the group 'outer skin' is at a height of -" in result.failure
     assert "mine.msh must have more ridges, or f_ext be smaller" in result.failure
     assert len(result.steps) > 0
-
-
-def test_one_ridge_of_one_layer_runs(place):
-    """A body that is no finger: one layer, one ridge, no outer skin to watch."""
-    result = fp.run(scene(2.0, geometry={"file": write(place)}))
-    assert result.failure is None or result.failure == ""
-    assert result.charged.f_contact == pytest.approx(2.0, rel=1e-6)
 
 
 def test_what_is_left_out_is_said(place):

@@ -1,9 +1,6 @@
 """The paper's page: runs are read, missing ones are named, and the page is drawn from the kept numbers alone."""
 
-import csv
-import json
 from dataclasses import asdict
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,56 +8,11 @@ import pytest
 from benchmarks.harness import DOCS, keep, kept
 from benchmarks.limits import Limit
 from benchmarks.paper import __main__ as command
-from benchmarks.paper import page, scenes
+from benchmarks.paper import page
 from benchmarks.paper.statement import BUILT, HOLDS, NOT, Statement
-from benchmarks.runs import FORCES, VOLTAGES, Run
-from fingerpad.runs.batch import key
-from fingerpad.scene import Scene
-from tests.test_paper import MADE, judged, state
-
+from tests.test_paper import MADE, judged
 
 # -- runs ----------------------------------------------------------------------------------------------
-def leave(out, scene, columns, **summary):
-    """Leave a run's tables in a sweep's folder."""
-    folder = out / key(scene)
-    folder.mkdir(parents=True)
-    (folder / "summary.json").write_text(json.dumps({"full_slip": True} | summary), encoding="utf-8")
-    for name, table in columns.items():
-        with (folder / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow(table)
-            writer.writerows(zip(*table.values(), strict=True))
-
-
-def test_run_is_read(tmp_path):
-    scene = Scene()
-    steps = {
-        "step": [1, 2, 3, 4, 5],
-        "load": ["press", "charge", "slide", "slide", "slide"],
-        "bone_x": [0, 0, 1e-4, 2e-4, 4e-4],
-        "ridges_in_contact": [5, 5, 5, 4, 4],
-        "all_slip": [False, False, False, True, True],
-    }
-    ridges = {
-        "step": [1, 2, 2, 4],
-        "ridge": [0, 0, 1, 1],
-        "d_eq": [3e-6, 2e-6, 2.5e-6, 2.6e-6],
-        "note": ["", "", "", ""],
-    }
-    receptors = {"step": [1, 1, 2, 2], "ridge": [0, 1, 0, 1], "merkel_sed": [1.0, 2.0, 3.0, 4.0]}
-    leave(tmp_path, scene, {"steps": steps, "ridges": ridges, "receptors": receptors}, charged_step=2, full_slip_step=4)
-    run = Run(scene, tmp_path)
-    assert (run.charged, run.full_slip) == (1, 3)
-    assert [list(found) for found in run.on_ridges(1, "d_eq")] == [[0, 1], [2e-6, 2.5e-6]]
-    assert run.receptors["merkel_sed"].tolist() == [[1.0, 2.0], [3.0, 4.0]]
-    assert run.receptors["ridge"].tolist() == [0, 1]
-
-
-@pytest.mark.parametrize("summary", [{"failure": "stuck"}, {"interrupted": True}])
-def test_unfinished_run_is_refused(tmp_path, summary):
-    leave(tmp_path, Scene(), {}, **summary)
-    with pytest.raises(FileNotFoundError, match=key(Scene())):
-        Run(Scene(), tmp_path)
 
 
 def test_missing_runs_are_named(tmp_path, capsys):
@@ -72,46 +24,7 @@ def test_missing_runs_are_named(tmp_path, capsys):
     assert "missing: Fig. 2, run" in capsys.readouterr().out
 
 
-def test_grid_of_runs_is_collected(monkeypatch, tmp_path):
-    """Friction and lengths of all runs, and the waves of the path; runs without their fields are named."""
-
-    class Fields(SimpleNamespace):
-        def arrays(self, name):
-            raise FileNotFoundError(name)
-
-        receptors = property(lambda self: self.arrays("receptors"))
-
-    def run(scene, out):
-        found = state(scene.f_ext, scene.voltage, lost=0.03)
-        return Fields(scene=scene, **vars(found), loads=["slide"] * 3)
-
-    monkeypatch.setattr(command, "Run", run)
-    numbers = command.collect(tmp_path)
-    assert np.shape(numbers["grid"]["full_slip_f_t"]) == (len(FORCES), len(VOLTAGES))
-    assert {s["figure"] for s in numbers["statements"]} == {
-        "2, section 3.2",
-        "4, Eq. 14",
-        "5, Eq. 15",
-        "6",
-        "9A, 6B",
-        "2C",
-        "7",
-        "8",
-        "8A",
-    }
-    wavy = next(s for s in numbers["statements"] if "wavy" in s["paper"])
-    assert {f"rise_{u:g}" for u in VOLTAGES} <= set(wavy["numbers"])
-    assert numbers["missing"] == ["Fig. 2", "Fig. 9A", "Fig. 9B", "section 5"]
-
-
 # -- scenes, page - ------------------------------------------------------------------------------
-def test_sine_is_a_valid_scene():
-    """From 0 V over the peak and back to 0 V, each reached before the finger slides on to full slip, ever farther."""
-    loads = scenes.sine().loads()[1:]
-    voltages = [load.voltage for load in loads if load.voltage is not None]
-    assert voltages == pytest.approx([scenes.PEAK * np.sin(np.pi * k / 12) for k in range(1, 13)], abs=1e-9)
-    assert np.all(np.diff([load.bone_x for load in loads]) > 0)
-    assert [load.until_full_slip for load in loads] == [True] + [False, True] * 12
 
 
 def numbers_with(*statements):

@@ -1,12 +1,7 @@
 """Random scenes of the stability page: how they are drawn, what is kept of their runs, and their table."""
 
-import argparse
-from pathlib import Path
-
 import pytest
 
-from benchmarks.harness import DOCS, kept
-from benchmarks.stability import __main__ as keeping
 from benchmarks.stability import page, scenes
 from fingerpad.scene import Scene
 
@@ -41,19 +36,6 @@ def test_scenes_are_within_their_ranges():
     assert {scenes.drawn(number)["materials"]["exponent"] for number in range(2)} == {"printed", "abaqus"}
 
 
-def test_scenes_are_repeatable_and_differ():
-    assert scenes.drawn(3) == scenes.drawn(3) != scenes.drawn(4)
-
-
-def test_formulations_get_the_same_scenes():
-    """But for the table of the contact."""
-    asked = scenes.scenes()
-    assert len(asked) == scenes.COUNT * len(scenes.FORMULATIONS)
-    for number in range(scenes.COUNT):
-        plain = [asked[number, name].parameters() | {"contact": None} for name in scenes.FORMULATIONS]
-        assert plain[0] == plain[1] == plain[2]
-
-
 @pytest.mark.parametrize(
     ("found", "factorisations", "failure"),
     [
@@ -79,30 +61,3 @@ def test_table_holds_each_outcome():
     assert page.scenes_table(rows()[: scenes.COUNT]).count("| not run | not run |") == scenes.COUNT
     assert page.full_slips(rows()[:5], "penalty") == f"5 of 5 ({scenes.COUNT - 5} not run)"
     assert "▲ 15 µm, 50" in page.scenes_table(rows(contact=15e-6))
-
-
-def test_dearer_counts_scenes_that_both_reach():
-    """The penalty fails in scene 1; of the others the augmented Lagrangian takes three times as much, here."""
-    found = rows()
-    for row in found:
-        row["full_slip"] = (row["number"], row["formulation"]) != (1, "penalty")
-        row["factorisations"] *= 3 if row["formulation"] == "augmented" else 1
-    assert page.dearer(found, "augmented") == pytest.approx(3, rel=1e-14)
-
-
-def test_part_keeps_the_map(tmp_path, monkeypatch):
-    """Run alone, random scenes leave the map's numbers as they are."""
-    (tmp_path / "stability.json").write_bytes((DOCS / "stability.json").read_bytes())
-    before = kept("stability", tmp_path)
-
-    def ran(asked: dict[str, Scene], args: argparse.Namespace, limit: float) -> dict[str, dict]:
-        assert args.out == tmp_path / "out" and limit == scenes.LIMIT
-        return {name: summary() for name in asked}
-
-    monkeypatch.setattr(scenes, "run", ran)
-    monkeypatch.setattr(page, "picture", lambda *given: "")
-    assert keeping.main(["--part", "random", "--out", str(tmp_path / "out"), "--docs", str(tmp_path)]) == 0
-    after = kept("stability", tmp_path)
-    assert after.made == before.made and after.numbers["runs"] == before.numbers["runs"]
-    assert {row["factorisations"] for row in after.numbers["random"]["runs"]} == {50}
-    assert f"{scenes.COUNT} of {scenes.COUNT}" in Path(tmp_path / "stability.md").read_text(encoding="utf-8")

@@ -114,12 +114,6 @@ def test_commands_are_known(line, capsys):
     assert "--no-such-option is not an option" in capsys.readouterr().err
 
 
-def test_make_targets_exist():
-    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-    named = re.findall(r"^    make ([a-z-]+)", README, re.MULTILINE)
-    assert len(named) == 2 and all(f"\n{name}:\n" in makefile for name in named)
-
-
 @pytest.mark.parametrize("page", PAGES, ids=str)
 def test_links_lead_somewhere(page):
     text = (ROOT / page).read_text(encoding="utf-8")

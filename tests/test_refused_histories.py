@@ -11,21 +11,13 @@ from tests.test_refusals import SCENES, refusal
     [
         ("history = []", "history is empty; it must have at least one entry"),
         ("history = 3", "history is 3; it must be a list"),
-        ("history = [3]", "history[0] is 3; it must be a table of keys"),
         ("[[history]]\nf_ext = 3", "history[0].name is missing; it must be given"),
-        ("[[history]]\nname = 3", "history[0].name is 3; it must be text"),
         ('[[history]]\nname = "a"\nf_ext = -1', "history[0].f_ext is -1 N/m; it must be 0 or from 0.001 to 5000 N/m"),
         (
             '[[history]]\nname = "a"\nf_ext = 0',
             "history[0].name is 'a', which ends at f_ext 0 and voltage 0, where nothing holds the skin on the screen; "
             "one of the two must be greater than 0, or a bone_height be given",
         ),
-        (
-            '[[history]]\nname = "a"\nf_ext = 0\nvoltage = 9\n[[history]]\nname = "b"\nvoltage = 0',
-            "history[1].name is 'b', which ends at f_ext 0 and voltage 0, where nothing holds the skin on the screen; "
-            "one of the two must be greater than 0, or a bone_height be given",
-        ),
-        ('[[history]]\nname = "a"\nbone_height = nan', "history[0].bone_height is nan; it must be a finite number"),
         (
             '[[history]]\nname = "a"\nf_ext = 1\nuntil_full_slip = 1',
             "history[0].until_full_slip is 1; it must be true or false",
@@ -50,10 +42,6 @@ from tests.test_refusals import SCENES, refusal
             "history[0].name is 'a/b'; it must be without '/', since files are named by it",
         ),
         (
-            '[[history]]\nname = "a\\u0007"\nf_ext = 1',
-            "history[0].name is 'a\\x07'; it must be without '\\x07', since files are named by it",
-        ),
-        (
             '[[history]]\nname = ".a"\nf_ext = 1',
             "history[0].name is '.a'; it must not begin with '.', since files are named by it",
         ),
@@ -69,11 +57,6 @@ from tests.test_refusals import SCENES, refusal
         (
             f'[[history]]\nname = "{"n" * 300}"\nf_ext = 1',
             f"history[0].name is '{'n' * 55}...'; it must be of 100 bytes at most, since files are named by it",
-        ),
-        (
-            '[[history]]\nname = "on off"\nf_ext = 1\n[[history]]\nname = "On_off"\nf_ext = 2',
-            "history[1].name is 'On_off' and history[0].name is 'on off'; each load must have a name of its own, also "
-            "where spaces become _ and letters have no case, since files are named by it",
         ),
         (
             '[[history]]\nname = "voltage"\nf_ext = 1\n[[history]]\nname = "voltage"\nf_ext = 2',

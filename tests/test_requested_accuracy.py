@@ -2,33 +2,10 @@
 
 import pytest
 
-from benchmarks import accuracy, harness
+from benchmarks import accuracy
 from benchmarks.accuracy import WHOLE, Case
 from benchmarks.limits import Limit
-from fingerpad.runs.batch import key
-from fingerpad.scene import Scene, start
-
-
-def test_the_same_scenes_are_drawn_each_time():
-    first, again = accuracy.drawn(), accuracy.drawn()
-    assert first == again
-    assert len({key(scene) for scene in first.values()}) == accuracy.COUNT
-
-
-def test_request_starts_from_the_sizes_of_any_scene():
-    """Nothing of the mesh is chosen for the scene."""
-    plain = next(iter(accuracy.drawn().values()))
-    for request in ({"mu_app": 0.01}, {"sed": 0.05}):
-        scene = accuracy.with_accuracy(plain, **request)
-        sizes = start(request)
-        assert {name: getattr(scene.mesh, name) for name in sizes} == sizes
-        assert scene.accuracy is not None
-
-
-def test_every_loop_has_a_scene_of_its_own():
-    loops = accuracy.loops()
-    assert len({key(scene) for scene, _ in loops.values()}) == len(loops) == 25
-    assert {plain for _, plain in loops.values()} == {"default scene", *accuracy.drawn()}
+from fingerpad.scene import Scene
 
 
 def summary(**quantities):
@@ -71,13 +48,6 @@ def test_energy_density_counts_over_the_largest_site():
     assert [(c.quantity, c.error) for c in found] == [("SED at ridge 0, full slip", pytest.approx(1, rel=1e-12))]
 
 
-def test_cost_has_the_starts_that_failed():
-    """700 factorisations times unknowns, and those of a coarser start, 20 of 10; over a default run of 1800."""
-    lost = {"restarts": [{"unknowns": 10, "factorisations": 20, "processor_seconds": 1.5}]}
-    row = accuracy.row(summary(full_slip_mu_app=(0.5, 0.1, None)) | lost, 1800)
-    assert row["cost"] == 0.5
-
-
 @pytest.mark.parametrize(
     ("error", "more", "words"),
     [
@@ -94,21 +64,3 @@ def test_scene_that_failed_has_not_met_its_request(error, more, words):
     cases += [Case(WHOLE, name, "contact length, full slip", True, 1.0, 9.0, 0.1)]
     runs = {"default scene; µ_app 1 %": {}, name: {}} | more
     assert accuracy._verdicts(runs, cases) == [words]
-
-
-def test_study_of_one_parameter_leaves_out_its_finest_run():
-    """Contact lengths of two ridges, 1 % and 0.5 % off 2: the estimate of the second is the last change, 0.5 %."""
-    lengths = [1.02, 1.01, 1.005, 1.0]
-    rows = [
-        {"value": h, "quantities": {"full_slip_contact_length": 2 * x}, "lengths": {"full_slip_contact_length": [x, x]}}
-        for h, x in zip((40e-6, 20e-6, 10e-6, 5e-6), lengths, strict=True)
-    ]
-    found = list(accuracy.of_parameter("receptor", rows))
-    assert [(c.scene, c.once) for c in found] == [("sites (µm): 20", True), ("sites (µm): 10", False)]
-    assert [c.error for c in found] == pytest.approx([1.0, 0.5], rel=1e-9)
-    assert [c.estimate for c in found] == pytest.approx([1.0, 0.5], rel=1e-9)
-
-
-def test_page_has_its_verdict():
-    text = (harness.DOCS / "accuracy.md").read_text(encoding="utf-8")
-    assert "µ_app 1 %, contact length 3 % in 10 of 10 scenes" in text

@@ -3,7 +3,6 @@
 import re
 import shlex
 import textwrap
-import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -93,12 +92,3 @@ def test_shown_command_runs(line, folder, capsys, monkeypatch):
     assert capsys.readouterr().out
     written = [words[k + 1] for k, word in enumerate(words) if word in ("--out", "--plot")]
     assert [name for name in written if not (folder / name).exists()] == []
-
-
-def test_commands_are_shown():
-    """The lines were found, one for each command of the first page about them at least."""
-    assert len({line.split()[1] for line in SHOWN}) >= 8
-
-
-def test_small_scene_is_one():
-    assert set(tomllib.loads(SMALL)) == {"f_ext", "voltage", "geometry", "mesh", "output"}

@@ -40,15 +40,6 @@ def test_sites_of_a_sweep_are_those_of_its_states(folder, tmp_path):
         assert swept[f"state_{name}"].attrs == data[name].attrs
 
 
-def test_sites_without_a_voltage_are_those_of_both_names(tmp_path):
-    """Uncharged and charged normal contact are one step then."""
-    run(from_data(SCENE | {"history": SCENE["history"][:1]}), tmp_path, MPI.COMM_SELF)
-    result = Result.load(tmp_path)
-    assert result.uncharged.step == result.charged.step
-    np.testing.assert_array_equal(result.uncharged.sites.merkel, result.charged.sites.merkel)
-    assert np.isfinite(result.charged.sites.merkel).all() and 'id="receptors"' in run_page.page(result)
-
-
 def test_report_has_the_sites_of_the_table(folder):
     """The largest energy density of each named state, and that of each ridge."""
     result = Result.load(folder)

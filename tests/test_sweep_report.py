@@ -12,11 +12,10 @@ import pytest
 
 from fingerpad.cli import main
 from fingerpad.cli import sweep as cli_sweep
-from fingerpad.installed import version
 from fingerpad.report import parameters, source
 from fingerpad.report.write import NAME, write
 from fingerpad.runs.sweep import sweep
-from fingerpad.scene import Scene, SceneError, from_data, override
+from fingerpad.scene import Scene, from_data, override
 from tests.browser import SIZES, asked
 
 
@@ -50,18 +49,6 @@ def test_browser_opens_a_sweep(table, tmp_path, size):
     assert found["wide"] <= width
 
 
-def test_swept_key_has_its_own_unit_and_the_page_its_version(tmp_path):
-    """A friction coefficient has none; a page of a folder that has no version names none."""
-    sweep(Scene(), tmp_path, model="cylinders", friction=[0.2, 0.3], **{"mesh.contact": [5e-6]})
-    page = write(tmp_path).read_text(encoding="utf-8")
-    assert '<th scope="col">friction</th><th scope="col">mesh.contact (m)</th>' in page
-    assert "over friction: 0.2, 0.3; mesh.contact (m): 5e-06" in page
-    assert f"<blockquote>fingerpad {version()}: two-scale" in page
-    kept = json.loads((tmp_path / "sweep.json").read_text(encoding="utf-8"))
-    (tmp_path / "sweep.json").write_text(json.dumps({key: kept[key] for key in ("model", "parameters")}))
-    assert "<blockquote>fingerpad: two-scale" in write(tmp_path).read_text(encoding="utf-8")
-
-
 def test_failed_points_are_listed_with_their_reason(table):
     page = (table / NAME).read_text(encoding="utf-8")
     assert "1 of 6 points failed" in page
@@ -92,11 +79,6 @@ def test_files_of_an_earlier_sweep_do_not_stay_beside_a_new_table(tmp_path, monk
     assert main(words) == 0
     assert not (tmp_path / "sweep.nc").exists() and not (tmp_path / "report.html").exists()
     assert capsys.readouterr().out.strip().endswith("table.csv, sweep.json")
-
-
-def test_options_are_quoted_for_a_shell():
-    assert parameters.option_of("friction", 0.3) == "--set friction=0.3"
-    assert parameters.option_of("geometry.ridge_profile", [1.0, -0.1]) == "--set 'geometry.ridge_profile=[1.0, -0.1]'"
 
 
 @pytest.mark.parametrize(
@@ -139,14 +121,3 @@ def test_sweep_is_reported_with_its_own_scene(tmp_path):
     page = html.unescape(write(tmp_path).read_text("utf-8"))
     command = "fingerpad sweep --set f_ext=20.0 --set friction=0.4 --model cylinders --over voltage=0.0,100.0"
     assert command in page
-
-
-def test_sweep_of_an_earlier_version_has_no_scene(tmp_path):
-    """And the page says so."""
-    sweep(Scene(), tmp_path, model="cylinders", voltage=[0, 100])
-    (tmp_path / "sweep.json").unlink()
-    page = html.unescape(write(tmp_path).read_text("utf-8"))
-    assert "has no sweep.json" in page and "Scene and model of the sweep are not in this line" in page
-    (tmp_path / "sweep.json").write_text("[]")
-    with pytest.raises(SceneError, match=r"sweep.json in .* cannot be read"):
-        source.read(tmp_path)

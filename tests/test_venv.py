@@ -1,7 +1,6 @@
 """environment/venv, and what environment/run makes of it, with stand-ins for Python: no package is fetched."""
 
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -64,27 +63,8 @@ def test_what_is_missing_is_one_sentence(variables, name):
     assert done.stderr.startswith(f"fingerpad: {lacks}; or name another Python")
 
 
-def test_python_that_is_not_there(variables):
-    done = call("venv", "--why", **variables | {"PYTHON": "nosuchpython"})
-    assert done.stdout.startswith("nosuchpython does not run")
-
-
-def test_commands_run_with_it(variables):
-    """Its programs come first on the path, and its compiled forms are kept apart from those of another dolfinx."""
-    done = call("run", "bash", "-c", 'echo "$PATH|$XDG_CACHE_HOME|$VIRTUAL_ENV"', **variables)
-    path, cache, place = done.stdout.strip().split("|")
-    assert path.startswith(f"{place}/bin:")
-    assert cache == str(Path(place).parent / "run" / Path(place).name)
-
-
 def test_no_compiler(monkeypatch):
     monkeypatch.setenv("CC", "nosuchcompiler -O2")
     with pytest.raises(ImportError, match="nosuchcompiler is not on the path; .* gcc") as found:
         need_compiler()
     assert found.value.name == COMPILER
-
-
-def test_a_compiler_is_here():
-    """The tests have compiled forms with it."""
-    assert shutil.which("cc") or os.environ.get("CC")
-    need_compiler()

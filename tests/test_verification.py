@@ -56,24 +56,6 @@ def test_maugis_tractions():
     assert gaps == pytest.approx([0.0, 0.0, h_0], abs=1e-7 * h_0)
 
 
-def test_names_are_unique():
-    assert len({case.name for case in CASES}) == len(CASES)
-
-
-@pytest.mark.parametrize(
-    ("row", "error", "holds"),
-    [
-        (Row("a", 1.1, 1.0, 0.2, ""), 0.1, True),
-        (Row("a", -1.3, -1.0, 0.2, ""), 0.3, False),
-        (Row("a", 4.1, 4.0, 0.2, "", absolute=True), 0.1, True),
-        (Row("a", np.nan, 4.0, 0.2, ""), np.nan, False),
-    ],
-)
-def test_error(row, error, holds):
-    assert row.error == pytest.approx(error, nan_ok=True)
-    assert row.holds is holds
-
-
 def test_page(tmp_path):
     """A number that is off is marked, and the kept numbers are unrounded."""
     good = Row("width (m)", 1.0000001, 1.0, 1e-3, "mesh", order=1.96)

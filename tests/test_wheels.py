@@ -59,27 +59,6 @@ def test_another_version_is_replaced(wheels, tmp_path):
     assert wheels()[1] == {f"surfacetopography-{VERSION}.dist-info"}
 
 
-def test_without_a_network(wheels):
-    """One sentence more, and the tests go on."""
-    (_, last), there = wheels(OFFLINE="yes")
-    assert last.startswith(
-        f"fingerpad: SurfaceTopography {VERSION} cannot be had from PyPI, and the tests that compare"
-    )
-    assert "is there a network?" in last and not there
-    assert wheels()[1], "tried again"
-
-
-def test_another_python_is_left_alone(wheels):
-    assert wheels(FOLDER="") == ([], set())
-
-
-def test_they_are_on_the_list():
-    """What the script gets is the one thing for height maps."""
-    lines = (ROOT / "environment/packages.txt").read_text().splitlines()
-    names = [line.split()[3] for line in lines if line.startswith("topography ")]
-    assert names and all(f"{name}==$version" in (ROOT / "environment/wheels").read_text() for name in names)
-
-
 @pytest.mark.skipif("FINGERPAD_ROOT" not in os.environ, reason="not in the private root")
 def test_they_hide_nothing_of_debian():
     """No package is there twice, so that none of Debian's has another version with them than without."""
