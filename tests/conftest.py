@@ -20,7 +20,7 @@ from geometry.profiles import Profiles
 
 LONGER = (
     "accuracy api counts demo demos element ending energy environment faults formulations light mirror needs own_laws "
-    "own_mesh performance readme reach report results slices_runs stability_map steady_slip sweep_force "
+    "own_mesh performance reach report results shown_commands slices_runs stability_map steady_slip sweep_force "
     "translation verification zone"
 )
 """Tests that `make check` leaves out, by the names of their files: whole runs. A new file is checked."""

@@ -7,12 +7,13 @@ import pytest
 from mpi4py import MPI
 
 from fingerpad.accuracy import solves
-from fingerpad.accuracy.refinement import Refinement
+from fingerpad.accuracy.refinement import Refinement, with_errors
+from fingerpad.accuracy.solves import Solve, State
 from fingerpad.io.interrupt import Interrupted
 from fingerpad.richardson import plus_minus
 from fingerpad.runs import attempt
 from fingerpad.scene import SceneError, from_data
-from tests.test_accuracy import change, known, model_of, search
+from tests.test_accuracy import NOTHING, change, contact, known, model_of, search
 from variational.solvers.continuation import StepFailed
 from variational.solvers.failure import NotConverged
 
@@ -118,3 +119,22 @@ def test_coefficient_without_a_force_is_refused():
     change(path, mu_app=np.nan)
     with pytest.raises(StepFailed, match="at full slip no force presses the finger.* ask for accuracy.f_t"):
         Refinement(model, path, MPI.COMM_SELF, lambda text: None, lambda: None)
+
+
+# -- An accuracy at 0 V: which states are of the final mesh ---
+@pytest.mark.parametrize(("step", "final"), [(7, True), (3, False)])
+def test_uncharged_state_that_is_the_charged_one_is_of_the_final_mesh(monkeypatch, step, final):
+    """At 0 V they are one step of the path. Another step is solved on no other mesh, and stays."""
+
+    def solve(model, states, comm, views=()):
+        row = contact(contact_length=1e-3)
+        return Solve({"charged": State(NOTHING, 0, row, np.array([1e-3]), {})}, model.mesh, 1000, 10, 1.0)
+
+    monkeypatch.setattr(solves, "solve_again", solve)
+    model = model_of({"contact": {"formulation": "nitsche"}})
+    found = Refinement(model, solve(model, {}, None), MPI.COMM_SELF, lambda text: None, lambda: None)
+    found.run()
+    path = {name: contact(contact_length=2e-3, step=at) for name, at in (("uncharged", step), ("charged", 7))}
+    states = with_errors(found, path)
+    assert states["charged"].contact_length == 1e-3
+    assert states["uncharged"].contact_length == (1e-3 if final else 2e-3)

@@ -17,6 +17,8 @@ import fingerpad as fp
 from fingerpad.io import dataset, files, quantities
 from fingerpad.io.over_time import OverTime
 from fingerpad.io.result import Result
+from fingerpad.report import run_page
+from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene import from_data
 from tests.runs import run
 
@@ -234,3 +236,36 @@ def test_error_of_the_program_is_no_note(tmp_path, monkeypatch):
     with pytest.raises(KeyError, match="p_mean"):
         fp.run(fp.Scene(), model="cylinders", out=tmp_path)
     assert (tmp_path / "summary.json").exists() and not (tmp_path / "result.nc").exists()
+
+
+# -- Energy densities at the mechanoreceptors' sites in the named states: in sweeps and reports, as  ---
+def test_sites_of_a_sweep_are_those_of_its_states(folder, tmp_path):
+    data = xarray.load_dataset(folder / "result.nc")
+    found = Sweep({"voltage": (50.0,)}, (Result.load(folder),), tmp_path)
+    swept = found.to_xarray()
+    assert swept["state_merkel_sed"].dims == ("voltage", "state", "ridge")
+    assert swept["state_meissner_sed"].dims == ("voltage", "state", "ridge", "side")
+    state = found[0].charged
+    ridges = swept["ridge"].values
+    mine = swept.sel(voltage=50.0, state="charged")
+    for name in ("merkel_sed", "meissner_sed"):
+        np.testing.assert_array_equal(mine[f"state_{name}"], data[name].sel(step=state.step, ridge=ridges))
+        assert mine[f"state_{name}"].notnull().all()
+        assert swept[f"state_{name}"].sel(state="full_slip").isnull().all()
+        assert swept[f"state_{name}"].attrs == data[name].attrs
+
+
+def test_report_has_the_sites_of_the_table(folder):
+    """The largest energy density of each named state, and that of each ridge."""
+    result = Result.load(folder)
+    page = run_page.page(result)
+    assert 'href="#receptors"' in page
+    part = page[page.index('id="receptors"') :]
+    part = part[: part.index("</section>")]
+    rows = [row for row in rows_of(folder, "receptors") if int(row["step"]) == result.charged.step]
+    most = max(rows, key=lambda row: float(row["merkel_sed"]))
+    first = part[: part.index("Every ridge")]
+    assert f"<td>{1e-3 * float(most['merkel_sed']):.4g}</td>" in first and f"<td>{most['ridge']}</td>" in first
+    for row in rows:
+        assert f"<td>{1e-3 * float(row['merkel_sed']):.4g}</td>" in part
+    assert "receptors" not in run_page.page(fp.run(model="cylinders")).partition("</nav>")[0]

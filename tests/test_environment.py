@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.test_tools import script
+
 HERE = Path(__file__).resolve().parents[1] / "environment"
 # Tells its arguments, then runs the command in a process of its own and names it, as bubblewrap does.
 BWRAP = """#!/bin/bash
@@ -58,12 +60,6 @@ def checkout(tmp_path) -> Path:
         script(tmp_path / "bin" / name, COMMAND.format(python=sys.executable, wait=100))
     script(tmp_path / "bin" / "brief", COMMAND.format(python=sys.executable, wait=10))
     return folder.parent
-
-
-def script(file: Path, text: str) -> None:
-    file.parent.mkdir(exist_ok=True)
-    file.write_text(text)
-    file.chmod(0o755)
 
 
 def environment(checkout: Path, **variables: str) -> dict[str, str]:

@@ -4,6 +4,7 @@ import builtins
 
 import numpy as np
 import pytest
+import scipy.io
 
 from tests.test_topography import grid, wave
 from variational.roughness import missing
@@ -254,3 +255,87 @@ def test_without_the_optional_package(monkeypatch, tmp_path):
             scan(tmp_path / name)
     np.savetxt(tmp_path / "map.txt", np.eye(4))
     assert scan(tmp_path / "map.txt", **PLAIN).map.size == pytest.approx((4e-6, 4e-6))
+
+
+# -- Height maps as instruments and NumPy keep them: what is read, and one sentence for what cannot  ---
+def test_instrument_with_a_size_and_unit_of_its_own(tmp_path):
+    """Heights in um over 3 x 4 um; what the file has is not to be given too."""
+    surface = pytest.importorskip("SurfaceTopography", reason="pip install fingerpad[topography]")
+    path, h = tmp_path / "map.nc", np.random.default_rng(1).normal(size=(6, 8))
+    surface.Topography(h, (3.0, 4.0), unit="um").to_netcdf(path)
+    found = scan(path).map
+    np.testing.assert_allclose(found.heights, h * 1e-6, rtol=1e-12)
+    assert found.size == pytest.approx((3e-6, 4e-6), rel=1e-12)
+    for given, sentence in (
+        ({"size": (3e-6, 4e-6)}, "has a size of its own; give none"),
+        ({"unit": "um"}, "has a unit of its own; give no 'unit'"),
+        ({"missing": "void"}, "has numbers alone"),
+    ):
+        with pytest.raises(ValueError, match=sentence):
+            scan(path, **given)
+
+
+def test_instrument_without_them(tmp_path):
+    """A format in which SurfaceTopography finds neither: both have to be given."""
+    pytest.importorskip("SurfaceTopography", reason="pip install fingerpad[topography]")
+    path, h = tmp_path / "map.npz", np.random.default_rng(1).normal(size=(6, 8))
+    np.savez(path, h=h)
+    found = scan(path, size=(3e-6, 4e-6), unit="um").map
+    np.testing.assert_allclose(found.heights, h * 1e-6, rtol=1e-12)
+    assert found.size == (3e-6, 4e-6)
+    with pytest.raises(ValueError, match="holds numbers without a unit; give 'unit'"):
+        scan(path, size=(3e-6, 4e-6))
+    with pytest.raises(ValueError, match="has no size; give 'size' or 'pixel'"):
+        scan(path, unit="um")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "sentence"),
+    [
+        ("gray.tif", "picture", r"read by SurfaceTopography as JPK image scan \(it holds no map of heights\); export"),
+        ("cut.mat", "cut", r"cannot be read by SurfaceTopography as MATLAB \(\w+Error: .*\); export"),
+        ("empty.x3p", b"", "empty.x3p holds no heights"),
+    ],
+)
+def test_instrument_that_is_none(tmp_path, capfd, name, content, sentence):
+    """One sentence, whatever a reader raises, and no word of a library beside it."""
+    pytest.importorskip("SurfaceTopography", reason="pip install fingerpad[topography]")
+    path = tmp_path / name
+    if content == "picture":
+        image = pytest.importorskip("PIL.Image")
+        image.fromarray(np.arange(1500, dtype=np.uint16).reshape(30, 50)).save(path)
+    elif content == "cut":
+        scipy.io.savemat(path, {"z": np.eye(8)}, format="4")
+        path.write_bytes(path.read_bytes()[:100])
+    else:
+        path.write_bytes(content)
+    with pytest.raises(ValueError, match=sentence) as refused:
+        scan(path, "um", (3e-6, 5e-6))
+    assert "\n" not in str(refused.value) and capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        complex,
+        object,
+    ],
+)
+def test_matrix_without_real_numbers(tmp_path, kind):
+    """Without its imaginary part a height would be another one."""
+    np.save(tmp_path / "map.npy", np.zeros((8, 8)).astype(kind), allow_pickle=True)
+    with pytest.raises(ValueError, match="map.npy is no matrix of numbers: "):
+        scan(tmp_path / "map.npy", "um", (1e-3, 1e-3))
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "{'descr': '<f8', 'fortran_order': False, 'shape': (10000000, 10000000), }",
+    ],
+)
+def test_matrix_with_a_header_that_cannot_be(tmp_path, header):
+    """Of 800 TB in a file of some bytes, and one that is no Python."""
+    (tmp_path / "map.npy").write_bytes(b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header.encode())
+    with pytest.raises(ValueError, match="map.npy is no matrix of numbers: "):
+        scan(tmp_path / "map.npy", "um", (1e-3, 1e-3))

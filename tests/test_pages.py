@@ -5,9 +5,10 @@ import math
 import shutil
 
 import pytest
+from matplotlib.image import imread
 
-from benchmarks import harness, pages, same
-from benchmarks.harness import DOCS, Made
+from benchmarks import harness, hero, pages, same
+from benchmarks.harness import DOCS, Made, kept
 
 BY = Made("0.1.0", "abc1234", "2026-11-22", "0123456789ab")
 
@@ -101,8 +102,8 @@ def test_page_is_not_older_where_the_same_numbers_were_computed(since, tmp_path)
     """By the packages of both commits, from pair to pair; a page's own program counts all the same."""
     commits = {"old": OLD, "mid": OLD | {"variational/x.py": b"x = 3"}, "new": NEW | CHANGED}
     pairs = [{"before": "mid", "now": "new"}, {"before": "old", "now": "mid"}]
-    for kept, older in ((pairs, []), (pairs[:1], ["variational/x.py"]), (pairs[1:], ["variational/x.py"])):
-        harness.replace(tmp_path / "same.json", json.dumps(kept))
+    for same_pairs, older in ((pairs, []), (pairs[:1], ["variational/x.py"]), (pairs[1:], ["variational/x.py"])):
+        harness.replace(tmp_path / "same.json", json.dumps(same_pairs))
         assert since("errors", MADE, **commits) == older
         assert since("chart", MADE, **commits) == ["benchmarks/chart.py", *older]
 
@@ -140,3 +141,17 @@ def test_numbers_are_kept_as_they_are(tmp_path):
     assert found.numbers == numbers | {"none": None}
     assert found.made == BY
     assert '   {"k": 0, "value": 0.1},\n' in (tmp_path / "study.json").read_text(encoding="utf-8")
+
+
+# -- The picture that opens the README is drawn from the numbers in git ---
+def test_hero_is_drawn_from_kept_numbers(tmp_path):
+    (tmp_path / "hero.json").write_bytes((DOCS / "hero.json").read_bytes())
+    image = imread(hero.draw(tmp_path))
+    assert image.shape[1] >= 900 and image[:, :, :3].std() > 0.05
+
+
+def test_friction_doubles():
+    """As the picture's title says: from the friction coefficient at 0 V to more than twice as much at 200 V, 75 N/m."""
+    voltages, mu = zip(*kept("hero").numbers["friction"]["75"], strict=True)
+    assert voltages == (0, 50, 100, 150, 200)
+    assert abs(mu[0] - 0.25) < 1e-6 and mu[-1] > 2 * mu[0]
