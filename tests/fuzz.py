@@ -32,7 +32,8 @@ from fingerpad.cli import refuse
 from fingerpad.cli.arguments import Parser, scene_of
 from fingerpad.io.files import check_folder
 from fingerpad.model import options
-from fingerpad.model.memory import estimate
+from fingerpad.model.memory import refuse_sizes
+from fingerpad.model.touching import by_rule
 from fingerpad.reduced.cylinders import tip_radius
 from fingerpad.scene import Scene, SceneError
 from tests import fuzz_files
@@ -270,10 +271,8 @@ def bad_refusal(code: Any, text: str) -> str:
 
 def _unready(scene: Scene) -> str:
     """Return why an accepted scene is not ready for a run, empty if it is."""
-    needed = options.plan(scene)
-    found = estimate(scene, needed)
-    if not 0 < found.memory <= scene.numerics.memory:
-        return f"memory {found.memory:g}"
+    if scene.geometry.file is None:
+        refuse_sizes(scene.geometry, by_rule(scene).mesh, scene.numerics, options.plan(scene))
     json.dumps(scene.parameters(), allow_nan=False)
     closure = scene.closure()
     gaps = closure(np.geomspace(scene.roughness.p_floor, closure.full_pressure, 20)).d_eq

@@ -177,7 +177,7 @@ def test_sweep_is_taken_up_again(tmp_path, monkeypatch):
     """One of two points is there; the other one is run, and its crash is in the table."""
     asked = []
 
-    def run(module, arguments, limit):
+    def run(module, arguments, limit, folders):
         scene = json.loads(Path(arguments[0]).read_text(encoding="utf-8"))
         asked.append((scene["voltage"], arguments[3]))
         if scene["voltage"] > 0:

@@ -64,9 +64,9 @@ def test_options_of_petsc_are_told_from_the_others(words, own, petsc):
         (["--set", "voltage=high"], "voltage is 'high'; it must be a number"),
         (
             ["--set", "f_ext=0.5 N"],
-            "f_ext is '0.5 N'; it must be in N/m; a force on the whole finger is given by run --force",
+            "f_ext is '0.5 N'; it must be in N/m; a force on the whole finger is the key force",
         ),
-        (["--force", "0.5"], "command line: argument --force: 0.5 has no unit; give one, as in '0.5 N'"),
+        (["--force", "nan"], "force is nan; "),
         (["--set", "voltage=50", "--set", " voltage = 100"], "--set voltage is given twice; give one value"),
         (["--set", "f_ext=-3"], "f_ext is -3 N/m; it must be from 0.001 to 5000 N/m"),
         (["--set", "voltage"], "voltage is no change of a scene; it must be key=value"),

@@ -1,13 +1,18 @@
-"""The commands check and mesh: loads, laws and cost of a run, and its mesh."""
+"""The commands check and mesh: loads and laws of a run, and its mesh."""
+
+import re
 
 import pytest
+from mpi4py import MPI
 
 from fingerpad.cli import main
-from fingerpad.model import expected as cost
-from fingerpad.model.memory import estimate
-from fingerpad.model.options import plan
-from fingerpad.scene import Scene, from_data
-from tests.commands import COARSE, kept, refused
+from fingerpad.model.finger import meshed
+from fingerpad.model.memory import memory, unknowns
+from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.touching import by_rule
+from fingerpad.scene import Scene, load
+from fingerpad.scene.reading import override
+from tests.commands import COARSE, refused
 
 
 def test_check(tmp_path, capsys):
@@ -30,63 +35,35 @@ def test_method_for_comparison_is_named_before_a_run(tmp_path, monkeypatch, caps
     assert capsys.readouterr().out.count("contact by a method for comparison") == told
 
 
-def test_rule_of_the_cost_is_that_of_kept_runs():
-    """Shares, factors and time are the default run's of docs/chart.json, times those of docs/performance.json."""
-    points = {point["label"]: point for point in kept("chart.json")["points"]}
-    work = points["default"]["work"]
-    slip, charged, pressed = work["full_slip"], work["charged"], work["uncharged"]
-    shares = {"force": pressed / slip, "voltage": (charged - pressed) / slip, "slide": (slip - charged) / slip}
-    assert cost.SHARES == pytest.approx(shares, abs=0.01)
-    at_10_um = points["10 µm"]["work"]["full_slip"]
-    for name, label in (("nitsche", "Nitsche, γ_0 = 1"), ("augmented", "augmented Lagrangian")):
-        assert cost.FORMULATIONS[name] == pytest.approx(points[label]["work"]["full_slip"] / at_10_um, rel=0.01)
-    run, operations = (kept("performance.json")[name]["found"] for name in ("run", "operations"))
-    path = sum(run["path"].values())
-    unknowns = next(each["unknowns"] for each in operations if each["factor"] == 1.0)
-    assert cost.SECONDS == pytest.approx(path / run["factorisations"] / unknowns, rel=0.02)
-    beside = dict(run["beside"])
-    assert cost.ERRORS == pytest.approx(beside.pop("errors") / path, rel=0.03)
-    assert cost.BESIDE == pytest.approx(sum(beside.values()) / path, rel=0.03)
-    assert cost.COMPILING == pytest.approx(kept("performance.json")["compile"]["found"]["cold"]["seconds"], rel=0.03)
-    needed = plan(Scene())
-    default = cost.expected(Scene(), needed, estimate(Scene(), needed).unknowns)
-    assert default.factorisations == pytest.approx(run["factorisations"], rel=0.02)
-    assert default.seconds == pytest.approx(run["processor"], rel=0.1)
-    for name, found in kept("models.json")["scenes"].items():
-        f_ext, voltage = (float(part.split()[0]) for part in name.split(","))
-        scene = from_data({"f_ext": f_ext, "voltage": voltage})
-        ratio = sum(cost.factorisations(scene)) / found["full"]["cost"]["factorisations"]
-        assert 0.5 < ratio < 2, name
-
-
-@pytest.mark.parametrize(
-    ("values", "load"),
-    [
-        ({"voltage": 5000.0}, "the load charge has 75 N/m and 5000 V"),
-        ({"f_ext": 1.0}, "the load press has 1 N/m and 0 V"),
-        ({"history": [{"name": "dip", "bone_height": -1e-4}]}, "the load dip has no f_ext and 0 V"),
-    ],
-)
-def test_work_outside_of_the_kept_runs_is_not_known(values, load):
-    """Named with the first load there; inside, up to the ends, it is known."""
-    assert cost.beyond_loads(from_data(values)).endswith(load)
-    assert not any(
-        cost.beyond_loads(from_data({"f_ext": f, "voltage": u})) for f in (5.0, 150.0) for u in (-200.0, 0.0)
-    )
-
-
-def test_cost_is_not_extrapolated(tmp_path, monkeypatch, capsys):
-    """No number of factorisations, no hours, and no promise; on a coarse mesh the time alone is not known."""
-    monkeypatch.setattr("fingerpad.cli.check._picture", lambda *given: "")
+def test_loads_that_were_never_tried_are_named(tmp_path, capsys):
+    """There is no promise for them."""
     argv = ["check", "--out", str(tmp_path), *(word for text in COARSE for word in ("--set", text))]
     assert main([*argv, "--set", "voltage=5000"]) == 0
     text = capsys.readouterr().out
-    assert "the work is not known: it was measured at 5 to 150 N/m and up to 200 V, and the load charge" in text
-    assert "factorisations" not in text and "hours" not in text and "can be run" not in text
+    assert "can be run" not in text
+    assert "charge has 75 N/m and 5000 V, and tried were 5 to 150 N/m and 0 to 200 V" in text
     assert main(argv) == 0
-    text = capsys.readouterr().out
-    assert " factorisations\n" in text and "The scene can be run." in text
-    assert "the time is not known: it was measured with 41 000 to 900 000 unknowns, and the mesh has some" in text
+    assert capsys.readouterr().out.endswith("The scene can be run.\n")
+
+
+def test_mesh_is_counted(tmp_path, capsys):
+    """Its triangles and unknowns are those of the run, and the memory follows from them."""
+    argv = ["check", "--out", str(tmp_path), *(word for text in COARSE for word in ("--set", text))]
+    assert main(argv) == 0
+    triangles, number, gigabytes = re.search(
+        r"(\d+) triangles of element P2, (\d+) unknowns\n.*\n  about ([\d.]+) GB", capsys.readouterr().out
+    ).groups()
+    scene = load(None, dict(map(override, COARSE)))
+    mesh = meshed(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_SELF).mesh
+    points, made = (mesh.topology.index_map(d).size_global for d in (0, 2))
+    assert int(triangles) == made and int(number) == unknowns(points, made, "P2")
+    assert float(gigabytes) == pytest.approx(memory(int(number)) / 1e9, rel=0.02)
+
+
+def test_mesh_beyond_the_memory_is_refused(capsys):
+    """It is meshed, and passes the bound; the refusal has the number of its unknowns."""
+    words = [word for text in (*COARSE, "numerics.memory=0.35e9") for word in ("--set", text)]
+    assert "the mesh has " in refused(capsys, "check", *words)
 
 
 def test_mesher_that_fails_is_refused_in_a_sentence(monkeypatch, capsys):

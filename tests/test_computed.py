@@ -102,7 +102,7 @@ def total(force, area):
 
 def test_smaller_forces_are_those_of_the_traces(table):
     """Of one run to the largest force, as of runs to each; a run of its own wins, and what no trace reaches is left."""
-    runs = [fp.run(fp.Scene(voltage=150.0), model="cylinders", force=force) for force in (0.5, 1.0)]
+    runs = [fp.run(fp.Scene(voltage=150.0, force=force), model="cylinders") for force in (0.5, 1.0)]
     asked = read(table("force (N), friction force (N)\n0.3, 0.1\n0.5, 0.1\n1, 0.1\n3, 0.1\n"))
     one, both = (computed(given, asked) for given in (runs[1:], runs))
     at = np.array([0.3, 0.5, 1.0, 3.0]), np.full(4, 150.0)
@@ -150,7 +150,7 @@ def together(table, tmp_path, monkeypatch):
     def together(*scenes, force="0.3 N"):
         folders = [f"run{k}" for k in range(len(scenes))]
         for place, changes in zip(folders, scenes, strict=True):
-            run(Scene(**{"voltage": 100} | changes), model="cylinders", force=force, out=place)
+            run(Scene(**{"voltage": 100, "force": force} | changes), model="cylinders", out=place)
         return ["compare-data", str(file), "--run", *folders]
 
     return together
@@ -162,6 +162,17 @@ def test_runs_of_other_screens_are_refused(together, capsys):
     assert said == (
         "electric.d_i is 1e-06 in run0 and 5e-06 in run1; give runs that differ in force and voltage alone\n"
     )
+
+
+def test_forces_on_the_finger_may_differ():
+    """And be those at its centre; all else may not."""
+
+    def under(force, **changes):
+        return Result(Scene(force=force, **changes), "full", None, None, None)
+
+    one_scene.refuse_mixed([under(0.3, voltage=100), under(0.5, voltage=150), Result(Scene(), "full", *[None] * 3)])
+    with pytest.raises(SceneError, match=r"friction is 0\.25 in a run and 0\.3 in a run"):
+        one_scene.refuse_mixed([under(0.3), under(0.5, friction=0.3)])
 
 
 def test_histories_may_differ_in_force_and_voltage():

@@ -27,8 +27,7 @@ from fingerpad.scene import Scene, SceneError
 
 DEEP = pytest.param("[" * 100_000 + "]" * 100_000, id="deep")
 NO_SCENES = (
-    '{"trace": 5}',
-    '{"trace": {"force": "x", "parameters": {}}}',
+    '{"laws": 5}',
     '{"laws": {"mesh": {}}}',
     DEEP,
 )

@@ -120,12 +120,12 @@ def test_model_without_a_path_is_of_all_ranks(folder, monkeypatch):
     monkeypatch.setenv("SLURM_PROCID", "1")
     for given in ({}, {"force": 0.5}):
         out = folder / str(len(given))
-        found = fp.run(model="cylinders", out=out, **given)
+        found = fp.run(Scene(**given), model="cylinders", out=out)
         folders = MPI.COMM_WORLD.allgather(found.folder)
         assert folders == [out.absolute()] * MPI.COMM_WORLD.size
         assert (out / "summary.json").exists()
         with pytest.raises(PlaceError, match="another scene"):
-            fp.run(Scene(friction=0.1), model="cylinders", out=out, **given)
+            fp.run(Scene(friction=0.1, **given), model="cylinders", out=out)
 
 
 def test_a_crash_before_the_first_step_leaves_the_last_one(scene, folder, finished, monkeypatch):

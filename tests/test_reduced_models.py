@@ -67,7 +67,7 @@ def test_sweep(tmp_path):
 
 def test_newtons():
     """A force on the whole finger sums slices over its points; the coefficient of all is that of each."""
-    found = fp.run(Scene(friction=0.3, voltage=0.0), model="block", force=0.5)
+    found = fp.run(Scene(friction=0.3, voltage=0.0, force=0.5), model="block")
     assert found.finger.values("full_slip")["mu_app"] == pytest.approx(0.3, rel=1e-9)
     assert "traces over the force" in str(found.finger)
 

@@ -31,11 +31,11 @@ def test_states_of_two_meshes_name_them():
 
 
 def test_whole_finger_comes_first_where_newtons_were_asked_for():
-    run = fp.Result(fp.Scene(), "full", None, None, slip(), steps=(slip(),), finger=whole())
-    assert text(run).startswith("Result\n") and text(run).endswith(str(run.finger))
-    asked = replace(run, record={"asked": {"force": 0.5}})
+    run = fp.Result(fp.Scene(), "full", None, None, slip(), finger=whole())
+    assert text(run).startswith("Section at the centre of the finger\n") and text(run).endswith(str(run.finger))
+    asked = replace(run, scene=fp.Scene(force=0.5))
     assert text(asked).startswith(str(run.finger))
-    assert "\nCross-section at the end of its last trace\n" in text(asked)
+    assert "\nSection at the centre of the finger\n" in text(asked)
     assert text(replace(asked, finger=None)).startswith("Result\n"), "a trace was interrupted"
 
 

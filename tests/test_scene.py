@@ -116,7 +116,6 @@ def test_scene_of_a_run_s_folder_is_a_scene(tmp_path):
     assert model_of(file) == "cylinders" and model_of(tmp_path / "scene.toml") == model_of(None) == "full"
     assert Scene.load(file) == given and scenes.load(file, {"f_ext": "30 N/m"}) == given.replace(f_ext=30.0)
     for data, words in (
-        (given.parameters() | {"trace": {"force": 0.5}}, "is of a run with a force on the whole finger"),
         ({"f_ext": 5.0}, "is not the scene.json of a run; other scenes are in TOML"),
         ([], "is not the scene.json of a run"),
     ):

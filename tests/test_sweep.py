@@ -26,7 +26,7 @@ def started(monkeypatch):
     """Arguments of the runs that were started; each leaves a summary with the force of its scene."""
     runs = []
 
-    def run(name, arguments, limit):
+    def run(name, arguments, limit, folders):
         runs.append(arguments)
         scene = json.loads(Path(arguments[0]).read_text(encoding="utf-8"))
         if scene["f_ext"] == 666:

@@ -2,6 +2,7 @@
 
 import csv
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -81,7 +82,7 @@ def test_places_along_a_dimension_are_those_of_labels():
 
 def test_newtons_of_a_whole_finger(tmp_path):
     """A sweep whose points have one shows its friction in the last column, and has it in table and dataset."""
-    result = fp.run(force="0.5 N", model="cylinders")
+    result = replace(fp.run(fp.Scene(force="0.5 N"), model="cylinders"), scene=fp.Scene())
     assert isinstance(result.finger, WholeFinger)
     done = Sweep({"friction": (0.25,)}, (result,), tmp_path)
     totals = result.finger.states["full_slip"].totals

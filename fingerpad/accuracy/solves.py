@@ -14,7 +14,6 @@ from fingerpad.accuracy.rigid_screen import over_stiffer
 from fingerpad.io.drawing import View
 from fingerpad.io.states import WORDS, before_sliding
 from fingerpad.model.finger import Step
-from fingerpad.model.memory import refuse_beyond
 from fingerpad.model.options import FingerModel
 from fingerpad.model.simulation import RestartRequired, Simulation
 from fingerpad.model.viewer import Viewer
@@ -185,12 +184,10 @@ class Solves:
             states: as they were found on another mesh.
 
         Raises:
-            GeometryError: the mesh would need too much memory.
+            GeometryError: the mesh needs too much memory.
             StepFailed: a state was not found.
         """
-        model = self._model
-        refuse_beyond(model.geometry, mesh, model.numerics, model.options)
-        return self._again(model.changed(mesh=mesh), states)
+        return self._again(self._model.changed(mesh=mesh), states)
 
     def over_stiffer_screen(self, base: Solve, contact: Formulation) -> Solve:
         """Return states over a screen of twice the stiffness; collective.

@@ -1,7 +1,6 @@
 """``fingerpad run``: press, charge and slide a finger, from a scene to tables, pictures and fields."""
 
-import math
-from argparse import ArgumentTypeError, Namespace
+from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,7 +13,7 @@ from fingerpad.report.write import NAME
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
-from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene.messages import SceneError
 from fingerpad.scene.reading import DEFAULT_MODEL, model_of
 
 _OUT = Path("results")
@@ -40,9 +39,8 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--resume", type=path, metavar="DIR", help="go on with a run that was cut short in this folder")
     parser.add_argument(
         "--force",
-        type=_force,
         metavar="FORCE",
-        help="force on the whole finger, as '0.5 N', in place of f_ext: sums slices over traces of the model",
+        help="force on the whole finger (N), as --set force: slices are summed over traces of the model",
     )
     parser.add_argument("--quiet", action="store_true", help="print the result alone: no steps, no progress bar")
     args, petsc = parser.read_with_petsc(argv)
@@ -50,7 +48,8 @@ def main(argv: Sequence[str]) -> int:
     if args.resume is not None:
         scene, args.out = _cut_short(args), args.resume
     else:
-        refuse_twice(args, "f_ext", "--force")
+        refuse_twice(args, "force", "--force")
+        args.set = [*args.set, *([] if args.force is None else [f"force={args.force}"])]
         scene = scene_of(args, meshed=find(args.model).meshes)
     check_folder(args.out)
     model, shown = find(args.model), not args.quiet
@@ -58,7 +57,7 @@ def main(argv: Sequence[str]) -> int:
     if not model.meshes:
         if petsc:
             raise SceneError(f"{petsc[0]} is given and --model is {model.name}, which solves nothing by PETSc")
-        echo(str(solved(scene, model, context, args.force)))
+        echo(str(solved(scene, model, context)))
         _say_report(args)
         return 0
     from fingerpad.startup import start
@@ -68,24 +67,11 @@ def main(argv: Sequence[str]) -> int:
     from fingerpad.runs.full import exit_code
 
     with raises():
-        result = solved(scene, model, context, args.force)
-    if args.quiet or not model.path:
-        echo(str(result))
-    elif args.force is not None:
-        echo(f"\n{result.finger or result.failure}")
+        result = solved(scene, model, context)
+    if args.quiet or not model.path or scene.force is not None:  # else the run has printed it
+        echo(f"\n{result}" if result.finger or scene.force is None else result.failure)
     _say_report(args)
     return exit_code(result)
-
-
-def _force(text: str) -> str:
-    """Return a force that the run reads, and refuse a number alone, which could be N or N/m."""
-    try:
-        number = float(text)
-    except ValueError:
-        return text
-    if not math.isfinite(number):
-        return text
-    raise ArgumentTypeError(f"{clip(text)} has no unit; give one, as in '{clip(text)} N'")
 
 
 def _say_report(args: Namespace) -> None:

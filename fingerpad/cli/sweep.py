@@ -34,8 +34,6 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--jobs", type=positive, default=2, metavar="N", help="runs at a time (default: 2)")
     parser.add_argument("--model", choices=MODELS, default=DEFAULT_MODEL, help="model to run (default: %(default)s)")
     parser.add_argument("--quiet", action="store_true", help="print the table alone: no line a run, no progress bar")
-    if any(word.partition("=")[0] == "--force" for word in argv):
-        raise SceneError("--force is an option of fingerpad run; a sweep has it as values: --over force='0.1, 0.5 N'")
     args = parser.read(argv)
     check_folder(args.out)
     base, axes = study(args.scene, args.set, args.over)

@@ -42,8 +42,6 @@ LEFT = (
     *("displacement.bp", "stress.bp", "sed.bp", "finger_*.npz", "finger_*.png", "surface*.npz", "surface*.png"),
     *("history.png", "time.png", "footprint.png", "report.html", "report.html*.part"),
 )
-TRACE = "trace"
-"""Key of ``scene.json`` where the scene is a trace of a force on the whole finger."""
 T = TypeVar("T")
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP)  # some network file systems
 
@@ -96,7 +94,6 @@ class Place:
         parameters: Mapping[str, Any],
         comm: "MPI.Comm | Serial",
         model: str = DEFAULT_MODEL,
-        asked: Mapping[str, Any] | None = None,
     ) -> None:
         """Choose a folder; nothing is touched before :meth:`take`, except that the folder is made.
 
@@ -105,15 +102,11 @@ class Place:
             parameters: of the scene that they are of.
             comm: communicator of the run.
             model: whose results they are, see :data:`fingerpad.reduced.models.MODELS`.
-            asked: of which the scene is a trace, if it is one: ``force`` (N) on the whole finger and ``parameters`` of
-                the scene that was given. A trace makes way for another one to a larger force.
         """
         self.folder, self._comm = folder, comm
         self._parameters = json.loads(json.dumps(parameters))  # as they are read back
         if model != DEFAULT_MODEL:
             self._parameters["model"] = model
-        if asked is not None:
-            self._parameters[TRACE] = json.loads(json.dumps(asked))
         self._lock: BinaryIO | None = None
 
     def __enter__(self) -> "Place":
@@ -160,9 +153,8 @@ class Place:
                     "delete it, or choose another folder"
                 )
         kept = self._kept()
-        same = kept is not None and kept.get(TRACE, "") == self._parameters.get(TRACE)
-        if kept is not None and identity(kept) != identity(self._parameters) and not same:
-            what = difference(identity(_given(kept)), identity(_given(self._parameters)))
+        if kept is not None and identity(kept) != identity(self._parameters):
+            what = difference(identity(kept), identity(self._parameters))
             raise PlaceError(
                 f"{ends(self.folder)} holds the results of another scene ({what}); "
                 "choose another folder, or delete the folder"
@@ -204,37 +196,20 @@ def full_scene(folder: Path) -> Scene:
         kept = _whole(read_object(folder / "scene.json"))
     except (OSError, ValueError):
         raise PlaceError(f"{ends(folder)} has no scene.json of a run, and so no run to go on with") from None
-    if TRACE in kept:
-        raise PlaceError(
-            f"{ends(folder)} has a trace of {kept[TRACE]['force']:g} N on the whole finger, which is one part of the "
-            "answer; give the command with --force again"
-        )
     if "model" in kept:
         raise PlaceError(f"{ends(folder)} has a run of the model {kept['model']!r}; only a full one can go on")
     return from_data(kept)
 
 
 def _whole(parameters: Any) -> dict[str, Any]:
-    """Return parameters of a scene that a file holds, whose trace is as a run writes it.
+    """Return parameters of a scene that a file holds.
 
     Raises:
         ValueError: they are something else.
     """
-    found = parameters if isinstance(parameters, dict) else {TRACE: None}
-    trace = found.get(TRACE, {"force": 0.0, "parameters": {}})
-    sound = isinstance(trace, dict) and isinstance(trace.get("force"), int | float)
-    if not (sound and isinstance(trace.get("parameters"), dict)):
+    if not isinstance(parameters, dict):
         raise ValueError("no parameters of a scene")
-    return found
-
-
-def _given(parameters: dict[str, Any]) -> dict[str, Any]:
-    """Return what a user gave: of a trace the force and the scene that it is of."""
-    asked = parameters.get(TRACE)
-    if asked is None:
-        return {"force": "not given"} | parameters
-    model = {key: parameters[key] for key in ("model",) if key in parameters}
-    return {"force": f"{asked['force']!r} N"} | asked["parameters"] | model
+    return parameters
 
 
 def identity(parameters: Mapping[str, Any]) -> dict[str, Any]:

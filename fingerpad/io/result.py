@@ -99,11 +99,6 @@ class Result:
         """The last accepted state; without a loading path the last named state."""
         return self.steps[-1] if self.steps else (self.full_slip or self.charged or self.uncharged)
 
-    @property
-    def asked_force(self) -> float | None:
-        """Force on the whole finger (N) that the run was asked for; None of a run of a cross-section."""
-        return (self.record.get("asked") or {}).get("force")
-
     def plot(self, kind: str = "surface", path: str | Path | None = None) -> "Figure | None":
         """Draw the skin, the deformed finger, the history of sliding, or the footprint of the whole finger.
 

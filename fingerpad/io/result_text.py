@@ -7,16 +7,16 @@ from fingerpad.io.result import Result
 from fingerpad.io.states import LoadResult, called
 from fingerpad.scene.reading import DEFAULT_MODEL
 
-_TITLES = {True: "Cross-section at the end of its last trace", False: "Cross-section at the centre of the finger"}
+_SECTION = "Section at the centre of the finger"
 
 
 def text(result: Result) -> str:
     """Return the text *Result* at the end of a run: the named states side by side, with units and errors.
 
-    The whole finger follows; it comes first where the run was asked for a force in newtons.
+    The whole finger follows; it comes first where the scene has a force on it.
     """
-    asked, shown = result.asked_force is not None and result.finger is not None, result.named
-    lines = [_TITLES[bool(result.steps)] if asked else "Result"]
+    whole, shown = result.scene.force is not None and result.finger is not None, result.named
+    lines = ["Result" if result.finger is None else _SECTION]
     lines[0] += f" (model '{result.model}')" if result.model != DEFAULT_MODEL else ""
     if shown:
         heads = [called(name, state.voltage).split(" normal") for name, state in shown.items()]
@@ -37,7 +37,7 @@ def text(result: Result) -> str:
     lines += [f"  {_in_time(load, least)}" for load in result.loads if load.over_time is not None]
     lines += [f"  {note}" for note in _remarks(result)]
     finger = [f"{result.finger}"] if result.finger is not None else []
-    return "\n".join([*finger, *lines] if asked else [*lines, *finger])
+    return "\n".join([*finger, *lines] if whole else [*lines, *finger])
 
 
 def _remarks(result: Result) -> list[str]:

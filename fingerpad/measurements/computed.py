@@ -15,7 +15,6 @@ from fingerpad.measurements.one_scene import folder, refuse_mixed
 from fingerpad.measurements.table import Measured
 from fingerpad.report.source import Table
 from fingerpad.report.source import read as content
-from fingerpad.runs.sweep_columns import FORCE
 from fingerpad.runs.sweep_results import Sweep
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.slices.finger import WholeFinger
@@ -190,7 +189,7 @@ def _of_finger(run: Result, finger: WholeFinger, table: Measured) -> dict[str, f
 
 def _of_sweep(sweep: Table, table: Measured) -> pd.DataFrame:
     """Return the values in the table of a sweep."""
-    keys, fixed = {"force": FORCE if table.whole else "f_ext", "voltage": "voltage"}, sweep.parameters or {}
+    keys, fixed = {"force": "force" if table.whole else "f_ext", "voltage": "voltage"}, sweep.parameters or {}
     if not set(sweep.axes) <= set(keys.values()) <= {*sweep.axes, *fixed}:
         raise SceneError(
             f"{_place(sweep)} is over {', '.join(sweep.axes)}, and {table.name} has forces in {table.force_unit}; "

@@ -26,9 +26,6 @@ class _Difference(NamedTuple):
 def refuse_mixed(runs: Sequence[Result]) -> None:
     """Refuse runs that differ in more than force and voltage: their values are no function of the two.
 
-    A run of a force in newtons ends with a trace, whose history has forces of its own. It counts as the scene that was
-    given.
-
     Raises:
         SceneError: the first key that differs, its two values and the two folders.
     """
@@ -51,7 +48,7 @@ def folder(run: Result) -> str:
 
 def _conditions(run: Result) -> dict[str, Any]:
     """Return the model of a run and every key of its scene."""
-    kept = run.record.get("asked", run.record).get("parameters") or run.scene.parameters()
+    kept = run.record.get("parameters") or run.scene.parameters()
     scene = as_kept(kept)
     return {"model": run.model} | scene.model_dump(mode="json")
 

@@ -2,7 +2,7 @@
 
 import re
 
-from fingerpad.model.memory import refuse_beyond
+from fingerpad.model.memory import refuse_sizes
 from fingerpad.model.options import plan
 from fingerpad.model.touching import by_rule
 from fingerpad.scene.messages import SceneError, qualify
@@ -23,7 +23,7 @@ def check(scene: Scene) -> None:
         return
     try:
         sizing.check(scene.geometry, scene.mesh)
-        refuse_beyond(scene.geometry, by_rule(scene).mesh, scene.numerics, plan(scene))
+        refuse_sizes(scene.geometry, by_rule(scene).mesh, scene.numerics, plan(scene))
     except GeometryError as error:
         message = re.sub(r"\bcontact size (\S+) m is", r"mesh.contact is \1 m,", str(error))
         raise SceneError(qualify(message, "geometry.", Fingertip.model_fields)) from None

@@ -9,6 +9,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from fingerpad.model import balance, symmetry
+from fingerpad.model.memory import refuse_mesh, refuse_sizes
 from fingerpad.model.options import FingerModel
 from fingerpad.model.state import contact_state
 from geometry import fingertip, mesh, meshfile, tags
@@ -139,12 +140,7 @@ def assembled(
         on_accept: see :class:`variational.solvers.continuation.Continuation`.
         half: of the half at x >= 0, whose mirror image is the other.
     """
-    numerics = model.numerics
-    if model.mesh_file is not None:
-        tagged = mesh.load(comm, meshfile.file(model.mesh_file, model.mesh_sha256 or ""))
-    else:
-        build = partial(fingertip.build, model.geometry, model.mesh, model.options.receptors, half)
-        tagged = mesh.load(comm, build, tags.LAYERS.values())
+    numerics, tagged = model.numerics, meshed(model, comm, half)
     layers = tagged.layers().values()
     body = Body(
         tagged,
@@ -163,3 +159,25 @@ def assembled(
         step_scale=numerics.step_scale,
     )
     return tagged, body
+
+
+def meshed(model: FingerModel, comm: MPI.Comm, half: bool | None = None) -> mesh.TaggedMesh:
+    """Return a finger's mesh; collective.
+
+    Args:
+        model: shape, sizes and numbers.
+        comm: communicator of the mesh.
+        half: whether of the half at x >= 0 alone; by default as the model's options have it.
+
+    Raises:
+        GeometryError: it cannot be meshed, or needs more memory than is allowed, for which no file is refused.
+    """
+    if model.mesh_file is not None:
+        return mesh.load(comm, meshfile.file(model.mesh_file, model.mesh_sha256 or ""))
+    half = not model.options.both_halves if half is None else half
+    refuse_sizes(model.geometry, model.mesh, model.numerics, model.options)
+    build = partial(fingertip.build, model.geometry, model.mesh, model.options.receptors, half)
+    found = mesh.load(comm, build, tags.LAYERS.values())
+    points, triangles = (found.mesh.topology.index_map(dimension).size_global for dimension in (0, 2))
+    refuse_mesh(points, triangles, model)
+    return found

@@ -1,53 +1,63 @@
-"""The memory that a scene needs, estimated before anything is meshed, and refused where it is more than allowed.
+"""The memory of a run, and its refusal: by the unknowns of the mesh, and before meshing by a lower bound of them.
 
-The number of triangles is :mod:`geometry.count`'s, of unknowns what the element makes of it. Memory, of which the
-factors of MUMPS are most, grows as the power 1.13 of the unknowns: runs on one rank that pressed, charged and slid took
-0.35 GB with 27 000, 0.56 GB with 73 000, 1.2 GB with 186 000 and 5.7 GB with 873 000 of them. It is an estimate. More
-ranks take some 0.2 GB each; refining to an accuracy, which holds two meshes at a time, takes more as well.
+A run takes :data:`PROGRAM` bytes and :data:`PER_UNKNOWN` for each unknown of its path's mesh, error estimate included.
+More ranks take some 0.2 GB each, and refining to an accuracy, which holds two meshes at a time, takes more as well.
 """
 
-import math
-from dataclasses import dataclass
-
-from fingerpad.io.left import about
-from fingerpad.model.options import ModelOptions, plan
-from fingerpad.model.touching import by_rule
-from fingerpad.scene import Numerics, Scene
-from geometry import count
+from fingerpad.io.pace import about
+from fingerpad.model.options import FingerModel, ModelOptions
+from fingerpad.scene import Numerics
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
+from geometry.sizing import least_triangles
 
-_UNKNOWNS = {"P1": 1.0, "P2": 4.0, "P2 reduced": 4.0, "P2-P1": 4.5, "P3": 9.0}  # of a triangle, on large meshes
-_AT_LEAST = 0.23e9  # bytes, of the program itself
-MEASURED = 873_000  # unknowns, the most of these runs
-_FIRST, _POWER = 1.06e3, 1.13  # bytes of one unknown, and the power with which they grow
-
-
-@dataclass(frozen=True)
-class Budget:
-    """What a mesh of a scene will come to, about."""
-
-    triangles: float
-    unknowns: float
-    memory: float
-    """Bytes, on all ranks together."""
+PROGRAM = 0.23e9
+"""Bytes of the program itself."""
+PER_UNKNOWN = 6.3e3
+"""Bytes of an unknown, of which the factors of MUMPS are most. ``fingerpad run --set mesh.contact=…`` prints the memory
+of a run: 0.35 GB with 27 000 unknowns, 0.56 GB with 73 000, 1.2 GB with 186 000, 5.7 GB with 873 000: the last."""
 
 
-def estimate(scene: Scene, needed: ModelOptions | None = None, triangles: int | None = None) -> Budget:
-    """Return what a scene will come to, some milliseconds.
+def unknowns(points: int, triangles: int, element: str) -> int:
+    """Return the unknowns of a mesh; a triangulation has as many edges as points and triangles, or one less.
 
     Args:
-        scene: one whose geometry was checked.
-        needed: the parts of the model; those that the scene needs if None.
-        triangles: of a mesh of a file.
+        points: number of vertices.
+        triangles: number of triangles.
+        element: a name of :data:`variational.element.ELEMENTS`.
     """
-    if triangles is not None:
-        return _of(triangles, scene.numerics.element)
-    return _budget(scene.geometry, by_rule(scene).mesh, scene.numerics.element, needed or plan(scene))
+    edges = points + triangles
+    return {
+        "P1": 2 * points,
+        "P2": 2 * (points + edges),
+        "P2 reduced": 2 * (points + edges),
+        "P2-P1": 2 * (points + edges) + points,
+        "P3": 2 * (points + 2 * edges + triangles),
+    }[element]
 
 
-def refuse_beyond(finger: Fingertip, size: MeshSize, numerics: Numerics, needed: ModelOptions) -> None:
-    """Refuse a mesh that would need more memory than is allowed.
+def memory(number: float) -> float:
+    """Return the bytes of a run on a mesh of so many unknowns, on all ranks together."""
+    return PROGRAM + PER_UNKNOWN * number
+
+
+def refuse_mesh(points: int, triangles: int, model: FingerModel) -> None:
+    """Refuse a mesh that needs more memory than is allowed.
+
+    Args:
+        points: number of vertices.
+        triangles: number of triangles.
+        model: whose mesh it is.
+
+    Raises:
+        GeometryError: how much, and what to change.
+    """
+    _refuse("has", triangles, unknowns(points, triangles, model.numerics.element), model.numerics, model.geometry,
+            model.mesh)  # fmt: skip
+
+
+def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: Numerics, needed: ModelOptions) -> None:
+    """Refuse element sizes whose mesh would need more memory than is allowed, by a lower bound, before it is made.
 
     Args:
         finger: its shape, which was checked.
@@ -58,38 +68,27 @@ def refuse_beyond(finger: Fingertip, size: MeshSize, numerics: Numerics, needed:
     Raises:
         GeometryError: how much, and what to change.
     """
+    triangles = int(least_triangles(finger, size, needed.receptors, not needed.both_halves))
+    _refuse("would have at least", triangles, unknowns(triangles // 2, triangles, numerics.element), numerics, finger,
+            size)  # fmt: skip
+
+
+def _refuse(has: str, triangles: int, number: int, numerics: Numerics, finger: Fingertip, size: MeshSize) -> None:
     allowed = f"numerics.memory allows {numerics.memory / 1e9:g} GB"
-    if numerics.memory <= _AT_LEAST:
-        raise GeometryError(f"{allowed}, and the program takes {_AT_LEAST / 1e9:g} GB without a mesh; raise it")
-    found = _budget(finger, size, numerics.element, needed)
-    if found.memory > numerics.memory:
+    if numerics.memory <= PROGRAM:
+        raise GeometryError(f"{allowed}, and the program takes {PROGRAM / 1e9:g} GB without a mesh; raise it")
+    if memory(number) > numerics.memory:
         raise GeometryError(
-            f"the mesh would have some {about(found.triangles)} triangles and {about(found.unknowns)} unknowns, and "
-            f"need about {about(_up(found.memory / 1e9))} GB; {allowed}: "
-            f"raise it, or make {_finest(finger, size, needed.receptors)} larger"
+            f"the mesh {has} {about(triangles)} triangles and {about(number)} unknowns, which need about "
+            f"{about(memory(number) / 1e9)} GB; {allowed}: raise it, or make mesh.{_finest(finger, size)} larger"
         )
 
 
-def _budget(finger: Fingertip, size: MeshSize, element: str, needed: ModelOptions) -> Budget:
-    return _of(count.triangles(finger, size, needed.receptors, not needed.both_halves), element)
+def _finest(finger: Fingertip, size: MeshSize) -> str:
+    """Return the key of the size that would save most triangles if it had its default, or a larger value."""
 
+    def larger(key: str) -> float:
+        other = max(getattr(MeshSize(), key), 1.01 * getattr(size, key))
+        return least_triangles(finger, size.model_copy(update={key: other}))
 
-def _of(triangles: float, element: str) -> Budget:
-    unknowns = _UNKNOWNS[element] * triangles
-    return Budget(triangles, unknowns, _AT_LEAST + _FIRST * unknowns**_POWER)
-
-
-def _up(value: float) -> float:
-    """Return a number rounded up to two digits, which is above all that the number itself is above."""
-    step = 10.0 ** (math.floor(math.log10(value)) - 1)
-    return math.ceil(value / step) * step
-
-
-def _finest(finger: Fingertip, size: MeshSize, receptors: bool) -> str:
-    """Return the key of the size that would save most triangles if it were doubled."""
-    keys = ["contact", "interface", "coarsest", *(["receptor"] if receptors else []), "growth"]
-
-    def doubled(key: str) -> float:
-        return count.triangles(finger, size.model_copy(update={key: 2 * getattr(size, key)}), receptors)
-
-    return f"mesh.{min(keys, key=doubled)}"
+    return min(("contact", "interface", "coarsest", "receptor", "growth"), key=larger)

@@ -43,28 +43,22 @@ def all_of(parameters: Mapping[str, Any], varied: Container[str] = ()) -> str:
     return folded(f"All {len(rows)} parameters", paragraph(note), table(heads, rows, "parameters"))
 
 
-def again(parameters: Mapping[str, Any], model: str, asked: Mapping[str, Any] | None = None) -> str:
+def again(parameters: Mapping[str, Any], model: str) -> str:
     """Return how a run is repeated.
 
     Args:
         parameters: of its scene.
         model: that was used.
-        asked: of a force on the whole finger, ``force`` (N) and the ``parameters`` of the scene that was given.
     """
-    parameters, force = (asked["parameters"], asked["force"]) if asked else (parameters, None)
     given = {key: value for key, value in changed(parameters).items() if key != "model"}
     option = "" if model == DEFAULT_MODEL else f" --model {model}"
     if any("[" in key or isinstance(value, list) or value is None for key, value in given.items()):
-        scene, more = 'fp.Scene.load("scene.json")', ""
-        if asked:
-            scene, more = 'fp.Scene(**json.load(open("summary.json"))["asked"]["parameters"])', f", force={force!r}"
         code = (
-            f"{'import json' + chr(10) if asked else ''}import fingerpad as fp\n\nscene = {scene}  # in this folder\n"
-            f'fp.run(scene, model="{model}"{more}, out="results/again")'
+            'import fingerpad as fp\n\nscene = fp.Scene.load("scene.json")  # in this folder\n'
+            f'fp.run(scene, model="{model}", out="results/again")'
         )
         return f"<pre><code>{text(code)}</code></pre>"
-    options = "".join(f" {option_of(key, value)}" for key, value in given.items() if not (asked and key == "f_ext"))
-    option += f" --force '{force!r} N'" if asked else ""
+    options = "".join(f" {option_of(key, value)}" for key, value in given.items())
     return f"<pre><code>{text(f'fingerpad run{options}{option} --out results/again')}</code></pre>"
 
 

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.io.files import read_object
-from fingerpad.io.place import TRACE
 from fingerpad.io.quantities import Output
 from fingerpad.io.quantities import read as read_outputs
 from fingerpad.io.result import Result, steps_of
@@ -39,6 +38,17 @@ class Table:
     outputs: tuple[Output, ...] = ()
     """Of the points, computed from a state."""
 
+    @property
+    def whole(self) -> bool:
+        """Whether forces are those on the whole finger."""
+        return "force" in self.axes or "force" in (self.parameters or {})
+
+    def forces(self) -> list[float]:
+        """Return the forces on the whole finger (N)."""
+        if "force" in self.axes:
+            return [float(row["force"]) for row in self.rows]
+        return [float((self.parameters or {})["force"])] if self.whole else []
+
 
 def read(folder: Path) -> Result | Table:
     """Return what is in a folder.
@@ -68,7 +78,7 @@ def _unfinished(folder: Path) -> Result:
     """Return the steps that a run has written so far."""
     try:
         parameters = read_object(folder / "scene.json")
-        scene = as_kept({key: value for key, value in parameters.items() if key != TRACE})
+        scene = as_kept(parameters)
         steps = steps_of(folder)
     except (OSError, ValueError, KeyError, TypeError, AttributeError, csv.Error) as error:
         raise SceneError(f"the unfinished run in {clip(str(folder), 80)} cannot be read: {error}") from None

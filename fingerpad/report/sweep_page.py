@@ -10,7 +10,7 @@ from fingerpad.io.states import WORDS
 from fingerpad.report import page as html
 from fingerpad.report import parameters
 from fingerpad.report.source import Table
-from fingerpad.runs.sweep_columns import FORCE, LOAD, described, in_time, loads, shown, text
+from fingerpad.runs.sweep_columns import LOAD, described, in_time, loads, shown, text
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.slices import solid
 
@@ -34,7 +34,7 @@ def page(table: Table) -> str:
 
 def _shown(table: Table) -> tuple[str, dict[str, Output]]:
     """Return the state in words and the columns of it that the page shows."""
-    state, columns = shown(table.rows[0], FORCE in table.axes, table.outputs)
+    state, columns = shown(table.rows[0], table.whole, table.outputs)
     return WORDS[state], columns
 
 
@@ -48,7 +48,7 @@ def _head(table: Table) -> str:
             low, high = (f"{value * quantity.scale:.3f}" for value in (min(values), max(values)))
             number = f"{_symbol(quantity)} from {low} to {high} {quantity.unit}".rstrip()
             break
-    said = f"{'whole finger at' if FORCE in table.axes else 'at'} {state}, over {_varied(table)}"
+    said = f"{'whole finger at' if table.whole else 'at'} {state}, over {_varied(table)}"
     if (wave := _wave(table)) is not None:  # which a sweep of a waveform is about
         name, least, most = wave
         said = f"in the load {name}, over {_varied(table)}"
@@ -161,7 +161,7 @@ def _points(table: Table) -> str:
         said = "failed" if row["failure"] else "" if _reached(row, columns) else f"no {state}"
         first, *rest = (_plain(row[key]) for key in table.axes)
         rows.append((first, *rest, *cells, said))
-    forces = dict.fromkeys(float(row[FORCE]) for row in table.rows) if FORCE in table.axes else {}
+    forces = dict.fromkeys(table.forces())
     notes = solid.remarks(forces) or [PER_LENGTH]
     heads = [*(_head_of(key) for key in table.axes), *(quantity.title for quantity in columns.values())]
     return html.section(
@@ -191,8 +191,7 @@ def _parameters(table: Table) -> str:
     if table.parameters is None:
         words = "The folder has no sweep.json, and so no scene: an earlier version of fingerpad wrote it."
         return html.section("parameters", "Parameters", html.paragraph(words))
-    varied = (*table.axes, "f_ext") if FORCE in table.axes else table.axes  # in whose place the force is
-    return html.section("parameters", "Parameters", parameters.all_of(table.parameters, varied))
+    return html.section("parameters", "Parameters", parameters.all_of(table.parameters, table.axes))
 
 
 def _cite(table: Table) -> str:

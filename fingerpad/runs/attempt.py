@@ -11,8 +11,8 @@ from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.io import petsc_options
 from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt, Interrupted
-from fingerpad.io.left import in_words
 from fingerpad.io.over_time import NOTE, long_steps
+from fingerpad.io.pace import in_words
 from fingerpad.io.provenance import provenance
 from fingerpad.io.quantities import Output, valued
 from fingerpad.io.result import Result
@@ -20,10 +20,9 @@ from fingerpad.io.writing import Writer
 from fingerpad.model import cautions
 from fingerpad.model.balance import broken, force_error
 from fingerpad.model.cost import Clock
-from fingerpad.model.finger import Finger, Step
+from fingerpad.model.finger import Finger, Step, meshed
 from fingerpad.model.hints import finer_mesh_may_help, hint
 from fingerpad.model.journal import Journal
-from fingerpad.model.memory import refuse_beyond
 from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Report
 from fingerpad.model.simulation import RestartRequired, Simulation
@@ -169,7 +168,7 @@ class Attempt:
             return
         number = len(self._refinement.parameters) + (self._refinement.stiffer is not None)
         text = f"estimating discretisation errors: solve {self._solves} of {number}"
-        self._console.phase(text, (self._solves - 0.5) / number)
+        self._console.phase(text, (self._solves - 1) / number)
 
     def follow(self) -> RestartRequired | None:
         """Reach every load, and estimate or refine; return what must be added to the model, if anything; collective."""
@@ -187,14 +186,14 @@ class Attempt:
             self._ended["failure"] = "; ".join(filter(None, (str(error), tip)))
             if isinstance(error, Interrupted):
                 self._ended["interrupted"] = error.signal.name
-            return None if reached else _finer(self._model, error)
+            return None if reached else _finer(self._model, error, self._comm)
 
     def _affordable(self, restart: RestartRequired | None) -> RestartRequired | None:
         """Return a restart within the memory allowed; None, with a failure, for another one."""
         if restart is None:
             return None
         try:
-            _refuse_beyond(restart.model)
+            meshed(restart.model, self._comm)
         except GeometryError as error:
             self._ended["failure"] = f"{restart.reason}; all loads again would need more memory: {error}"
             return None
@@ -279,12 +278,13 @@ class Attempt:
         }
 
 
-def _finer(model: FingerModel, error: StepFailed) -> RestartRequired | None:
-    """Return a restart with half the contact size, where that may help and is possible.
+def _finer(model: FingerModel, error: StepFailed, comm: MPI.Comm) -> RestartRequired | None:
+    """Return a restart with half the contact size, where that may help and is possible; collective.
 
     Args:
         model: whose loads were not reached.
         error: why not.
+        comm: communicator of the run.
     """
     helps = model.mesh_file is None and finer_mesh_may_help(error, bool(model.asked))
     contact = model.mesh.contact / 2
@@ -292,11 +292,7 @@ def _finer(model: FingerModel, error: StepFailed) -> RestartRequired | None:
         return None
     finer = model.changed(mesh=model.mesh.model_copy(update={"contact": contact}))
     try:
-        _refuse_beyond(finer)
+        meshed(finer, comm)
     except GeometryError:  # more than the memory allowed
         return None
     return RestartRequired(str(error), finer)
-
-
-def _refuse_beyond(model: FingerModel) -> None:
-    refuse_beyond(model.geometry, model.mesh, model.numerics, model.options)

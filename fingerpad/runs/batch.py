@@ -4,7 +4,7 @@ A scene's folder is named by a hash of all its parameters: run again, a sweep co
 that were cut short go on from their checkpoints. The hash does not depend on the program: after a change of the
 mechanics the folder must be deleted.
 
-    python3 -m fingerpad.runs.batch SCENE.json FOLDER LIMIT MODEL [FORCE]    one run, as the sweep starts it
+    python3 -m fingerpad.runs.batch SCENE.json FOLDER LIMIT MODEL    one run, as the sweep starts it
 """
 
 import fcntl
@@ -16,13 +16,12 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from fingerpad.io.files import below, lock_file, read_object, replace_json
-from fingerpad.io.left import between
+from fingerpad.io.pace import between
 from fingerpad.io.place import identity
 from fingerpad.io.terminal import watched
 from fingerpad.runs.processes import End, Pool, limit_processor_time, run
@@ -34,28 +33,28 @@ _LIMIT = 900.0  # s of processor time for one scene
 _OF_THE_MACHINE = "MUMPS_OUT_OF_MEMORY"  # a failure that says nothing of the scene
 
 
-def key(scene: Scene, force: float | None = None) -> str:
-    """Return the name under which a scene's results are kept.
-
-    Args:
-        scene: the scene.
-        force: on the whole finger (N), in place of the scene's own; None without one.
-    """
-    kept = identity(scene.parameters())
-    if force is not None:
-        kept = {"force": force, "scene": kept}
-    return hashlib.sha256(json.dumps(kept, sort_keys=True).encode()).hexdigest()[:16]
+def key(scene: Scene) -> str:
+    """Return the name under which a scene's results are kept."""
+    return hashlib.sha256(json.dumps(identity(scene.parameters()), sort_keys=True).encode()).hexdigest()[:16]
 
 
-def result(scene: Scene, folder: Path, force: float | None = None) -> Summary | None:
-    """Return the summary of a scene that has been run in a sweep's folder to its end, whatever that was.
+def result(scene: Scene, folder: Path) -> Summary | None:
+    """Return the summary of a scene that has been run in a sweep's folder to its end, whatever that was."""
+    return _ended(_summary(folder / key(scene)))
 
-    A run that was stopped, or had too little memory, has not come to its end; nor has one of a force with traces alone.
-    """
-    summary = _summary(folder / key(scene, force))
+
+def finished(scene: Scene, place: Path) -> Summary | None:
+    """Return the summary of a scene that has been run in a folder of its own to its end; None of another scene's."""
+    summary = _ended(_summary(place))
+    own = json.loads(json.dumps(identity(scene.parameters())))
+    same = summary is not None and identity(summary.get("parameters", {})) == own
+    return summary if same else None
+
+
+def _ended(summary: Summary | None) -> Summary | None:
+    """Return a summary but for one of a run that was stopped, or had too little memory."""
     again = summary is None or summary.get("interrupted") or _OF_THE_MACHINE in str(summary.get("failure"))
-    trace = force is not None and summary is not None and "asked" not in summary and set(summary) != {"failure"}
-    return None if again or trace else summary
+    return None if again else summary
 
 
 def _summary(place: Path) -> Summary | None:
@@ -86,12 +85,10 @@ def times_left(took: Sequence[float], left: int, jobs: int) -> tuple[float, floa
     return (rounds - 1) * low + low / 2, rounds * max(high, 1.25 * low)
 
 
-def _said(summary: Summary, force: float | None) -> str:
-    """Return what became of a run that did not fail, in words."""
-    of_finger = force is not None  # whose cross-section is at another force
-    mu_app = (
-        summary["finger"]["states"].get("full_slip", {}).get("mu_app") if of_finger else summary.get("full_slip_mu_app")
-    )
+def _said(summary: Summary) -> str:
+    """Return what became of a run that did not fail, in words; of a whole finger where the force is on it."""
+    found = summary["finger"]["states"].get("full_slip", {}) if "force" in summary["parameters"] else {}
+    mu_app = found.get("mu_app") if "force" in summary["parameters"] else summary.get("full_slip_mu_app")
     return "done" if mu_app is None else f"done, µ_app {mu_app:.4f}"
 
 
@@ -102,7 +99,6 @@ def sweep(
     limit: float = _LIMIT,
     model: str = DEFAULT_MODEL,
     quiet: bool = False,
-    forces: Mapping[str, float] = MappingProxyType({}),
 ) -> dict[str, Summary]:
     """Run what has not been run yet, with a progress bar.
 
@@ -113,7 +109,6 @@ def sweep(
         limit: seconds of processor time for one scene.
         model: a name of :data:`fingerpad.reduced.models.MODELS`, of one that meshes.
         quiet: whether to print nothing, and show no bar.
-        forces: on the whole finger (N) by name, as of :func:`fingerpad.runs.solve.run`; of scenes that have one.
 
     Returns:
         The summaries by name. That of a run that crashed, took too long, had too little memory or was asked to stop
@@ -121,15 +116,14 @@ def sweep(
     """
 
     def kept(name: str) -> Summary | None:
-        return result(scenes[name], folder, forces.get(name))
+        return result(scenes[name], folder)
 
     found = {name: kept(name) for name in scenes}
     broken: dict[str, Summary] = {}
     took: list[float] = []  # s, of each run
 
     def job(name: str) -> End:
-        force = forces.get(name)
-        place = below(folder, key(scenes[name], force))
+        place = below(folder, key(scenes[name]))
         place.mkdir(parents=True, exist_ok=True)
         with lock_file(place / "lock") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)  # another sweep may be at it
@@ -139,21 +133,20 @@ def sweep(
             replace_json(place / "asked.json", scenes[name].parameters())
             start = time.monotonic()
             given = [str(place / "asked.json"), str(place), str(limit), model]
-            given += [] if force is None else [repr(force)]
             end = run("fingerpad.runs.batch", given, limit, scenes[name].law_folders())
             took.append(time.monotonic() - start)
             return end
 
     def done(name: str, end: End, left: int) -> None:
-        force, summary = forces.get(name), kept(name)
+        summary = kept(name)
         if summary is None:
             crashed = f"{end.reason}: {end.message}" if end.reason else "INTERRUPTED"
-            said = (_summary(folder / key(scenes[name], force)) or {}).get("failure", "")
+            said = (_summary(folder / key(scenes[name])) or {}).get("failure", "")
             of_process = end.message if end.code == os.EX_TEMPFAIL else crashed
             broken[name] = {"failure": said if _OF_THE_MACHINE in said else of_process}
         if quiet:
             return
-        words = (summary or broken[name]).get("failure") or _said(summary or {}, force)
+        words = (summary or broken[name]).get("failure") or _said(summary or {})
         rest = f"; {between(*times_left(took, left, jobs))} left" if left and took else ""
         text = f"{name}: {words} ({len(missing) - left} of {len(missing)}{rest})"
         bar.console.print(text, highlight=False, markup=False, soft_wrap=True)
@@ -166,7 +159,7 @@ def sweep(
     return {name: kept(name) or broken[name] for name in scenes}
 
 
-def _one(scene: Path, folder: Path, model: str, force: float | None = None) -> None:
+def _one(scene: Path, folder: Path, model: str) -> None:
     import fingerpad.startup  # noqa: F401  # before any other import of libraries
     from fingerpad.io.checkpoint import CheckpointError
     from fingerpad.io.place import PlaceError
@@ -179,9 +172,9 @@ def _one(scene: Path, folder: Path, model: str, force: float | None = None) -> N
     context = RunContext(folder, lines=way.path, bar=way.path, report=False)
     try:
         try:
-            solved(asked, way, replace(context, resume=way.resumes and force is None), force)
+            solved(asked, way, replace(context, resume=way.resumes))
         except CheckpointError:  # nothing to go on from
-            solved(asked, way, context, force)
+            solved(asked, way, context)
     except PlaceError as error:  # another run is at it, or the disk is full: it may be gone the next time
         print(error, file=sys.stderr)
         sys.exit(os.EX_TEMPFAIL)
@@ -191,4 +184,4 @@ def _one(scene: Path, folder: Path, model: str, force: float | None = None) -> N
 
 if __name__ == "__main__":
     limit_processor_time(float(sys.argv[3]))
-    _one(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[4], float(sys.argv[5]) if sys.argv[5:] else None)
+    _one(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[4])

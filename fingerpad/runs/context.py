@@ -1,10 +1,10 @@
 """What a run has beside its scene: ranks, folder, console, report, and where it goes on."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fingerpad.io import terminal
 from fingerpad.io.place import Place, Serial
@@ -32,9 +32,6 @@ class RunContext:
     """Whether ``report.html`` is written beside the results."""
     resume: bool = False
     """Whether the run goes on from the checkpoint in its folder."""
-    asked: Mapping[str, Any] | None = None
-    """Of which the scene is a trace, see :class:`fingerpad.io.place.Place`; a trace has no checkpoint."""
-
     outputs: Sequence[Output] = ()
     """Further quantities, each computed from every state."""
 
@@ -70,4 +67,4 @@ class RunContext:
         """
         if self.folder is None:
             return nullcontext()
-        return Place(self.folder, scene.parameters(), self.ranks, model, self.asked)
+        return Place(self.folder, scene.parameters(), self.ranks, model)

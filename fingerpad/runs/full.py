@@ -14,10 +14,8 @@ from fingerpad.io.provenance import provenance
 from fingerpad.io.quantities import checked
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
-from fingerpad.model import expected
 from fingerpad.model.cost import Clock
 from fingerpad.model.journal import Journal
-from fingerpad.model.memory import estimate
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.touching import by_rule
 from fingerpad.runs.attempt import Attempt, Restarts, Session
@@ -60,7 +58,7 @@ def run(scene: Scene, context: RunContext) -> Result:
     try:
         with context.console() as console, context.place(scene, DEFAULT_MODEL) as place:
             journal = None
-            if place is not None and context.asked is None:
+            if place is not None:
                 journal = Journal(comm, _checkpoint(scene, place.folder), context.resume)
             writer, clock, interrupt = Writer(place, comm), Clock(comm), Interrupt(comm)
             return _run(scene, Session(comm, writer, console, clock, interrupt, journal, outputs))
@@ -90,10 +88,8 @@ def _run(scene: Scene, session: Session) -> Result:
     try:
         with session.interrupt:
             while True:
-                _expect(scene, model, comm, console)
                 attempt = Attempt(model, session)
-                if model.mesh_file is not None:
-                    _expect(scene, model, comm, console, attempt.simulation.finger.unknowns)
+                _expect(scene, console)
                 restart = attempt.follow()
                 if restart is None:
                     break
@@ -115,22 +111,12 @@ def _run(scene: Scene, session: Session) -> Result:
         raise full from error
 
 
-def _expect(scene: Scene, model: FingerModel, comm: MPI.Comm, console: Console, unknowns: int | None = None) -> None:
-    """Tell the console what the path will take, about; of a mesh whose unknowns are not estimated but known."""
+def _expect(scene: Scene, console: Console) -> None:
+    """Describe the path to the console: its loads, which end with full slip, and the first over time."""
     loads = scene.loads()
-    size = estimate(scene, model.options).unknowns if unknowns is None else unknowns
-    seconds = [each / comm.size for each in expected.by_load(scene, size)]
-    path = {load.name: each for load, each in zip(loads, seconds, strict=True)}
     slipping = [load.name for load in loads if load.until_full_slip]
-    after = expected.ERRORS * sum(seconds) if model.options.errors and not model.asked else 0.0
-    console.expect(path, after, slipping, coefficient(scene) or 0.0, whole=not model.asked, unsure=_unsure(scene, size))
-
-
-def _unsure(scene: Scene, unknowns: float) -> int | None:
-    """Return the number of the first load that is none like those of the kept runs, None without one."""
-    if expected.beyond_loads(scene) or expected.beyond_mesh(unknowns):
-        return 0
-    return next((k for k, load in enumerate(scene.loads()) if load.wave is not None), None)
+    first = next((k for k, load in enumerate(loads) if load.wave is not None), 0)
+    console.expect(len(loads), slipping, coefficient(scene) or 0.0, first)
 
 
 def exit_code(result: Result) -> int:

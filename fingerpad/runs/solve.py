@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from fingerpad.installed import needed_by, source, version
 from fingerpad.io import dataset, terminal
-from fingerpad.io.files import replace_json
+from fingerpad.io.files import below, replace_json
 from fingerpad.io.place import Serial, on_rank_0
 from fingerpad.io.quantities import Output
 from fingerpad.io.quantities import checked as checked_outputs
@@ -32,7 +32,6 @@ def run(
     *,
     out: str | Path | None = None,
     model: str = DEFAULT_MODEL,
-    force: float | str | None = None,
     comm: "MPI.Comm | None" = None,
     resume: bool = False,
     outputs: Sequence[Output] = (),
@@ -44,11 +43,6 @@ def run(
         out: folder for tables, pictures, fields and ``summary.json``; without it nothing is written.
         model: a name of :data:`fingerpad.reduced.models.MODELS`: ``"full"``, every ridge along the whole path
             (minutes); ``"cylinders"``, a closed form (at once).
-        force: external force on the whole finger, in N, as a text such as ``"0.5 N"`` or as a quantity of pint, in
-            place of the scene's ``f_ext``. The result's ``finger`` is then summed over traces of the model
-            (:mod:`fingerpad.slices.traces`): three runs of the full one, some 25 scenes of the closed form. States in
-            N/m: for the full model, those at the end of its last trace; for the closed form, those under the force on
-            the centre slice.
         comm: communicator; by default of all ranks.
         resume: go on from where a run of the same scene in ``out`` was cut short; only of the full model.
         outputs: further quantities, each computed from every state: see :class:`fingerpad.io.quantities.Output`.
@@ -64,13 +58,12 @@ def run(
     scene, way = checked(scene), find(model)
     if out is not None and not isinstance(out, str | os.PathLike):
         raise SceneError(f"out is {show(out)}; it must be the path of a folder")
-    if resume and (out is None or not way.resumes or force is not None):
+    if resume and (out is None or not way.resumes):
         raise SceneError(
-            f"resume is true, out is {show(out)}, model {show(model)} and force {show(force)}; "
-            "only a full run in a folder, of one scene, can go on"
+            f"resume is true, out is {show(out)} and model {show(model)}; only a full run in a folder can go on"
         )
     context = RunContext(None if out is None else Path(out), comm, resume=resume, outputs=outputs)
-    result = solved(scene, way, context, force)
+    result = solved(scene, way, context)
     if result.interrupted:
         raise _ended(result)
     if result.failure and terminal.rank() == 0:
@@ -99,24 +92,23 @@ def _ended(result: Result) -> BaseException:
     return error
 
 
-def solved(scene: Scene, model: Model, context: RunContext, force: float | str | None = None) -> Result:
+def solved(scene: Scene, model: Model, context: RunContext) -> Result:
     """Return what a model answers to a scene with all its laws; collective.
 
     Args:
         scene: the scene.
         model: one of :data:`fingerpad.reduced.models.MODELS`.
         context: all else.
-        force: on the whole finger, as of :func:`run`.
     """
     checked_outputs(context.outputs)
     scene = scene.resolved()
     if context.resume:
         scene.refuse_laws_of_program("a run that goes on")
     try:
-        result = _solved(scene, model, context) if force is None else _whole(scene, force, model, context)
+        result = _solved(scene, model, context) if scene.force is None else _whole(scene, model, context)
     except LawError as error:
         raise SceneError(str(error)) from error
-    whole = not (result.interrupted and force is not None)  # a force without all of its traces is no result
+    whole = not (result.interrupted and scene.force is not None)  # a force without all of its traces is no result
     if context.report and whole and context.folder is not None and context.ranks.rank == 0:
         from fingerpad.report.write import attempt, draw_footprint
 
@@ -162,29 +154,42 @@ def _refuse_different(scene: Scene, comm: "MPI.Comm | Serial") -> None:
                 )
 
 
-def _whole(scene: Scene, force: float | str, model: Model, context: RunContext) -> Result:
-    """Return the result of a force on the whole finger, its sums written beside the files of the last trace."""
-    from fingerpad.slices import traces
-    from fingerpad.slices.force import newtons
+def _whole(scene: Scene, model: Model, context: RunContext) -> Result:
+    """Return the result of a force on the whole finger: a sweep of scenes without one, each in a folder of its own.
 
-    value = newtons(force)
-    asked = {"force": value, "parameters": scene.parameters()}
-    context = replace(context, asked=asked)
-    if not model.path:
-        with context.place(scene, model.name):
-            pass  # refuses other results before the work
+    What an earlier run of the same scene has finished is taken from there, and what it began goes on.
+    """
+    from fingerpad.slices import traces
+
+    with context.place(scene, model.name) as place:
+        if place is not None and model.path:
+            place.take()  # the scene is then there for those who go on with it
 
     def solve(each: Scene, name: str) -> Result:
-        folder = traces.folder_of(context.folder, name) if model.path else None
-        return _solved(each, model, replace(context, folder=folder))
+        if not model.path:
+            return _solved(each, model, replace(context, folder=None))
+        if context.lines and context.ranks.rank == 0:
+            print(f"\nTrace of the cross-section, {name.replace('_', ' ')}", flush=True)
+        return _gone_on(each, model, replace(context, folder=context.folder and below(context.folder, name)))
 
-    found = traces.whole(scene, value, model, solve)
-    if found.interrupted:
-        return found
-    found = replace(found, record={**found.record, "asked": asked})
-    if context.folder is None:
-        return found
-    return _written(found, context) if model.path else kept(found, context)
+    found = traces.whole(scene, model, solve)
+    return found if found.interrupted else kept(found, context)
+
+
+def _gone_on(scene: Scene, model: Model, context: RunContext) -> Result:
+    """Return the result of a scene that its folder may have, whole or in part; collective."""
+    from fingerpad.io.checkpoint import CheckpointError
+    from fingerpad.runs.batch import finished
+
+    folder = context.folder
+    if folder is None:
+        return _solved(scene, model, context)
+    if on_rank_0(context.ranks, lambda: finished(scene, folder) is not None):
+        return Result.load(folder)
+    try:
+        return solved(scene, model, replace(context, resume=True))
+    except CheckpointError:  # nothing to go on from
+        return solved(scene, model, replace(context, resume=False))
 
 
 def kept(result: Result, context: RunContext) -> Result:

@@ -20,10 +20,8 @@ from fingerpad.io.result import Result
 from fingerpad.reduced.model import Model
 from fingerpad.reduced.models import MODELS, find
 from fingerpad.report.write import attempt
-from fingerpad.runs import over_force
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import checked, solved
-from fingerpad.runs.sweep_columns import FORCE
 from fingerpad.runs.sweep_results import FILE, Sweep
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.messages import clip, show
@@ -59,9 +57,8 @@ def sweep(
         model: as of :func:`fingerpad.runs.solve.run`.
         quiet: whether to print no line for each point, and show no progress bar.
         outputs: as of :func:`fingerpad.runs.solve.run`; the folders of the points do not have them.
-        **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``. An axis ``force``
-            is of external forces on the whole finger, in N or as texts with units, in place of ``f_ext``: see
-            ``force`` of :func:`fingerpad.runs.solve.run`. Tables and arrays are then of the whole finger.
+        **axes: values by key: ``voltage=[0, 100, 200]``, or ``**{"roughness.h_rms": [2e-6, 3e-6]}``.
+            With ``force`` tables and arrays are of the whole finger.
 
     Raises:
         SceneError: a key or a value that a scene cannot have, no values, a law that only this program knows and other
@@ -131,8 +128,8 @@ def _points(axes: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
 
 
 def _scenes(scene: Scene, axes: Mapping[str, Sequence[Any]]) -> list[Scene]:
-    """Return the scenes of all points, checked; a force in newtons is in none of them."""
-    return [_with(scene, {key: v for key, v in point.items() if key != FORCE}) for point in _points(axes)]
+    """Return the scenes of all points, checked."""
+    return [_with(scene, point) for point in _points(axes)]
 
 
 def _refuse_axes(axes: Mapping[str, Sequence[Any]]) -> None:
@@ -159,9 +156,6 @@ def _values(scenes: Sequence[Scene], axes: Mapping[str, Sequence[Any]]) -> dict[
     found, apart = {}, len(scenes)  # points from one value of an axis to the next
     for key, values in axes.items():
         apart //= len(values)
-        if key == FORCE:
-            found[key] = over_force.forces(axes, scenes)
-            continue
         found[key] = tuple(_at(scenes[k * apart], key) for k in range(len(values)))
         if len(set(map(repr, found[key]))) < len(values):
             raise SceneError(f"{key} of the sweep is {show(values)}; each value must be there once")
@@ -194,11 +188,6 @@ class _Point(NamedTuple):
     values: Mapping[str, Any]
     """Of the axes by key."""
 
-    @property
-    def force(self) -> float | None:
-        """On the whole finger (N), if the sweep is over it."""
-        return self.values.get(FORCE)
-
     def failed(self, model: str, why: str) -> Result:
         """Return a result without any number."""
         return Result(self.scene, model, None, None, None, failure=why)
@@ -206,7 +195,7 @@ class _Point(NamedTuple):
 
 def _here(point: _Point, model: Model) -> Result:
     try:
-        return solved(point.scene, model, RunContext(), point.force)
+        return solved(point.scene, model, RunContext())
     except SceneError as error:
         return point.failed(model.name, str(error))
 
@@ -218,7 +207,7 @@ def _in_processes(points: Sequence[_Point], folder: Path, jobs: int, model: Mode
     place = below(folder, model.name)
     results, keys, named = dict[str, Result](), list[str](), dict[str, _Point]()
     for point in points:
-        keys.append(batch.key(point.scene, point.force))
+        keys.append(batch.key(point.scene))
         words = ", ".join(f"{key} {show(value)}" for key, value in point.values.items())
         try:
             model.check(point.scene)
@@ -226,10 +215,9 @@ def _in_processes(points: Sequence[_Point], folder: Path, jobs: int, model: Mode
         except SceneError as error:
             results[keys[-1]] = point.failed(model.name, str(error))
     scenes = {name: point.scene for name, point in named.items()}
-    forces = {name: point.force for name, point in named.items() if point.force is not None}
-    found = batch.sweep(scenes, place, jobs, _LIMIT, model.name, quiet, forces)
+    found = batch.sweep(scenes, place, jobs, _LIMIT, model.name, quiet)
     for name, point in named.items():
-        summary, key = found[name], batch.key(point.scene, point.force)
+        summary, key = found[name], batch.key(point.scene)
         lost = set(summary) == {"failure"}
         results[key] = point.failed(model.name, summary["failure"]) if lost else Result.load(place / key)
     return [results[key] for key in keys]

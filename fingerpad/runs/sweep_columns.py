@@ -2,7 +2,7 @@
 
 A load over time, such as a drive waveform, has no named state: ``load_NAME_mu_app_max`` is the largest coefficient in
 it, ``load_NAME_f_t_amplitude`` the largest amplitude in the spectrum of friction and ``load_NAME_f_t_frequency`` the
-frequency of that. A sweep over the force in newtons has columns of the whole finger alone.
+frequency of that. Under a force on the whole finger there are columns of that alone.
 """
 
 import math
@@ -15,26 +15,18 @@ from fingerpad.io.result import Result
 from fingerpad.io.states import STATES, LoadResult
 from fingerpad.scene.keys import Key, every
 from fingerpad.slices.finger import WholeFinger
-from fingerpad.slices.force import NEWTONS
 
 LOAD = "load"
 """Beginning of the columns of a load over time."""
-FORCE = "force"
-"""Axis of the force on the whole finger (N), which is no key of a scene."""
 _WHOLE = ("mu_app", "f_t", "f_electrostatic", "contact_area", "gross_area")
 _NEWTONS = ("f_ext", *_WHOLE, "indentation")
 _IN_TIME = ("mu_app", "f_t", "contact_length")
 _ENDS = {"min": "least", "max": "largest", "mean": "mean"}
 
 
-def row(result: Result, whole: bool = False) -> dict[str, Any]:
-    """Return the values of a point in SI units by column, and its failure.
-
-    Args:
-        result: of the point.
-        whole: whether it is one of several forces in newtons of a run, whose cross-section is of none of them.
-    """
-    if whole:
+def row(result: Result) -> dict[str, Any]:
+    """Return the values of a point in SI units by column, and its failure."""
+    if result.scene.force is not None:
         return (_newtons(result.finger) if result.finger is not None else {}) | {"failure": result.failure}
     values, keys = result.values(), (*SWEPT, *(each.name for each in result.outputs))
     names = [f"{state}_{key}" for state in STATES for key in keys]
@@ -79,7 +71,7 @@ def shown(columns: Iterable[str], whole: bool, outputs: Iterable[Output] = ()) -
 
     Args:
         columns: of the sweep.
-        whole: whether it is over the force in newtons.
+        whole: whether forces are those on the whole finger.
         outputs: of the sweep, that are computed from a state.
 
     Returns:
@@ -167,7 +159,5 @@ def printed(value: Any) -> str:
 
 
 def described(key: str) -> Key | None:
-    """Return what is known of a dotted key of a scene, or of the force on the whole finger; None of a table."""
-    if key == FORCE:
-        return Key(FORCE, "N", None, f"{NEWTONS.low:g} to {NEWTONS.high:g} N", "external force on the whole finger")
+    """Return what is known of a dotted key of a scene; None of a table."""
     return next((each for each in every() if each.name == re.sub(r"\[\d+\]", "[]", key)), None)

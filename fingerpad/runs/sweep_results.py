@@ -18,7 +18,7 @@ from fingerpad.io.files import replace
 from fingerpad.io.quantities import FINGER, PER_LENGTH, QUANTITIES, Output
 from fingerpad.io.result import Result
 from fingerpad.io.states import STATES, WORDS
-from fingerpad.runs.sweep_columns import FORCE, described, head, newtons_of, printed, row, shown, tables
+from fingerpad.runs.sweep_columns import described, head, newtons_of, printed, row, shown, tables
 from fingerpad.slices import solid
 from variational.state import CONDITIONS, RESULTS
 
@@ -60,8 +60,8 @@ class Sweep:
 
     @property
     def whole(self) -> bool:
-        """Whether the sweep is over the force on the whole finger; its results have their ``finger`` under it."""
-        return FORCE in self.axes
+        """Whether forces are those on the whole finger; results have their ``finger`` under it."""
+        return any(result.scene.force is not None for result in self.results)
 
     @property
     def outputs(self) -> tuple[Output, ...]:
@@ -100,9 +100,13 @@ class Sweep:
             values = [np.nan if each is None else float(getattr(each, quantity, np.nan)) for each in found]
         return np.array(values).reshape([len(values) for values in self.axes.values()])
 
+    def _forces(self) -> list[float]:
+        """Return the forces on the whole finger (N)."""
+        return list(dict.fromkeys(each.scene.force for each in self.results if each.scene.force is not None))
+
     def rows(self) -> list[dict[str, Any]]:
         """Return a flat row for each point in SI units: axes, :mod:`~fingerpad.runs.sweep_columns`, and failure."""
-        return [point | row(result, self.whole) for point, result in zip(self.points(), self.results, strict=True)]
+        return [point | row(result) for point, result in zip(self.points(), self.results, strict=True)]
 
     def cautions(self) -> list[str]:
         """Return why numbers may be further off than their errors say, each with how many points it is of.
@@ -123,8 +127,8 @@ class Sweep:
         Returns:
             The named states of every point along the swept keys and ``state``, as in the dataset of a run; likewise its
             loads, ridges, sites and sums over the whole finger, where a point has them; its failure and cost. The
-            attributes are the parameters that all points share. A sweep over the force in newtons has sums over the
-            whole finger alone, since its points share cross-sections.
+            attributes are the parameters that all points share. Under a force on the whole finger there are
+            sums over it alone.
 
         Raises:
             ImportError: xarray is not installed.
@@ -168,7 +172,7 @@ class Sweep:
         lines = [f"{'Whole finger, at' if self.whole else 'At'} {WORDS[state]}", *_aligned(table)]
         for name, over_time in tables(rows, axes):
             lines += [f"Over time, in the load {name}", *_aligned(over_time)]
-        notes = solid.remarks(self.axes[FORCE]) if self.whole else [PER_LENGTH]
+        notes = solid.remarks(self._forces()) if self.whole else [PER_LENGTH]
         return "\n".join([*lines, *notes, *(f"! {caution}" for caution in self.cautions()), *self.notes])
 
     __repr__ = __str__

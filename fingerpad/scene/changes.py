@@ -22,8 +22,9 @@ def changed(present: Mapping[str, Any], accuracy: Accuracy | None, changes: Mapp
     if "accuracy" in changes and accuracy is not None:
         coarse = start(accuracy.tolerances())
         present["mesh"] = {key: size for key, size in present.get("mesh", {}).items() if coarse.get(key) != size}
-    if changes.get("history") is not None:
-        present = {key: value for key, value in present.items() if key not in DEFAULT_HISTORY}
+    replaced = {"history": (*DEFAULT_HISTORY, "force"), "force": ("f_ext",), "f_ext": ("force",)}
+    gone = {other for key, others in replaced.items() if changes.get(key) is not None for other in others}
+    present = {key: value for key, value in present.items() if key not in gone}
     shape = changes.get("geometry")
     if isinstance(shape, Mapping) and "file" in shape:
         present["geometry"] = {k: value for k, value in present.get("geometry", {}).items() if k != "file_sha256"}

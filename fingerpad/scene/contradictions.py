@@ -50,6 +50,35 @@ def refuse_contradictions(
         _refuse_floating(history)
 
 
+def refuse_beside_force(
+    force: float | None, given: Mapping[str, Any], history: Sequence[Load] | None, file: str | None
+) -> None:
+    """Refuse a force on the whole finger beside another one, beside loads of one's own or a mesh of one's own.
+
+    Args:
+        force: key of the scene (N).
+        given: the values of :data:`DEFAULT_HISTORY` that are given.
+        history: key of the scene.
+        file: of a mesh.
+
+    Raises:
+        ValueError: the keys, their values and the remedy.
+    """
+    if force is None:
+        return
+    if "f_ext" in given:
+        raise ValueError(
+            f"force is {show(force)} N and f_ext is {show(given['f_ext'])} N/m; give one of the two: newtons on the "
+            "whole finger, or newtons per metre at its centre"
+        )
+    if history is not None or file is not None:
+        what = "history is given" if history is not None else f"geometry.file is {show(file)}"
+        raise ValueError(
+            f"force is {show(force)} N and {what}; a force on the whole finger is that of press, charge and slide of "
+            "the scene's own geometry, so leave one of the two out"
+        )
+
+
 def _refuse_accuracy(accuracy: Accuracy | None, output: Output, friction: Any) -> None:
     """Refuse an accuracy of receptor sites that are not there, and of friction that is zero."""
     if accuracy is None:

@@ -127,7 +127,7 @@ def first_error(error: ValidationError, root: type[BaseModel]) -> str:
     if kind == "too_long":
         return f"{key} has too many entries; it must have at most {context['max_length']}"
     if kind == NO_QUANTITY and key == "f_ext" and _newtons(value):
-        return f"{key} is {given}; it must be in N/m; a force on the whole finger is given by run --force {given}"
+        return f"{key} is {given}; it must be in N/m; a force on the whole finger is the key force"
     if kind in ("int_type", "int_from_float") and isinstance(value, float):
         given = repr(value)  # 5.0, which show writes as 5
     if kind in _TYPES:
@@ -179,11 +179,6 @@ def _instead(loc: tuple[int | str, ...], own: Sequence[str]) -> str:
     from fingerpad.scene.keys import every  # it reads the models, whose messages these are
 
     table, name = key_of(loc[:-1]), str(loc[-1])
-    if (table, name.lower()) == ("", "force"):
-        return (
-            "a force on the whole finger in newtons is asked of a run (fingerpad run --force, or fp.run(force=…)), or "
-            "swept (fingerpad sweep --over force=…)"
-        )
     wanted = clip(name, _MOST_KEY).lower().replace("-", "_")
     keys = [(table, key, _NEAR) for key in own]
     names = [key.name.replace("[]", "[0]").split(".") for key in every()]

@@ -29,7 +29,6 @@ _PATH = 80  # characters of a path in a message
 _AFTER_VALUE = "Expected newline or end of document after a statement"  # tomllib, of 50,0 and of 50 N/m
 _NAME = r"[A-Za-z0-9_-]+(\[[0-9]{1,6}\])?"
 _FILES = r"geometry\.file|roughness\.topography\.file|history\[\d+\]\.voltage\.file"
-_FORCE = "a force on the whole finger, which is no part of a scene; its report.html has the command"
 _QUOTED = re.compile(
     r'''#[^\n]*|"""(?:[^\\]|\\.)*?(?:"""|\Z)|\'{3}.*?(?:\'{3}|\Z)|"(?:[^"\\\n]|\\.)*"?|'[^'\n]*'?''', re.DOTALL
 )  # comments and texts of TOML
@@ -101,10 +100,7 @@ def model_of(path: Path | None) -> str:
 
 def _of_run(path: Path) -> dict[str, Any]:
     """Return the data of the scene of a run's folder."""
-    name, data = f"scene file {clip(str(path), _PATH)}", _kept(path)
-    if "trace" in data:
-        raise SceneError(f"{name} is of a run with {_FORCE}")
-    return {key: value for key, value in data.items() if key != "model"}
+    return {key: value for key, value in _kept(path).items() if key != "model"}
 
 
 def _kept(path: Path) -> dict[str, Any]:

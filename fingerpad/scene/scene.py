@@ -11,13 +11,19 @@ from typing import Annotated, Any
 from pydantic import Field, ValidationError, model_validator
 
 from fingerpad.scene.changes import changed, with_coarse_start
-from fingerpad.scene.contradictions import DEFAULT_HISTORY, refuse_beside_mesh, refuse_contradictions, refuse_thickness
+from fingerpad.scene.contradictions import (
+    DEFAULT_HISTORY,
+    refuse_beside_force,
+    refuse_beside_mesh,
+    refuse_contradictions,
+    refuse_thickness,
+)
 from fingerpad.scene.law_keys import Kept, digest, folder_of, imported, kept
 from fingerpad.scene.materials import BEARING_AREA, FRICTION, LAYERS, ROUGHNESS, Electric, Materials
 from fingerpad.scene.messages import SceneError, first_error, show
 from fingerpad.scene.parameters import Accuracy, Contact, Geometry, Load, Numerics, Output
 from fingerpad.scene.reading import plain, put, read_scene
-from fingerpad.scene.slices import Slices
+from fingerpad.scene.slices import Slices, centre_force
 from fingerpad.scene.table import Finite, Part
 from fingerpad.scene.waveform import Volts
 from geometry.bounds import computed, within
@@ -34,12 +40,16 @@ class Scene(Part):
     the same coarse start where an accuracy is asked for, and the same refusals. NumPy's numbers and arrays are taken
     as Python's, and a table may also be one of the classes here, such as ``MeshSize``.
 
-    Without ``history`` the bone is pressed with ``f_ext``, the voltage is switched on, and the bone slides until
-    every ridge slips. With ``history`` the loads say it all and the three keys of the default one are refused.
+    Without ``history`` the bone is pressed with ``f_ext``, or the whole finger with ``force``, the voltage is switched
+    on, and the bone slides until every ridge slips. With ``history`` the loads say it all and the keys of the default
+    one are refused.
     """
 
     f_ext: Annotated[Finite, within(1e-3, 5e3, "N/m")] = 75.0
     """External normal force on the bone (N/m). Range: the weight of a grain of sand to more than 100 N on a finger."""
+    force: Annotated[Finite, within(1e-5, 200.0, "N")] | None = None
+    """External normal force on the whole finger (N), in place of ``f_ext``. The result is then a sum over slices along
+    the finger's axis (``docs/newtons.md``). Range: the weight of a milligram to that of 20 kg."""
     voltage: Volts = 200.0
     """Instantaneous voltage U (V). *Assumption*: U is that of Eq. 3, not the peak-to-peak value of Table 3. Range:
     from 1 mV, which attracts with less than 1 µPa, to ten times the voltage of displays; 0 is no voltage. The sign
@@ -81,6 +91,7 @@ class Scene(Part):
     @model_validator(mode="after")
     def _consistent(self) -> "Scene":
         given = {name: getattr(self, name) for name in DEFAULT_HISTORY if name in self.model_fields_set}
+        refuse_beside_force(self.force, given, self.history, self.geometry.file)
         scale = self.numerics.step_scale
         refuse_contradictions(self.accuracy, self.output, self.friction, self.roughness, self.history, given, scale)
         refuse_thickness(self.roughness, self.h_0)
@@ -168,13 +179,18 @@ class Scene(Part):
         """
         return load(Path(path))
 
+    @property
+    def centre_force(self) -> float:
+        """``f_ext`` (N/m), or about that at the centre of the finger under ``force``."""
+        return self.f_ext if self.force is None else centre_force(self.force, self.geometry.width)
+
     def loads(self) -> tuple[Load, ...]:
-        """Return the loads to reach one after the other."""
+        """Return the loads to reach one after the other; under ``force`` those of the centre of the finger, about."""
         if self.history is not None:
             return self.history
         with computed():  # of a copy, which may have a force that a run has reached
             return (
-                Load(name="press", f_ext=self.f_ext),
+                Load(name="press", f_ext=self.centre_force),
                 Load(name="charge", voltage=self.voltage),
                 Load(name="slide", bone_x=self.slide_length, until_full_slip=True),
             )
@@ -183,6 +199,7 @@ class Scene(Part):
         """Return every parameter in use, ready for JSON; as a scene it gives the same run again."""
         unused: dict[str, Any] = {name: True for name in (("history",) if self.history is None else DEFAULT_HISTORY)}
         unused |= {"accuracy": True} if self.accuracy is None else {}
+        unused["force" if self.force is None else "f_ext"] = True
         if self.output == Output():  # not a word of it, so that runs made before it was a key are found
             unused["output"] = True
         elif self.output.each_load:

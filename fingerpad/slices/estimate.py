@@ -4,7 +4,7 @@ A run of press, charge and slide has the cross-section's whole press without vol
 slip, at the scene's force. The slices away from the centre bear less. Their attraction and contact length are those
 of the model "cylinders" (:mod:`fingerpad.reduced.cylinders`) over the contact lengths of the run's own press, scaled to
 the run's own state at the centre; their indentation is that of the press, scaled likewise. ``docs/newtons.md`` has the
-error of this estimate beside traces of the full model. ``fp.run(scene, force="0.5 N")`` computes the traces.
+error of this estimate beside traces of the full model. A scene with a ``force`` computes the traces.
 """
 
 from collections.abc import Mapping, Sequence

@@ -9,10 +9,9 @@ import numpy as np
 
 from fingerpad.io.quantities import FINGER, FRICTION
 from fingerpad.io.states import STATES, WORDS, called
-from fingerpad.scene.messages import SceneError
+from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.slices import Slices
 from fingerpad.slices import errors, solid
-from fingerpad.slices.force import newtons
 from fingerpad.slices.profile import profile
 from fingerpad.slices.total import Total, at_force
 from fingerpad.slices.trace import NAMES, Trace
@@ -63,7 +62,8 @@ class WholeFinger:
         Raises:
             SceneError: no force, or one that a trace does not reach; a file of an earlier version, without traces.
         """
-        value, finger = newtons(force), profile(self.shape)
+        value, finger = Scene(force=force).force, profile(self.shape)
+        assert value is not None
         if not self.traces:
             raise SceneError("the whole finger was read from a file without traces; run the scene again")
         states = {name: at_force(finger, self.traces[name], value, self.shape.count) for name in self.states}
