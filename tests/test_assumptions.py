@@ -22,7 +22,7 @@ def test_printed_options_give_the_scene(monkeypatch):
     parser = argparse.ArgumentParser()
     parser.add_argument("scene", nargs="?", type=assumptions.Path)
     parser.add_argument("--set", action="append", default=[])
-    for name, case in (assumptions.cases() | assumptions.smooth()).items():
+    for name, case in (assumptions.cases() | assumptions.profiles()).items():
         printed = assumptions._command(case).strip("`").replace("none", "")
         scene = scene_of(parser.parse_args([*shlex.split(printed), "--set", "output.errors=false"]))
         assert scene.parameters() == case._replace(errors=False).scene().parameters(), name
@@ -30,7 +30,7 @@ def test_printed_options_give_the_scene(monkeypatch):
 
 def test_sentences_hold_of_the_numbers(found):
     """What the prose says without a number of its own."""
-    full, finger, words = found["full"], found["smooth"], assumptions.values(found)
+    full, shaped, words = found["full"], found["profiles"], assumptions.values(found)
     mechanical = [name for name in full if "voltage" not in name and "friction" not in name and name != "flat 0"]
     changes = {name: abs(full[name]["mu_app"] / full["reference"]["mu_app"] - 1) for name in mechanical}
     profiles = {name for name in assumptions.PARAMETERS if "ridge_profile" in name}
@@ -39,11 +39,11 @@ def test_sentences_hold_of_the_numbers(found):
     flat, inside = full["flat"], words["flat"]
     assert inside[0] == inside[2] and abs(flat["mu_app"] / PAPER - 1) <= NEAR  # both statements at 170 V
     assert max(flat["gaps"]["full_slip"]) in (flat["gaps"]["full_slip"][0], flat["gaps"]["full_slip"][-1])
-    at_200 = [row for name, row in finger.items() if name.endswith("] at 200 V")]
-    assert len(at_200) == 15 and not any(
+    at_200 = [row for name, row in shaped.items() if name.endswith("] at 200 V")]
+    assert len(at_200) == 7 and not any(
         row["d_eq"] >= LEAST_GAP and abs(row["mu_app"] / PAPER - 1) <= NEAR for row in at_200
     )
-    low = finger["[1, -0.25] at 150 V"]
+    low = shaped["[1, -0.25] at 150 V"]
     assert low["d_eq"] > LEAST_GAP and low["mu_app"] < PAPER * (1 - NEAR)
     assert words["met_low"] < 170 < words["met_high"]
     assert min(words[key] for key in ("light_normal", "heavy_normal")) > 0

@@ -8,10 +8,9 @@ from mpi4py import MPI
 
 from fingerpad.scene import Scene
 from geometry import fingertip, tags
-from geometry.corner_cells import swapped
 from geometry.mesh import load
 from geometry.profiles import GeometryError
-from geometry.reflection import HalfMesh
+from geometry.reflection import HalfMesh, swapped
 from tests.small_finger import SMALL
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])

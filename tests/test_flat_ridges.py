@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from benchmarks.stability import strip
 from fingerpad.scene import scene as scenes
-from geometry import strip, tags
+from geometry import tags
 from geometry.mesh import load
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import Profiles

@@ -260,7 +260,7 @@ def test_folder_of_other_results_is_refused_before_the_work(tmp_path, monkeypatc
         ({"history": [{"name": "press", "f_ext": 1.0}]}, "force is 0.5 N and history is given; a force on the whole"),
     ],
 )
-def test_force_is_exclusive(other, words):
+def test_force_is_exclusive(tmp_path, other, words):
     """Beside another load or mesh it is refused; a change to one of two loads replaces the other."""
     with pytest.raises(SceneError, match=re.escape(words)):
         fp.Scene(force="0.5 N", **other)

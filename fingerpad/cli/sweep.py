@@ -15,7 +15,7 @@ from fingerpad.runs import batch  # noqa: F401  # before Ctrl-C raises
 from fingerpad.runs.sweep import FILES, sweep
 from fingerpad.scene import from_data, override
 from fingerpad.scene.messages import SceneError, clip, show
-from fingerpad.scene.reading import DEFAULT_MODEL, flat, put, read_study
+from fingerpad.scene.reading import DEFAULT_MODEL, flat, put_all, read_study
 
 _EXAMPLES = """
     fingerpad sweep --over voltage=0:200:5 --over f_ext=25,75 --jobs 2 --out results/sweep
@@ -81,10 +81,10 @@ def study(file: Path | None, given: Sequence[str], over: Sequence[str]) -> tuple
         axes[key] = _words(values) or ranges.read(f"--over {key}", values)
     if not axes:
         raise SceneError("nothing is varied; give a table [sweep] in the scene file or --over KEY=RANGE")
-    for key, value in changes(given).items():
-        if key in axes:
-            raise SceneError(f"--set {key} is given and {key} is varied; give one of the two")
-        put(data, key, value)
+    set_ = changes(given)
+    if both := next((key for key in set_ if key in axes), None):
+        raise SceneError(f"--set {both} is given and {both} is varied; give one of the two")
+    put_all(data, set_)
     return data, axes
 
 

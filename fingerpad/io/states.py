@@ -10,7 +10,7 @@
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from itertools import groupby
 from operator import attrgetter
@@ -29,6 +29,8 @@ WORDS = {"uncharged": "uncharged normal contact", "charged": "charged normal con
 FIRST_TOUCH = "touch"
 """Name of the steps that press a finger in the air in a little, before a force can control it."""
 _ROUNDOFF = 1e-9  # relative, of a displacement or a voltage
+_MEANS = {"f_t": ("f_T", "N/m", 1.0), "contact_length": ("L_R", "mm", 1e3)}
+_SURE = 0.02  # of the largest amount in the load: change of a mean with every second step that is not told
 UNLOADED = ContactState(
     f_ext=0.0, voltage=0.0, f_t=0.0, mu_app=math.nan, f_contact=0.0, f_electrostatic=0.0, ridges_in_contact=0,
     contact_length=0.0, time=0.0,
@@ -246,3 +248,26 @@ def load_result(
     under = [] if wave is None or passed is None else [state for state in own if state.time > passed.start]
     slides = sum(state.slip_began > 0 for state in under) / len(under) if under else math.nan
     return LoadResult(name, mine[-1], extremes, *slips, stable, passed, slides)
+
+
+def long_steps(loads: Iterable[LoadResult], least: float) -> list[str]:
+    """Return a sentence for each load at a constant voltage whose steps are too long for its means.
+
+    Args:
+        loads: of a run.
+        least: friction force (N/m) up to which there is none.
+    """
+    found = list[str]()
+    for load in loads:
+        changes = {} if load.over_time is None else load.over_time.mean_change
+        for key, (words, unit, factor) in _MEANS.items():
+            ends = load.extremes.get(key)
+            most = 0.0 if ends is None else max(abs(ends.min), abs(ends.max))
+            change = changes.get(key, 0.0)
+            if change > _SURE * most and (key != "f_t" or load.rubs(least)):
+                found.append(
+                    f"In the load {load.name} the mean {words} over time would change by {factor * change:.2g} {unit} "
+                    "with every second step alone: its steps are too long for it; give a smaller numerics.step_scale."
+                )
+                break
+    return found

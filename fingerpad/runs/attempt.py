@@ -11,11 +11,12 @@ from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.io import petsc_options
 from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt, Interrupted
-from fingerpad.io.over_time import NOTE, long_steps
+from fingerpad.io.over_time import NOTE
 from fingerpad.io.pace import in_words
 from fingerpad.io.provenance import provenance
 from fingerpad.io.quantities import Output, valued
 from fingerpad.io.result import Result
+from fingerpad.io.states import long_steps
 from fingerpad.io.writing import Writer
 from fingerpad.model import cautions
 from fingerpad.model.balance import broken, force_error

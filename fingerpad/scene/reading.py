@@ -244,6 +244,15 @@ def put(data: dict[str, Any], key: str, value: Any) -> None:
             here = here.setdefault(part, [] if isinstance(parts[depth + 1], int) else {})
 
 
+def put_all(data: dict[str, Any], changes: Mapping[str, Any]) -> None:
+    """Put values at dotted keys, as :func:`put` does; of ``f_ext`` and ``force`` a change of one replaces the other."""
+    for key, other in (("force", "f_ext"), ("f_ext", "force")):
+        if key in changes:
+            data.pop(other, None)
+    for key, value in changes.items():
+        put(data, key, value)
+
+
 def flat(parameters: Mapping[str, Any], where: str = "") -> dict[str, Any]:
     """Return the values of nested tables by dotted key, as :func:`put` takes them.
 

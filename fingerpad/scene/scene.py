@@ -22,7 +22,7 @@ from fingerpad.scene.law_keys import Kept, digest, folder_of, imported, kept
 from fingerpad.scene.materials import BEARING_AREA, FRICTION, LAYERS, ROUGHNESS, Electric, Materials
 from fingerpad.scene.messages import SceneError, first_error, show
 from fingerpad.scene.parameters import Accuracy, Contact, Geometry, Load, Numerics, Output
-from fingerpad.scene.reading import plain, put, read_scene
+from fingerpad.scene.reading import plain, put_all, read_scene
 from fingerpad.scene.slices import Slices, centre_force
 from fingerpad.scene.table import Finite, Part
 from fingerpad.scene.waveform import Volts
@@ -237,8 +237,7 @@ def load(path: Path | None = None, overrides: Mapping[str, Any] | None = None) -
         SceneError: the file cannot be read, or the first key at fault.
     """
     data = {} if path is None else read_scene(Path(path))
-    for key, value in (overrides or {}).items():
-        put(data, key, value)
+    put_all(data, overrides or {})
     return from_data(data)
 
 
