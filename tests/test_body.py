@@ -40,7 +40,7 @@ def slid(alone=False) -> Body:
     [
         ({"shape": 3}, "shape is 3; it must be a shape of fingerpad.geometry, a mesh, or a file of one"),
         ({"element": "P7"}, "element is 'P7'; it must be one of P1, P2"),
-        ({"contact": 3}, "contact is 3; it must be a Penalty, a Nitsche or an AugmentedLagrangian"),
+        ({"contact": 3}, "contact is 3; it must be a Formulation, such as fp.Penalty"),
         ({"h_0": -1.0}, "h_0 is -1.0; it must be a finite number greater than 0"),
     ],
 )
