@@ -39,10 +39,11 @@ def python(code: str, *words: str, moment: str = "", handler: str = "default_int
     return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=100)
 
 
-@pytest.mark.parametrize("door", DOORS.values(), ids=DOORS)
-@pytest.mark.parametrize("moment", ["numpy", "fingerpad.cli.params", "the end"])
+@pytest.mark.parametrize(
+    ("door", "moment"), [("module", "numpy"), ("script", "fingerpad.cli.params"), ("script", "the end")]
+)
 def test_ctrl_c_ends_the_program_quietly(door, moment):
-    done = python(door, "params", "f_ext", moment=moment)
+    done = python(DOORS[door], "params", "f_ext", moment=moment)
     assert (done.returncode, done.stderr) == (130, "")
 
 

@@ -18,7 +18,7 @@ def folder(tmp_path):
 
 def test_mutants(folder):
     """Some are ready, most are refused, and of neither kind is there anything wrong."""
-    found = [fault(mutant(SEED, k), folder) for k in range(200)]
+    found = [fault(mutant(SEED, k), folder) for k in range(100)]
     assert [(k, wrong) for k, (wrong, _) in enumerate(found) if wrong] == []
     ready = [how for _, how in found].count("ready")
     assert 0.1 * len(found) < ready < 0.5 * len(found)
@@ -31,7 +31,7 @@ def test_mutants(folder):
 def test_what_is_broken_is_found(folder, monkeypatch, broken, value):
     """Without one of the guards there is a mutant that shows it."""
     monkeypatch.setattr(broken, value)
-    assert any(fault(mutant(SEED, k), folder)[0] for k in range(400))
+    assert any(fault(mutant(SEED, k), folder)[0] for k in range(200))
 
 
 # -- files -------------------------------------------------------------------------------------------------

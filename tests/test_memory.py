@@ -30,10 +30,7 @@ STEEP = {"contact": 100e-6, "receptor": 100e-6, "interface": 100e-6, "growth": 1
     ("finger", "size", "receptors", "half"),
     [
         ({}, COARSE, True, False),
-        ({}, FINE, True, True),
-        ({"ridge_count": 21}, FINE, False, True),
         ({}, EVEN, True, True),
-        ({}, STEEP, True, True),
         ({"ridge_profile": (1.0, -0.6), "ridge_count": 15}, FINE, True, True),
     ],
 )
@@ -49,9 +46,7 @@ def test_triangles_are_bounded_before_meshing(finger, size, receptors, half):
     ("size", "triangles"),
     [
         ({}, 26152),
-        ({"contact": 2.5e-6, "receptor": 20e-6}, 34062),
         ({"contact": 60e-6, "receptor": 60e-6, "interface": 60e-6, "coarsest": 60e-6}, 123404),
-        ({"contact": 60e-6, "receptor": 60e-6, "interface": 30e-6, "growth": 0.1}, 62330),
         ({"contact": 0.5e-6, "growth": 0.1}, 268528),
     ],
 )

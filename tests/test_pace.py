@@ -107,12 +107,9 @@ def test_step_shows_the_time_left_of_the_path(capsys, monkeypatch):
     assert out.endswith("  20 to 60 s\n") and "-0" not in out
 
 
-@pytest.mark.parametrize("quiet", [False, True])
-def test_run_in_quiet_prints_the_result_alone(tmp_path, write, capsys, quiet):
-    """No step, no phase; the result as a table either way, once."""
-    argv = ["run", str(write(PRESS + MESH)), "--out", str(tmp_path / "out"), *(["--quiet"] if quiet else [])]
-    assert main(argv) == 0
+def test_run_in_quiet_prints_the_result_alone(tmp_path, write, capsys):
+    """No step, no phase; the result as a table, once."""
+    assert main(["run", str(write(PRESS + MESH)), "--out", str(tmp_path / "out"), "--quiet"]) == 0
     said = capsys.readouterr().out
     assert said.count("ridges in contact") == 1
-    assert ("path left" in said, "meshing the finger" in said) == (not quiet, not quiet)
-    assert said.endswith(f"Report: {tmp_path / 'out' / 'report.html'}\n") == (not quiet)
+    assert not any(words in said for words in ("path left", "meshing the finger", "Report: "))
