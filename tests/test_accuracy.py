@@ -226,20 +226,6 @@ def test_penalty_that_cannot_be_told_is_noted(monkeypatch):
     assert found.estimates()["full_slip_mu_app"] > 0
 
 
-def test_estimate_alone_that_is_lost_is_no_failure(monkeypatch):
-    """The run is what was asked for; that it comes without its error is said."""
-
-    def lost(model, states, comm, views=False):
-        raise StepFailed("full slip found no equilibrium")
-
-    found = search(monkeypatch, {}, lost)
-    assert not found.failure
-    assert found.notes == [
-        "discretisation errors could not be estimated: full slip found no equilibrium",
-        "the effect of the penalty could not be estimated: full slip found no equilibrium",
-    ]
-
-
 def test_says_when_the_accuracy_is_out_of_reach(monkeypatch):
     """An error that no refinement lowers."""
 

@@ -325,17 +325,6 @@ def test_known_point_has_its_errors(whole, tmp_path):
     assert found["voltage"]["bands"] == found["force"]["bands"] == 1
 
 
-def test_point_that_no_run_is_at_has_no_error(whole, tmp_path):
-    beyond = [{"voltage": 201}, {"f_ext": 151}, {"f_ext": 4.9}]
-    other = [{"friction": 0.26}, {"electric.d_i": 2}, {"roughness.h_rms": 4}, {"roughness.gamma": 0.4}]
-    for found in shown(whole, tmp_path, *beyond, *other, {"length": 1.5, "ridges": 16}):
-        assert not any("±" in cell for cell in found["cells"].values())
-        assert found["caption"] == "Section at the centre of the finger: error not known" and found["always"].endswith(
-            ", error not known"
-        )
-        assert "not known" in found["notes"]
-
-
 def test_line_is_solid_up_to_the_last_run(whole, tmp_path):
     """At 300 V it is dashed from 200 V on, exactly; below 5 N/m and above 150 N/m likewise."""
     over, low, high = shown(whole, tmp_path, {"voltage": 300}, {"f_ext": 1}, {"f_ext": 300})

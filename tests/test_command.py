@@ -2,7 +2,6 @@
 
 import argparse
 import json
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -10,10 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import fingerpad as fp
 from fingerpad.cli import COMMANDS, main, ranges
 from fingerpad.cli.arguments import Parser, scene_of, separate
-from fingerpad.io.provenance import provenance
 from fingerpad.scene import Scene
 from fingerpad.scene.messages import SceneError
 from tests.commands import ROOT, refused
@@ -96,13 +93,6 @@ def test_options_that_are_not_what_was_meant(capsys, argv, message):
     assert message in refused(capsys, *argv)
 
 
-def test_negative_voltages(capsys):
-    """A range of them after an equals sign, and a number also without."""
-    for words in (["--voltage=-200:200:3"], ["--voltage", "-200"]):
-        assert main(["estimate", *words]) == 0
-        assert re.search(r"^ +75 +-200 ", capsys.readouterr().out, re.MULTILINE)
-
-
 def test_folder_that_is_read_only(tmp_path, monkeypatch, capsys):
     """Root may write anywhere but on a file system that is read-only; the system says so."""
     monkeypatch.setattr("os.access", lambda path, mode: Path(path) != tmp_path)
@@ -139,13 +129,6 @@ def test_help_lists_every_command(capsys):
 def test_unknown_command(capsys):
     assert refused(capsys, "swep") == "swep is not a command; did you mean sweep?\n"
     assert refused(capsys, "frobnicate").startswith("frobnicate is not a command; commands are estimate, run,")
-
-
-def test_version(capsys):
-    assert main(["--version"]) == 0
-    assert capsys.readouterr().out.strip() == f"fingerpad {fp.__version__}"
-    assert fp.__version__ == provenance()["versions"]["fingerpad"]
-    assert fp.__version__.startswith("0.")
 
 
 # -- without finite elements -------------------------------------------------------------------------------

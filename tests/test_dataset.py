@@ -77,12 +77,6 @@ def test_ridges_and_sites_are_those_of_the_tables(folder, data, table, known):
                 assert float(at[name if table == "receptors" else f"ridge_{name}"]) == float(row[name])
 
 
-def test_ridges_out_of_contact_have_no_length(folder, data):
-    """All ridges that can touch have values, and the rows of the table are those in contact."""
-    assert int((data["ridge_contact_length"] > 0).sum()) == len(rows_of(folder, "ridges"))
-    np.testing.assert_allclose(data["ridge_f_electrostatic"].sum("ridge"), data["f_electrostatic"], rtol=1e-12)
-
-
 def test_states_are_those_of_the_summary(folder, data):
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     for name, values in summary["states"].items():
@@ -90,13 +84,6 @@ def test_states_are_those_of_the_summary(folder, data):
             assert float(data[f"state_{key}"].sel(state=name)) == values[key]
     assert np.isnan(data["state_mu_app"].sel(state="full_slip"))
     assert list(data["load"].values) == [load["name"] for load in summary["loads"]]
-
-
-def test_a_state_that_is_missing_has_no_values(data):
-    """Numbers have NaN for it, whole numbers -1: 0 ridges would be a lifted finger."""
-    slip = data.sel(state="full_slip")
-    assert [int(slip[f"state_{name}"]) for name in ("step", "ridges_in_contact", "stable")] == [-1, -1, -1]
-    assert np.isnan(slip["state_f_t"])
 
 
 def test_loads_are_those_of_the_summary(folder, data):

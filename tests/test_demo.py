@@ -8,7 +8,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 from mpi4py import MPI
 
@@ -115,24 +114,6 @@ def test_leaves_what_it_promises(coarse, summary):
     assert {"finger_press.npz", "finger_charge.npz", "finger_slide.npz"} <= names
     assert len(steps(coarse)) == summary["steps"]
     assert summary["parameters"]["mesh"]["contact"] == 10e-6
-
-
-@pytest.mark.parametrize("state", ["charged", "full_slip"])
-def test_surface_array_bears_the_contact_force(coarse, summary, state):
-    """Pressure over the current abscissa, by the trapezoidal rule, coarse on a few facets of 10 um a ridge."""
-    with np.load(coarse / "surface.npz") as arrays:
-        x, p = arrays[f"{state}_x"], arrays[f"{state}_p"]
-    known = np.isfinite(x[1:] + x[:-1])
-    force = float((np.diff(x) * (p[1:] + p[:-1]) / 2)[known].sum())
-    assert force == pytest.approx(summary[f"{state}_f_contact"], rel=0.1)
-
-
-def test_receptor_sites(coarse):
-    """Under a central ridge the stiff epidermis holds more energy than the soft papillae beside it."""
-    with (coarse / "receptors.csv").open(encoding="utf-8", newline="") as file:
-        last = {row["ridge"]: row for row in csv.DictReader(file)}
-    merkel, left, right = (float(last["0"][name]) for name in ("merkel_sed", "meissner_left", "meissner_right"))
-    assert merkel > max(left, right) > min(left, right) > 0
 
 
 @pytest.mark.mpi

@@ -4,12 +4,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from benchmarks import errors, harness, limits
+from benchmarks import errors, limits
 from benchmarks.errors import QUANTITIES
 from fingerpad.scene import Scene
 from variational.solvers.continuation import StepFailed
-
-BY = harness.Made("0", "abc", "2026-01-01")
 
 
 def exact(mesh):
@@ -40,35 +38,6 @@ def test_reference_is_the_limit(again):
         assert each.value == pytest.approx(2, rel=1e-12, abs=0)
         assert each.order == pytest.approx(2, rel=1e-9)
         assert each.bar == pytest.approx(1.25 * (exact(finest)[name] - 2), rel=1e-9, abs=0)
-
-
-def soft(scene):
-    """The quantities of a scene, over a screen whose penalty changes them by the law of the program."""
-    factor = 1 + (scene.contact.eps_n / 1e10) ** -errors.ORDER
-    return {name: value * factor for name, value in exact(scene.mesh).items()}
-
-
-def test_page(again, tmp_path):
-    """The default's error against the limit: 0.02 (1 + 1 + 1) over 2, and a bar of 1.25 times 0.02 3 / 16.
-
-    Over a stiffer screen the law of the program is found again, to roundoff.
-    """
-    whole = exact(errors.DEFAULT.mesh) | {"unknowns": 9.0, "factorisations": 30.0}
-    studies = {
-        name: [{"value": value, "quantities": soft(scene)} for value, scene in errors.study(name).items()]
-        for name in errors.STUDIES
-    }
-    ends = {name: vars(each) for name, each in errors.reference(again, whole).items()}
-    numbers = {"default": whole, "again": again, "studies": studies, "reference": ends}
-    harness.keep("errors", numbers, BY, tmp_path)
-    text = errors.draw(tmp_path).read_text(encoding="utf-8")
-    row = next(line for line in text.splitlines() if line.startswith("| SED at ridge 0, full slip"))
-    assert row.split(" | ")[1] == "2.06"
-    assert row.split(" | ")[-3:] == ["2.0000 ± 0.0047", "2.0", "3 ± 0.2 % |"]
-    assert (tmp_path / "errors.png").exists()
-    for predicted, found in errors.stiffer(tmp_path).values():
-        assert predicted == pytest.approx(found, rel=1e-9)
-        assert found < 0
 
 
 # -- Limits of scenes: their path, the kept output, and one solve for each scene ---

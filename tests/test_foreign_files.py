@@ -15,7 +15,6 @@ from PIL import Image
 from fingerpad.io.files import read_object
 from fingerpad.io.kept_drawing import finger_of
 from fingerpad.io.place import Place, PlaceError, Serial, full_scene
-from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.models import find
 from fingerpad.report import run_page
@@ -92,16 +91,6 @@ def test_program_s_error_in_a_report_is_not_hidden(answered, monkeypatch):
     with pytest.raises(SceneError, match="can be made of its files .KeyError: 'nothing'") as refusal:
         write(answered)
     assert isinstance(refusal.value.__cause__, KeyError)
-
-
-def test_value_that_is_no_number_is_named(answered, tmp_path):
-    copy = Path(shutil.copytree(answered, tmp_path / "copy"))
-    summary = json.loads((copy / "summary.json").read_text())
-    summary["states"]["full_slip"]["f_t"] = [1]
-    (copy / "result.nc").unlink()
-    (copy / "summary.json").write_text(json.dumps(summary))
-    with pytest.raises(SceneError, match="not of a run .f_t of full_slip is no number"):
-        Result.load(copy)
 
 
 # -- pictures ------------------------------------------------------------------------------------------

@@ -71,12 +71,6 @@ def test_verdict_has_the_error_of_the_headline(monkeypatch, error, words):
     assert bool(re.search(r"= 0\.4000 ± 0\.0026</h1>", page)) == (error == 0.0026)
 
 
-def test_verdict_with_a_caution_has_no_link(monkeypatch):
-    monkeypatch.setattr(trust, "findings", lambda result: [trust.Finding("mesh", trust.CARE, "It is coarse.")])
-    page = head(Result(fp.Scene(), "full", None, None, state(error=Errors(mu_app=0.0026))))
-    assert "Use with care: mesh. It is coarse." in page and "href" not in page
-
-
 def test_plus_minus_is_explained_where_it_is_printed():
     shown = text(Result(fp.Scene(), "full", None, None, state(error=Errors(mu_app=0.0026))))
     assert PLUS_MINUS in shown and "what the finger and the model assume is not in it" in PLUS_MINUS

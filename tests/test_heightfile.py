@@ -59,18 +59,6 @@ def test_lengths_that_are_exchanged(tmp_path):
 
 
 # -- missing pixels ----------------------------------------------------------------------------------------
-def test_numbers_that_mark_missing_pixels(tmp_path):
-    """In NumPy's files as in texts."""
-    h = np.arange(36).reshape(6, 6)
-    h[1, 2] = -32768
-    np.save(tmp_path / "map.npy", h)
-    np.savetxt(tmp_path / "map.csv", h, delimiter=",")
-    found = [scan(tmp_path / name, **PLAIN, missing="-32768") for name in ("map.npy", "map.csv")]
-    assert [each.missing for each in found] == [1, 1]
-    np.testing.assert_allclose(found[0].map.heights * 1e6, np.arange(36).reshape(6, 6), atol=1e-12)
-    np.testing.assert_array_equal(found[0].map.heights, found[1].map.heights)
-    with pytest.raises(ValueError, match="'missing' is 'void'; .* has numbers alone"):
-        scan(tmp_path / "map.npy", missing="void")
 
 
 @pytest.mark.parametrize("pixels", [1, 40, 1000])
@@ -218,22 +206,6 @@ def test_text_with_units_in_its_header(encoding, other, tmp_path):
         scan(path)
 
 
-def test_lines_that_a_reader_would_skip_are_refused(other, tmp_path):
-    """SurfaceTopography reads a damaged line as a header, and points below it alone."""
-    h = SelfAffine().surface((40, 36), (100e-6, 90e-6), 3).heights * 1e6
-    lines = gwyddion(h).splitlines()
-    lines[9] = lines[9].replace(" ", " x", 1)
-    (tmp_path / "map.txt").write_text("\n".join(lines))
-    with pytest.raises(ValueError, match="in line 10 among its numbers; export one map of numbers alone"):
-        scan(tmp_path / "map.txt")
-    (tmp_path / "map.xyz").write_text("# x (mm), y (mm), z (um)\n" + points())
-    with pytest.raises(ValueError, match=r"'# x \(mm\), y \(mm\), z \(um\)' in line 1 and no unit of heights"):
-        scan(tmp_path / "map.xyz", **PLAIN)
-    (tmp_path / "map.xyz").write_text("0 0 1\n0 1 void\n" + points())
-    with pytest.raises(ValueError, match="'0 1 void' in line 2 among its numbers"):
-        scan(tmp_path / "map.xyz", **PLAIN)
-
-
 def points() -> str:
     """Return a text of 4 x 3 points of which the heights are from 0 to 3."""
     return "\n".join(f"{0.002 * i:g} {0.003 * j:g} {i}" for i in range(4) for j in range(3))
@@ -273,20 +245,6 @@ def test_instrument_with_a_size_and_unit_of_its_own(tmp_path):
     ):
         with pytest.raises(ValueError, match=sentence):
             scan(path, **given)
-
-
-def test_instrument_without_them(tmp_path):
-    """A format in which SurfaceTopography finds neither: both have to be given."""
-    pytest.importorskip("SurfaceTopography", reason="pip install fingerpad[topography]")
-    path, h = tmp_path / "map.npz", np.random.default_rng(1).normal(size=(6, 8))
-    np.savez(path, h=h)
-    found = scan(path, size=(3e-6, 4e-6), unit="um").map
-    np.testing.assert_allclose(found.heights, h * 1e-6, rtol=1e-12)
-    assert found.size == (3e-6, 4e-6)
-    with pytest.raises(ValueError, match="holds numbers without a unit; give 'unit'"):
-        scan(path, size=(3e-6, 4e-6))
-    with pytest.raises(ValueError, match="has no size; give 'size' or 'pixel'"):
-        scan(path, unit="um")
 
 
 @pytest.mark.parametrize(

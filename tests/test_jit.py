@@ -9,10 +9,7 @@ import sysconfig
 import time
 from pathlib import Path
 
-import numpy as np
 import pytest
-import ufl
-from dolfinx import fem, mesh
 from mpi4py import MPI
 
 from fingerpad.cli import main
@@ -199,13 +196,3 @@ def test_ranks_that_work_alone_share_a_cache(tmp_path, monkeypatch):
     MPI.COMM_WORLD.barrier()
     assert integral() == 2.5
     MPI.COMM_WORLD.barrier()
-
-
-def test_compiled_forms_keep_what_is_no_number():
-    """The logarithm of a negative Jacobian determinant is NaN, in each cell that is inside out and in no other."""
-    square = mesh.create_unit_square(MPI.COMM_SELF, 2, 2)
-    cells = fem.functionspace(square, ("Discontinuous Lagrange", 0))
-    J, v = fem.Function(cells), ufl.TestFunction(cells)
-    J.x.array[:] = np.linspace(-1.0, 2.0, len(J.x.array))
-    form = fem.form((ufl.ln(J) - ufl.ln(J) + J / J) * v * ufl.dx, jit_options=jit.OPTIONS)
-    assert np.array_equal(np.isnan(fem.assemble_vector(form).array), J.x.array < 0)

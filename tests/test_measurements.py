@@ -153,14 +153,6 @@ def test_tables_in_the_repository_are_read():
         assert {"source", "people"} <= set(read(file).about) and {"doi", "url"} & set(read(file).about)
 
 
-def test_row_without_a_spread_is_one(folder, table, capsys):
-    """The empty cell may also be missing; the others are counted."""
-    text = "force (N/m), voltage (V), friction (1), spread (1)\n25, 0, 0.25, 0.1\n25, 100, 0.1,\n75, 0, 0.25\n"
-    np.testing.assert_array_equal(read(table(text)).rows.spread, [0.1, np.nan, np.nan])
-    assert main(["compare-data", str(table(text)), "--sweep", str(folder)]) == 0
-    assert "Within the spread: 1 of 1 rows that have a spread.\n" in capsys.readouterr().out
-
-
 # -- computed values -----------------------------------------------------------------------------------------
 def asked(quantity="friction", state="full_slip"):
     return Measured("x.csv", {}, state, quantity, False, pd.DataFrame({"measured": [0.3], "spread": [np.nan]}))
@@ -183,14 +175,6 @@ def test_computed_values_are_those_of_the_sweep(folder):
     assert between[0] == pytest.approx(rows[25, 100] * 2**power, rel=1e-12)
     assert between[1] == pytest.approx(0.75 * rows[25, 0] + 0.25 * rows[25, 100], rel=1e-12)
     assert np.isnan(at(found, [10.0, 25.0], [100.0, 201.0])).all()
-
-
-def test_failed_run_leaves_the_uncharged_state_of_another(tmp_path):
-    """All voltages of a force have the same uncharged state; here the first and the last run have none."""
-    table = tmp_path / "table.csv"
-    rows = "25,0,,lost\n25,50,1e-3,\n25,100,1e-3,\n25,200,,lost\n"
-    table.write_text(f"f_ext,voltage,uncharged_contact_length,failure\n{rows}")
-    assert at(computed(tmp_path, asked("contact length", "uncharged")), [25.0], [0.0])[0] == 1e-3
 
 
 # -- the command ---------------------------------------------------------------------------------------------
@@ -285,18 +269,3 @@ def test_rows_whose_value_is_zero_are_told_apart(folder, table, capsys):
     assert main(["compare-data", str(table(text + "25, 100, 3\n500, 100, 3\n")), "--sweep", str(folder)]) == 0
     out = capsys.readouterr().out
     assert "since no value is computed there: 1 of 3 rows." in out and "computed value is 0 there: 1 of 3 rows." in out
-
-
-def test_folders_are_told_apart(folder, table, tmp_path, capsys):
-    file = str(table("friction (1)\n0.3\n"))
-    assert "is not a folder" in refused(capsys, "compare-data", file, "--run", str(tmp_path / "none"))
-    assert "arguments are required: --run/--sweep" in refused(capsys, "compare-data", file)
-    assert "its folder is not there" in refused(capsys, "compare-data", file, "--run", "x", "--out", "none/x.png")
-    several = refused(capsys, "compare-data", file, "--run", str(folder), str(folder))
-    assert "is given with others; give one sweep, or runs" in several
-    third = tmp_path / "third"
-    sweep(Scene(), third, model="cylinders", friction=[0.2, 0.3])
-    words = "is over friction, and {} has forces in N/m; give one over f_ext and voltage alone, or runs"
-    assert words.format(file) in refused(capsys, "compare-data", file, "--sweep", str(third))
-    with pytest.raises(SceneError, match=r"friction is 0\.2 in .* and 0\.3 in .*; give runs that differ in force and"):
-        fp.compare(file, fp.sweep(Scene(), model="cylinders", friction=[0.2, 0.3]))

@@ -7,8 +7,6 @@ from benchmarks import harness, models
 from fingerpad.reduced import cylinders
 from fingerpad.scene import from_data
 
-BY = harness.Made("0", "abc", "2026-01-01")
-
 
 def test_lengths_in_the_program_are_the_runs():
     """The lengths that `cylinders` interpolates are the kept full runs', to the four digits they are kept with."""
@@ -45,31 +43,3 @@ def answer(**values):
         "summary": {"full_slip": True} | values,
         "cost": {"seconds": 2.0, "factorisations": 3, "unknowns": 5},
     }
-
-
-def test_page(tmp_path):
-    """One scene has no answer of the cylinders, and one no full slip."""
-    values = {name: 1.0 for name in models.QUANTITIES}
-    scenes = {
-        models.name(75.0, 0.0): {"cylinders": answer(**values), "full": answer(**values)},
-        models.name(75.0, 200.0): {
-            "cylinders": answer(**values | {"full_slip_mu_app": 1.1}),
-            "full": answer(**values) | {"summary": values | {"full_slip": False}},
-        },
-        models.name(5.0, 0.0): {"cylinders": {"failure": "lost"}, "full": answer(**values)},
-    }
-    lost = dict.fromkeys((*models._KEPT, "full_slip")) | {"failure": "TIME_LIMIT: not done"}
-    half = lost | {"full_slip_mu_app": 0.25, "full_slip_ridges_in_contact": 7, "full_slip": True, "failure": None}
-    beyond = {"twice the voltage": lost, models.HALF_STEPS: half}
-    less = answer(**values | {"charged_f_electrostatic": 0.8})
-    held = {"8.2 N/m, 153 V": {"cylinders": less, "full": answer(**values)}}
-    harness.keep("models", {"scenes": scenes, "held_out": held, "beyond": beyond}, BY, tmp_path)
-    text = models.draw(tmp_path).read_text(encoding="utf-8")
-    assert "give µ_app within 10.0 %" in text and "No answer at 5 N/m, 0 V." in text
-    assert "full slip in 3 of 4 scenes" in text
-    assert "| `cylinders` | 8.2 N/m, 153 V | +0.0 | +0.0 | +0.0 | -20.0 |" in text
-    assert "attraction is within 20.0 %" in text
-    assert "| 75 | +0.0 | – | – | – | +10.0 |" in text
-    assert "has 7 ridges, and µ_app is\n0.2500" in text
-    assert "| 0.25 | 7 | – | – | yes |" in text
-    assert "| – | – | – | – | TIME_LIMIT: not done |" in text

@@ -1,6 +1,5 @@
 """A scene on the mesh of a gmsh file: the same numbers as on its own mesh, what is left out, and what is refused."""
 
-import hashlib
 import html
 import json
 import re
@@ -63,31 +62,6 @@ def test_same_numbers_as_on_its_own_mesh(place):
     assert file.charged.bone_height == pytest.approx(own.charged.bone_height, rel=1e-9)
     assert file.charged.contact_length == pytest.approx(own.charged.contact_length, rel=1e-9)
     assert file.steps[-1].mesh_contact < 100e-6  # that of the file: the shortest facet that can touch
-
-
-def test_key_of_a_file_is_the_argument(place, tmp_path):
-    """The same run to the last digit, and the same scene in its folder; a path is looked for beside the file."""
-    write(place, finger(2e-3))
-    loads = '[[history]]\nname = "press"\nf_ext = 5.0\n\n[[history]]\nname = "nudge"\nbone_x = 1e-9\n'
-    rest = "friction = 0.0\n\n[output]\nerrors = false\nreceptors = false\n"
-    file = place.with_name("scene.toml")
-    file.write_text(f'{rest}\n[geometry]\nfile = "mine.msh"\n\n{loads}', encoding="utf-8")
-    by_key = fp.run(fp.Scene.load(file), out=tmp_path / "key")
-    history = [{"name": "press", "f_ext": 5.0}, {"name": "nudge", "bone_x": 1e-9}]
-    by_argument = fp.run(scene(history=history, geometry={"file": place}), out=tmp_path / "argument")
-    for name in ("steps.csv", "ridges.csv", "scene.json"):
-        kept = [(tmp_path / door / name).read_text(encoding="utf-8") for door in ("key", "argument")]
-        table = [[row.split(",")[:-1] for row in text.splitlines()] for text in kept]  # without the seconds
-        assert table[0] == table[1]
-    summary = json.loads((tmp_path / "key" / "summary.json").read_text(encoding="utf-8"))
-    assert summary["laws"]["mesh"] == str(place)
-    assert summary["parameters"]["geometry"]["file_sha256"] == hashlib.sha256(place.read_bytes()).hexdigest()
-    assert by_key.charged.contact_length == by_argument.charged.contact_length > 0
-    command = html.unescape(again(summary["parameters"], "full"))
-    assert fp.Scene(**summary["parameters"]) == fp.Scene.load(file)
-    assert 'fp.Scene.load("scene.json")' in command
-    for door in ("key", "argument"):  # and its folder gives it again
-        assert fp.Scene.load(tmp_path / door / "scene.json").parameters() == fp.Scene.load(file).parameters()
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,5 @@
 """The harness of the studies: numbers that are kept, and the pages that are drawn from them."""
 
-import json
 import math
 import shutil
 
@@ -96,16 +95,6 @@ main(compute, draw)
     new = old.replace("_words(), _both()", "_words()").replace("main(compute", "main(compute2")
     assert since("chart", MADE, old={page: old.encode()}, new={page: new.encode()}) == [page]
     assert since("chart", MADE, old={page: old.encode()}, new={page: new.replace("compute2", "compute").encode()}) == []
-
-
-def test_page_is_not_older_where_the_same_numbers_were_computed(since, tmp_path):
-    """By the packages of both commits, from pair to pair; a page's own program counts all the same."""
-    commits = {"old": OLD, "mid": OLD | {"variational/x.py": b"x = 3"}, "new": NEW | CHANGED}
-    pairs = [{"before": "mid", "now": "new"}, {"before": "old", "now": "mid"}]
-    for same_pairs, older in ((pairs, []), (pairs[:1], ["variational/x.py"]), (pairs[1:], ["variational/x.py"])):
-        harness.replace(tmp_path / "same.json", json.dumps(same_pairs))
-        assert since("errors", MADE, **commits) == older
-        assert since("chart", MADE, **commits) == ["benchmarks/chart.py", *older]
 
 
 def test_results_differ_by_their_numbers_alone():

@@ -10,7 +10,7 @@ from benchmarks.harness import DOCS, Made, keep, kept
 from benchmarks.limits import Limit
 from benchmarks.paper import __main__ as command
 from benchmarks.paper import energy, fields, friction, page
-from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT, Statement
+from benchmarks.paper.statement import BUILT, HOLDS, IN_PART, NOT
 from benchmarks.runs import FORCES, VOLTAGES
 from fingerpad.scene import Scene
 from geometry import tags
@@ -125,33 +125,18 @@ FALLING = np.linspace(0.1, 0.06, 8)
     ("words", "change", "verdict"),
     [
         ("1.7 to 3", put("gaps_within", 0), NOT),
-        ("1.7 to 3", both(put("gaps", 40), put("gaps_within", 21)), HOLDS),
         ("more than 100 %", times("full_slip_f_t", 2.1), HOLDS),
         ("more than 100 %", times("full_slip_f_t", 1.9), NOT),
-        ("below 50 V", times("full_slip_f_t", 1.04, voltage=50.0), HOLDS),
         ("below 50 V", times("full_slip_f_t", 1.21, voltage=50.0), NOT),
-        ("largest at small", times("full_slip_f_t", np.linspace(3, 2, 8)), HOLDS),
         ("largest at small", times("full_slip_f_t", np.linspace(2, 3, 8)), NOT),
-        ("much less", both(times("full_slip_f_t", 2.0), lengths(1.3, 1.3)), HOLDS),
         ("much less", both(times("full_slip_f_t", 1.2), lengths(1.3, 1.3)), IN_PART),
-        ("20 % larger", lengths(1.21, 1.21), HOLDS),
         ("20 % larger", lengths(1.19, 1.19), NOT),
-        ("20 % larger", both(lengths(1.1, 1.1), lengths(1.3, 1.3, FIRST)), NOT),
-        ("new ridges in contact", both(lengths(1.5, 1.5), ridges(1.0, 1.0)), IN_PART),
         ("new ridges in contact", both(lengths(1.5, 1.5), ridges(1.2, 1.2, FIRST)), IN_PART),
-        ("average ridge", put("full_slip_ridges_in_contact", 10), IN_PART),
-        ("ridges fewer", put("full_slip_ridges_in_contact", 10), NOT),
         ("ridges fewer", put("full_slip_ridges_in_contact", [[10]] + [[8]] * 7), IN_PART),
-        ("up to 12 %", lose(EVEN, EVEN + 0.2), IN_PART),
         ("up to 12 %", lose(np.array([-0.01] + [0.05] * 7), EVEN + 0.06), IN_PART),
-        ("enhances", lose(EVEN, EVEN + FALLING[::-1]), NOT),
-        ("enhances", lose(EVEN, EVEN - FALLING[::-1]), NOT),
         ("even without", lose(EVEN - 0.01, EVEN), NOT),
-        ("even without", lose(FALLING - 0.02, EVEN), IN_PART),
         ("increases the contact pressure", times("full_slip_f_t", 3.0, voltage=150.0), HOLDS),
-        ("increases the contact pressure", times("full_slip_f_t", 1.04, voltage=150.0), NOT),
         ("largest tangential force", both(lengths(1.1, 1.1), times("full_slip_f_t", 0.9)), NOT),
-        ("about linear", lose(EVEN, -EVEN), NOT),
     ],
 )
 def test_verdict_on_the_grid(grid, words, change, verdict):
@@ -251,36 +236,6 @@ def test_threshold_statements():
     assert numbers["eq_9"] == pytest.approx(163.6, abs=0.05)
 
 
-# -- the sine --------------------------------------------------------------------------------------
-def sine(ratio, before, after, mu_app=(0.25, 0.5, 0.25)):
-    """Return a run of three voltages; ``ratio``: of the energy densities of five sites at 200 V to those at 0 V."""
-    sed = np.array([1.0, 2.0, 3.0, 4.0, 5.0])
-    touching = {1: np.array(before), 3: np.array(after), 5: np.array(before)}
-    rows = np.repeat([sed, sed * ratio, sed], 2, axis=0)
-    return SimpleNamespace(
-        loads=["slide", "slide", "sine 1", "sine 1", "sine 2", "sine 2"],
-        steps={"mu_app": np.repeat(mu_app, 2), "voltage": np.repeat([0.0, 200.0, 0.0], 2)},
-        receptors={"ridge": np.arange(-2.0, 3.0), "merkel_sed": rows},
-        on_ridges=lambda row, name: (touching[row], None),
-    )
-
-
-@pytest.mark.parametrize(
-    ("ratio", "after", "verdict"),
-    [
-        ([0.5, 1.0, 0.8, 0.9, 2.0], [-1, 0, 1, 2], HOLDS),
-        ([8.0, 1.0, 0.8, 0.9, 2.0], [-1, 0, 1, 2], IN_PART),
-        ([1.5, 1.2, 1.1, 1.3, 2.0], [-2, -1, 0, 1, 2], NOT),
-    ],
-)
-def test_sites_are_judged_by_what_their_energy_does(ratio, after, verdict):
-    found = by(fields.sine(sine(ratio, [-2, -1, 0, 1], after)), "enter")
-    assert found.verdict == verdict
-    assert found.numbers["enters 2"] == found.numbers["highest 2"] == pytest.approx(ratio[-1])
-    assert ("leave and fall" in found.why) == (ratio[0] > 1)
-    assert ("leaves -2" in found.numbers) == (-2 not in after)
-
-
 # -- energy densities ------------------------------------------------------------------------------
 def charged(run_x, tag, before, after):
     """Return a run whose layers' triangles have energy densities before and after charging."""
@@ -290,16 +245,6 @@ def charged(run_x, tag, before, after):
     return SimpleNamespace(
         arrays=arrays.__getitem__, charged=0, on_ridges=lambda row, name: (np.array([-1, 0, 1]), None), scene=Scene()
     )
-
-
-def test_change_of_a_layer_is_weighed_by_area():
-    """One triangle of 1 and one of 3 area units: 100 % of the small and 20 % of the large are 40 %; one far off."""
-    small, wide = np.array([[0, 0], [2, 0], [0, 1]]), np.array([[0, 0], [6, 0], [0, 1]])
-    layers = [tags.LAYERS[name] for name in ("stratum corneum", "viable epidermis", "dermis")]
-    corners = [1e-5 * small, 1e-5 * wide, 1e-5 * small + [5e-3, 0], 1e-5 * small, 1e-5 * small]
-    tag = [layers[0], layers[0], layers[0], layers[1], layers[2]]
-    run = charged(np.concatenate(corners), tag, [1.0, 1.0, 1.0, 2.0, 4.0], [2.0, 0.8, 9.0, 2.0, 5.0])
-    assert list(energy.changes(run).values()) == pytest.approx([0.4, 0.0, 0.25], rel=1e-12)
 
 
 SC, VE, DERMIS = (tags.LAYERS[name] for name in ("stratum corneum", "viable epidermis", "dermis"))
@@ -341,7 +286,6 @@ def verdict(words, plain, charged):
     return next(v for paper, v in verdicts(plain, charged).items() if words in paper)
 
 
-# -- The paper's page: runs are read, missing ones are named, and the page is drawn from the kept nu ---
 # -- runs ----------------------------------------------------------------------------------------------
 
 
@@ -355,28 +299,6 @@ def test_missing_runs_are_named(tmp_path, capsys):
 
 
 # -- scenes, page - ------------------------------------------------------------------------------
-
-
-def numbers_with(*statements):
-    return {"missing": [], "statements": [asdict(s) for s in statements]}
-
-
-def test_page(tmp_path):
-    sites = {"enter": 1.0, "highest 2": 0.8, "enters 5": 3.0}
-    built = Statement("9B", "it repeats", "by 2", {"mu_app": 0.5214} | sites, BUILT, "of U²")
-    good = Statement("6", "it rises", "by 3 %", {"rise": 0.03}, HOLDS, "never shown")
-    bad = Statement("7", "it falls", "by 1 %", {"fall": 0.01}, NOT, "it is flat")
-    keep("paper", numbers_with(built, good, bad), MADE, tmp_path)
-    text = page.draw(tmp_path).read_text(encoding="utf-8")
-    assert "Of 3 statements of the paper, 1 hold in this model, 1 more by construction, 0 in part" in text
-    assert "75 N/m and 200 V is 0.5214 in the limit" in text
-    assert "**holds by construction**: of U²" in text
-    assert "**does not hold**: it is flat" in text
-    assert "never shown" not in text
-    assert "| highest at 0 V | M22 | +0 | 2 | +0 | 0.8 |\n| enters | M27 | +5 | 5 | +3 | 3 |\n" in text
-    assert "| equivalent air gap | 1.5e-6 | 2.5e-6 | m | Guo" in text
-    assert "version 0.1.0 before 2026-11-21" in text
-    assert kept("paper", tmp_path).numbers["statements"][2]["numbers"] == {"fall": 0.01}
 
 
 def test_page_in_git_is_of_its_numbers(tmp_path):

@@ -1,13 +1,10 @@
 """What other codes are told and how their answers are read: the parts that need none of them."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from benchmarks.harness import Made, keep
-from benchmarks.peers import calculix_ridge, ours, page, plain
-from benchmarks.peers.exchange import Answer, Case, Load, Ridge, State, answer_path, cases, write
+from benchmarks.peers import calculix_ridge, ours, plain
+from benchmarks.peers.exchange import Answer, Case, Load, Ridge, State, cases
 from benchmarks.peers.quantities import half_width
 
 WIDTH = 0.483  # mm
@@ -80,21 +77,6 @@ def test_deck(ridge):
     assert len(slave) == len(ridge.skin)
     assert max(len(word.strip()) for line in lines for word in line.split(",") if "*" not in line) <= 20
     assert deck.count("*STEP") == len(cases()["friction"].loads)
-
-
-def test_page(answer, ridge, tmp_path):
-    """The page names every program that answered, with its version, licence and picture."""
-    ridge.save(tmp_path / "40.npz")
-    other = replace(answer, program="GetFEM", version="5.4")
-    for program, found in (("ours", answer), ("getfem", other)):
-        for name in cases():
-            write(found, answer_path(tmp_path, 40, name, "", program))
-    keep("peers", page.numbers(tmp_path), Made("0.1.0", "abc1234", "2026-11-21"), tmp_path)
-    text = page.draw(tmp_path).read_text()
-    assert "| GetFEM | 5.4 | this project |" in text
-    assert "| GetFEM | 0 | 0 | 0 | 0 |" in text
-    assert text.count("| fingerpad |") == 2 + 2 * len(answer.states)  # versions, iterations, states
-    assert (tmp_path / "peers.png").stat().st_size > 1000
 
 
 def test_plain_script_agrees(body, ridge):

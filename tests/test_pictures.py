@@ -10,7 +10,7 @@ from matplotlib.image import imread
 from matplotlib.tri import Triangulation
 
 from fingerpad.io import style
-from fingerpad.io.finger_picture import finger, highest_density
+from fingerpad.io.finger_picture import finger
 from fingerpad.io.history_picture import history
 from fingerpad.io.skin_picture import SurfaceProfile, saw_teeth, surface
 from geometry import tags
@@ -102,13 +102,6 @@ def test_finger_views_the_contact(tmp_path, snapshot):
     assert norm.vmax == pytest.approx(20.0, rel=0.2)
 
 
-def test_finger_takes_a_common_scale_and_numbers_ridges(snapshot):
-    near = finger(None, snapshot, None, TITLE, ridges={-1: -0.5e-3, 0: 0.0, 9: 9e-3}, highest=1e6).axes[1]
-    assert near.collections[0].norm.vmax == pytest.approx(1e3)  # kPa
-    assert [text.get_text() for text in near.texts] == ["-1", "0"], "a ridge out of view has no number"
-    assert highest_density(snapshot) == pytest.approx(2e4, rel=0.2)
-
-
 def test_surface(tmp_path):
     states = [
         profile("normal contact", 0.0, 0.2),
@@ -147,12 +140,6 @@ def test_note_on_a_mesh_too_coarse_for_the_pressure(tooth, noted):
     state = replace(smooth, p=smooth.p * (1 - tooth * (np.arange(len(smooth.p)) % 2)))
     title = surface(None, [state], TITLE).axes[0].get_title(loc="left")
     assert ("mesh too coarse for the pressure: saw teeth of" in title) == noted
-
-
-def test_names_are_shown_as_they_are(tmp_path):
-    """A load's name may have dollar signs, between which Matplotlib would set its own mathematics or fail."""
-    figure = surface(tmp_path / "surface.png", [profile(r"After $5 _{ $", 0.0, 1.0)], TITLE)
-    assert figure.axes[0].get_title(loc="left").startswith(r"A  After \$5 _{ \$: ")
 
 
 @pytest.mark.parametrize("f_ext", [[20.0, 50.0] + 10 * [75.0], list(range(70, 82))], ids=["constant", "varying"])

@@ -2,7 +2,7 @@
 
 import pytest
 
-from benchmarks.stability import page, scenes
+from benchmarks.stability import scenes
 from fingerpad.scene import Scene
 
 STUCK = "step 26 (slide, 18.3 % done) found no equilibrium beyond f_ext 12.6 N/m, 296 V: DIVERGED_LOCAL_MIN; try more"
@@ -13,14 +13,6 @@ WIDER = {"contact": 30e-6, "factorisations": 7, "newton_iterations": 20, "reason
 def summary(*restarts, contact=30e-6, **values):
     work = {"factorisations": 50, "newton_iterations": 100, "full_slip": True, "path_mesh": {"contact": contact}}
     return work | {"restarts": list(restarts)} | values
-
-
-def rows(**changed):
-    """Return a row of each scene and formulation, all at full slip, but what is changed of scene 1."""
-    return [
-        scenes.row(summary(**(changed if number == 1 else {}))) | {"number": number, "formulation": name}
-        for number, name in scenes.scenes()
-    ]
 
 
 def test_scenes_are_within_their_ranges():
@@ -51,13 +43,3 @@ def test_row(found, factorisations, failure):
     kept_row = scenes.row(found)
     assert (kept_row["factorisations"], kept_row["failure"]) == (factorisations, failure)
     assert kept_row["full_slip"] == found.get("full_slip", False)
-
-
-def test_table_holds_each_outcome():
-    text = page.scenes_table(rows(full_slip=False, failure=STUCK))
-    assert text.count("✕ slide: DIVERGED_LOCAL_MIN, 50") == len(scenes.FORMULATIONS)
-    assert text.count("● 50") == (scenes.COUNT - 1) * len(scenes.FORMULATIONS)
-    assert f"19 of {scenes.COUNT}" in text and "not run" not in text
-    assert page.scenes_table(rows()[: scenes.COUNT]).count("| not run | not run |") == scenes.COUNT
-    assert page.full_slips(rows()[:5], "penalty") == f"5 of 5 ({scenes.COUNT - 5} not run)"
-    assert "▲ 15 µm, 50" in page.scenes_table(rows(contact=15e-6))

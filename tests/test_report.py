@@ -99,17 +99,6 @@ def test_numbers_stand_there_without_scripts(page, folder, tmp_path):
     assert found["wide"] <= 390
 
 
-def test_jumps_are_marked(folder):
-    result = Result.load(folder)
-    middle = result.steps[-3]
-    jumped = replace(middle, record=replace(middle.record, jump=True, energy_released=1e-3, released_error=1e-6))
-    steps = tuple(jumped if state is middle else state for state in result.steps)
-    shown = data(run_page.page(replace(result, steps=steps)))["steps"]
-    assert shown["jump"][shown["step"].index(middle.step)] == 1
-    words = {each.what: each.words for each in trust.findings(replace(result, steps=steps))}["jumps"]
-    assert f"{middle.step} (slide)" in words
-
-
 # -- trust -------------------------------------------------------------------------------------------------
 @pytest.mark.parametrize(
     ("changes", "what", "kind"),
@@ -124,12 +113,6 @@ def test_what_is_wrong_is_told(folder, changes, what, kind):
     result = Result.load(folder)
     found = trust.findings(replace(result, full_slip=replace(result.full_slip, **changes)))
     assert {each.what: each.verdict for each in found}[what] == kind
-
-
-def test_worst_finding_leads(folder):
-    found = trust.findings(replace(Result.load(folder), failure="the load slide was not reached"))
-    kind, words = trust.verdict(found)
-    assert kind == trust.BAD and "the load slide was not reached" in words
 
 
 @pytest.mark.parametrize(
@@ -147,12 +130,6 @@ def test_size_of_the_error_is_told(folder, error, what, words):
     found = {each.what: each for each in trust.findings(replace(result, full_slip=state))}
     assert words in found[what].words
     assert found[what].verdict == (trust.GOOD if error < 0.02 else trust.CARE)
-
-
-@pytest.mark.parametrize(("failure", "kind"), [("the load slide was not reached", trust.BAD), ("", trust.CARE)])
-def test_slide_without_full_slip_is_told(folder, failure, kind):
-    found = trust.findings(replace(Result.load(folder), full_slip=None, failure=failure))
-    assert {each.what: each.verdict for each in found}["full slip was not reached"] == kind
 
 
 def test_full_slip_without_a_coefficient_has_its_force(folder):

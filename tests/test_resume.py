@@ -15,11 +15,10 @@ from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad.cli import run as command
-from fingerpad.io.checkpoint import Checkpoint, CheckpointError
+from fingerpad.io.checkpoint import Checkpoint
 from fingerpad.io.drawing import Drawing
 from fingerpad.io.writing import Writer
 from fingerpad.model.journal import Journal
-from fingerpad.model.simulation import Simulation
 from fingerpad.runs.batch import key, sweep
 from fingerpad.scene import SceneError
 from variational.solvers.coupling import Coupling
@@ -245,24 +244,6 @@ def test_refusals(cut_short, tmp_path_factory, capsys):
     refused("its run has reached its end", cut_short)
 
 
-@pytest.mark.parametrize("folder", [False, True])
-def test_run_that_stops_before_its_first_checkpoint(tmp_path, monkeypatch, folder):
-    """The failure promises no more than there is, and to go on is refused for what it is."""
-    accepted = Simulation._accepted
-
-    def stop(self, *given):
-        signal.raise_signal(signal.SIGTERM)
-        return accepted(self, *given)
-
-    monkeypatch.setattr(Simulation, "_accepted", stop)
-    with pytest.raises(SystemExit) as ended:
-        fp.run(scene(), out=tmp_path if folder else None)
-    kept = "; every accepted step is in the folder of results, and the same command starts again" if folder else ""
-    assert ended.value.result.failure == "stopped by SIGTERM after step 1" + kept
-    if folder:
-        refused("has no checkpoint to go on from: its run has not come to one", tmp_path)
-
-
 def test_refused_options(tmp_path):
     with pytest.raises(SceneError, match="only a full run in a folder can go on"):
         fp.run(resume=True)
@@ -287,19 +268,6 @@ def test_a_run_without_a_folder_keeps_nothing(monkeypatch):
     """Its solves use the factorisations that they would always use."""
     monkeypatch.setattr(Journal, "__init__", lambda *args: pytest.fail("a journal"))
     fp.run(scene(history="charged at rest").replace(history=[PRESS]))
-
-
-def test_checkpoint_of_another_mesh(cut_short, monkeypatch):
-    """As by another version of gmsh: the places are compared, not trusted."""
-    read = Checkpoint.read
-
-    def elsewhere(self, number):
-        facts, arrays = read(self, number)
-        return facts, {k: v + 1e-6 * k.startswith("body/") for k, v in arrays.items()}
-
-    monkeypatch.setattr(Checkpoint, "read", elsewhere)
-    with pytest.raises(CheckpointError, match="of another mesh"):
-        fp.run(scene(), out=cut_short, resume=True)
 
 
 def test_full_disk_under_the_checkpoint(tmp_path, monkeypatch):

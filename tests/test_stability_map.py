@@ -4,11 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.image import imread
 
-from benchmarks.harness import DOCS, kept
 from benchmarks.stability import __main__ as keeping
-from benchmarks.stability import page, plan, solve
+from benchmarks.stability import plan, solve
 from benchmarks.stability.__main__ import Runs, run_all
 from benchmarks.stability.plan import Case
 from variational.solvers.equations import Control
@@ -46,22 +44,6 @@ def test_default_is_the_products():
     assert (case.parameter, case.contact_size) == (scene.contact.eps_n, scene.mesh.contact)
     assert (case.element, case.voltage, case.mu_f) == (scene.numerics.element, scene.voltage, scene.friction)
     assert case.nu == scene.materials.dermis.poisson
-
-
-def test_reference_keeps_the_physics():
-    """Only what is numerical is put back; a reference is its own."""
-    case = Case(
-        parameter=1.5e10,
-        element="P1",
-        contact_size=40e-6,
-        step_scale=4.0,
-        pseudo_transient=False,
-        detour=400.0,
-        voltage=300.0,
-        nu=0.3,
-    )
-    assert case.reference == Case(contact_size=1.25e-6, voltage=300.0, nu=0.3)
-    assert case.reference.reference == case.reference
 
 
 # -- runs that are kept ------------------------------------------------------------------------------
@@ -130,19 +112,3 @@ def test_crash_is_an_outcome():
     found = keeping.solve(replace(TINY, element="P9"), limit=300)
     assert (found.status, found.reason) == ("failed", "CRASH_1")
     assert "P9" in found.message
-
-
-# -- picture and page ----------------------------------------------------------------------------------
-
-
-def test_page_is_drawn_from_the_kept_numbers(tmp_path):
-    """Every table is whole, every run of the plan is in the numbers, and the picture is there."""
-    (tmp_path / "stability.json").write_bytes((DOCS / "stability.json").read_bytes())
-    text = page.draw(tmp_path).read_text(encoding="utf-8")
-    assert imread(tmp_path / "stability.png").std() > 0.05
-    blocks = [b.splitlines() for b in text.split("\n\n") if b.startswith("|")]
-    assert len(blocks) == 3 + len(plan.named())  # the default's, the counts' and the random scenes'
-    for block in blocks:
-        assert len({line.count("|") for line in block}) == 1
-    shown = {case for panels in plan.charts().values() for panel in panels for case in panel.cases()}
-    assert shown <= {Case(**row["case"]) for row in kept("stability", tmp_path).numbers["runs"]}

@@ -7,7 +7,6 @@ from dataclasses import replace
 import pytest
 
 from fingerpad.io import states
-from fingerpad.io.quantities import cell
 from fingerpad.scene import Load
 from variational.state import ContactState
 
@@ -153,15 +152,6 @@ def test_slide_charge_slide(pressed):
     assert pressed.names()["charged"] == ("press", 0.0, 0.0)
 
 
-def test_ends_in_the_middle_of_a_slip(pressed):
-    """A full slip that was not held leaves the one before."""
-    pressed.slide("slide", 0.4e-3)
-    pressed.still("charge", voltage=80.0)
-    pressed.slide("slide on", 0.55e-3)
-    assert pressed.rows[-1].slip_began == pressed.rows[-2].step and not pressed.rows[-1].slip_held
-    assert pressed.names()["full_slip"] == ("slide", 0.0, 0.1)
-
-
 def test_there_and_back(pressed):
     """A bone that comes back to x = 0 makes no normal contact, and its full slip is one the other way."""
     pressed.slide("there", 0.4e-3)
@@ -291,13 +281,3 @@ def test_first_touch_is_no_named_state(slides):
     press = next(states.load_results(history.rows, [Load(name="press", f_ext=0.05)], lambda k, end: None))
     own = [state.contact_length for state in history.rows if state.load == "press"]
     assert press.extremes["contact_length"].max == max(own)
-
-
-@pytest.mark.parametrize(
-    ("key", "value", "text"),
-    [("f_ext", 75.0, "75.00"), ("f_ext", 0.002, "0.002"), ("f_ext", 3e-15, "0.00"), ("mu_app", math.nan, "–")]
-    + [("mu_app", -0.0, "0.0000"), ("f_t", -1e-17, "0.000"), ("f_t", -0.0004, "-0.0004")],
-)
-def test_small_numbers_keep_digits(key, value, text):
-    """What is not roundoff is not shown as zero."""
-    assert cell(key, value) == text

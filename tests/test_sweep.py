@@ -120,17 +120,6 @@ def test_run_out_of_time_is_named(tmp_path):
     assert summary == {"failure": "TIME_LIMIT: not done after 1 s of processor time"}
 
 
-def echo(k):
-    return End(0, "", "", str(k))
-
-
-def test_pool_reports_every_job_once():
-    ends = []
-    assert Pool[int, End](echo, jobs=2).run(range(5), lambda k, end, left: ends.append((k, left))) == 0
-    assert sorted(k for k, _ in ends) == [0, 1, 2, 3, 4]
-    assert sorted((left for _, left in ends), reverse=True) == [4, 3, 2, 1, 0]
-
-
 @pytest.fixture
 def waits(monkeypatch):
     """An event: a pool has begun its jobs and waits for them."""
@@ -197,14 +186,6 @@ def test_job_that_waits_for_its_turn_is_not_begun(waits):
     finally:
         signal.signal(signal.SIGTERM, before)
     assert [end.reason for end in ends] == ["STOPPED"]
-
-
-def test_jobs_are_no_ranks_of_a_launcher(monkeypatch):
-    """Else MPI would take each for the rank of the sweep itself, as in a batch system's job."""
-    monkeypatch.setenv("OMPI_COMM_WORLD_RANK", "1")
-    monkeypatch.setenv("PMIX_RANK", "1")
-    code = "import os; print([name for name in os.environ if name.startswith(('OMPI_COMM', 'PMIX'))])"
-    assert run_module("timeit", ["-n1", "-r1", code], 10.0).stdout.startswith("[]\n")
 
 
 def test_two_processes_may_write_a_file_at_once(tmp_path):

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from fingerpad.cli import main
 from fingerpad.cli import sweep as cli_sweep
 from fingerpad.report import parameters, source
 from fingerpad.report.write import NAME, write
@@ -53,32 +52,6 @@ def test_failed_points_are_listed_with_their_reason(table):
     page = (table / NAME).read_text(encoding="utf-8")
     assert "1 of 6 points failed" in page
     assert "voltage = 200, f_ext = 75</th><td>no equilibrium at part 0.31 of &lt;slide&gt;" in page
-
-
-def test_points_without_a_coefficient_have_slid(tmp_path):
-    """Their force is the headline, and no point is said to have no full slip."""
-    sweep(Scene(), tmp_path, model="cylinders", voltage=[100, 200])
-    with (tmp_path / "table.csv").open(encoding="utf-8", newline="") as file:
-        rows = [row | {"full_slip_mu_app": ""} for row in csv.DictReader(file)]
-    with (tmp_path / "table.csv").open("w", encoding="utf-8", newline="") as file:
-        out = csv.DictWriter(file, list(rows[0]))
-        out.writeheader()
-        out.writerows(rows)
-    page = write(tmp_path).read_text(encoding="utf-8")
-    forces = [float(row["full_slip_f_t"]) for row in rows]
-    assert f"f<sub>T</sub> from {min(forces):.3f} to {max(forces):.3f} N/m" in page
-    assert "no full slip" not in page and "Every point was computed." in page
-
-
-def test_files_of_an_earlier_sweep_do_not_stay_beside_a_new_table(tmp_path, monkeypatch, capsys):
-    """Where the new dataset and report are not written; the command names the files that are there."""
-    words = ["sweep", "--model", "cylinders", "--over", "voltage=0,100", "--out", str(tmp_path)]
-    assert main(words) == 0 and "sweep.nc, report.html, sweep.json" in capsys.readouterr().out
-    monkeypatch.setattr("fingerpad.runs.sweep.attempt", lambda folder: None)
-    monkeypatch.setattr("fingerpad.runs.sweep_results.Sweep.save", lambda sweep: "sweep.nc is missing: no room")
-    assert main(words) == 0
-    assert not (tmp_path / "sweep.nc").exists() and not (tmp_path / "report.html").exists()
-    assert capsys.readouterr().out.strip().endswith("table.csv, sweep.json")
 
 
 @pytest.mark.parametrize(

@@ -28,11 +28,6 @@ def bare(monkeypatch):
     return monkeypatch
 
 
-def test_a_person_watches_a_terminal(bare):
-    assert terminal.watched(Screen(True))
-    assert not terminal.watched(Screen(False))
-
-
 @pytest.mark.parametrize(("name", "value"), [("NO_COLOR", "1"), ("TERM", "dumb"), ("PMIX_RANK", "1")])
 def test_nobody_watches(bare, name, value):
     """Nor the ranks beside rank 0, whose output goes to the same terminal."""

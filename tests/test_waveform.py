@@ -84,17 +84,6 @@ def test_file_is_straight_between_its_points(write, tmp_path):
     assert found.samples(0.005, 1.0)[-1] == pytest.approx((0.005, 50.0))
 
 
-def test_flat_parts_of_a_file_have_samples_behind_a_jump():
-    """As many as half a square's period, also where the load begins; where nothing jumped a piece is one step."""
-    burst = {"waveform": "file", "times": (0, 0.01, 0.010001, 0.02, 0.03), "voltages": (0, 0, 100, 100, 100)}
-    times = [time for time, _ in wave(0.03, **burst).samples(0.03, 1.0)]
-    counts = [sum(a < time <= b for time in times) for a, b in ((0, 0.01), (0.010001, 0.02), (0.02, 0.03))]
-    assert counts == [SAMPLES // 2, SAMPLES // 2, 1]
-    dense = [k / SAMPLES for k in range(SAMPLES + 1)]  # of a sine: no jump in it
-    sine = {"waveform": "file", "times": dense, "voltages": [100 * math.sin(2 * math.pi * t) for t in dense]}
-    assert len(wave(**sine).samples(1.0, 1.0)) <= SAMPLES + 1 + SAMPLES // 2
-
-
 def test_roundoff_in_a_table_is_zero(tmp_path):
     """A sine by NumPy is not 0 at its zeros, nor is an oscilloscope's noise, which a millivolt is above."""
     values = [0.0, 100.0, 100 * math.sin(math.pi), -100.0, -2.4e-14]
