@@ -25,28 +25,6 @@ def table_of(text: str) -> dict[str, float]:
     return {line.split(" = ")[0]: float(line.split(" = ")[1]) for line in lines if " = " in line}
 
 
-def test_topography_whatever_the_separator(tmp_path, capsys):
-    """Semicolons with empty places, spaces, and the lengths of a pixel or of the map: the same table."""
-    h = heights(tmp_path)
-    text = "\n".join(";".join("" if np.isnan(v) else f"{v:.6f}" for v in row) for row in h)
-    (tmp_path / "map.csv").write_text(text)
-    np.savetxt(tmp_path / "map.txt", h, fmt="%.6f")
-    found = []
-    for words in (
-        ["map.csv", "--pixel", "6.25 um", "6.25e-6"],
-        ["map.csv", "--size", "0.4 mm", "0.4 mm"],
-        ["map.txt", "--size", "400e-6", "400e-6"],
-    ):
-        assert main(["topography", str(tmp_path / words[0]), "--unit", "um", *words[1:]]) == 0
-        text = capsys.readouterr().out
-        assert "pixels missing" in text and "Hurst exponent" in text
-        found.append(table_of(text))
-    assert found[0] == found[1] == found[2]
-    assert (
-        load(None, {f"roughness.{key}": value for key, value in found[0].items()}).roughness.h_rms == found[0]["h_rms"]
-    )
-
-
 @pytest.mark.parametrize(
     ("text", "options", "message"),
     [

@@ -115,31 +115,6 @@ def test_smaller_forces_are_those_of_the_traces(table):
     assert np.isnan(of_both[3])
 
 
-# -- forces that differ a little -----------------------------------------------------------------------------
-def fingers(*forces):
-    """Return runs of whole fingers under forces (N), each at 50 V more than the last, from 0 V on."""
-    return [
-        Result(
-            Scene(),
-            "full",
-            None,
-            None,
-            state(4, 40.0, 50.0 * k, mu_app=0.3),
-            finger=WholeFinger({"full_slip": total(force, 1e-4 * (k + 1))}, "test"),
-        )
-        for k, force in enumerate(forces)
-    ]
-
-
-def test_forces_within_a_percent_are_one(table):
-    """The newtons of one f_ext differ between voltages: the nearest force of each is taken, also without a column."""
-    runs = fingers(0.3, 0.3015)
-    asked = read(table("force (N), voltage (V), gross area (mm^2)\n0.301, 0, 100\n0.301, 50, 100\n0.305, 0, 100\n"))
-    np.testing.assert_allclose(ratio(runs, asked), [1.0, 2.0, np.nan], rtol=1e-9)
-    free = read(table("voltage (V), gross area (mm^2)\n0, 100\n50, 100\n"))
-    assert ratio(runs, free) == pytest.approx([1.0, 2.0])
-
-
 # -- runs together -------------------------------------------------------------------------------------------
 @pytest.fixture
 def together(table, tmp_path, monkeypatch):
@@ -187,17 +162,3 @@ def test_histories_may_differ_in_force_and_voltage():
         one_scene.refuse_mixed([history({"f_ext": 20}, 100, 1e-3), history({"f_ext": 20}, 100, 2e-3)])
     with pytest.raises(SceneError, match="history is not given in a run and a list of 3 in a run"):
         one_scene.refuse_mixed([Result(Scene(), "full", None, None, None), history({"f_ext": 20}, 100, 1e-3)])
-
-
-def test_two_values_at_one_place_are_refused(table):
-    """Roundoff of force, voltage and value is none."""
-    friction = read(table("force (N/m), voltage (V), friction (1)\n20, 100, 0.3\n"))
-
-    def slip(mu, f_ext=20.0):
-        return Result(Scene(), "full", None, None, state(4, f_ext, 100.0, mu_app=mu))
-
-    assert len(computed([slip(0.4), slip(0.4 + 1e-7, 20 + 1e-8)], friction).points) == 1
-    near = Result(Scene(), "full", None, None, replace(slip(0.41).full_slip, error=Errors(mu_app=0.02)))
-    computed([slip(0.4), near], friction)  # on another mesh, for an accuracy
-    with pytest.raises(SceneError, match="friction is 0.4 in a run and 0.41 in a run, both at 20 N/m and 100 V; give"):
-        computed([slip(0.4), slip(0.41)], friction)

@@ -1,12 +1,9 @@
 """The error study of the default scene, on made-up runs whose limits are known."""
 
-from types import SimpleNamespace
-
 import pytest
 
 from benchmarks import errors, limits
 from benchmarks.errors import QUANTITIES
-from fingerpad.scene import Scene
 from variational.solvers.continuation import StepFailed
 
 
@@ -75,28 +72,3 @@ def path(monkeypatch):
     Path.tried = []
     monkeypatch.setattr(limits, "Simulation", Path)
     monkeypatch.setattr(limits, "StateRecorder", StateRecorder)
-
-
-def test_path_that_is_lost_is_followed_on_a_finer_mesh(path):
-    assert limits._path(Scene()) == 10e-6
-    assert Path.tried == [20e-6, 10e-6]
-
-
-@pytest.mark.parametrize(("lost", "levels"), [(4, 4), (3, 3), (2, None)])
-def test_limit_is_of_the_meshes_before_one_on_which_a_state_is_lost(monkeypatch, lost, levels):
-    """The meshes are numbered from zero; of fewer than three no limit is made."""
-    sizes = [mesh.contact for mesh in limits.meshes(Scene().mesh, 4)]
-
-    def solved(model, states, comm):
-        if sizes[lost:] and model.mesh.contact == sizes[lost]:
-            raise StepFailed("lost")
-        cost = {"unknowns": 1, "factorisations": 1, "processor_seconds": 0.0}
-        return SimpleNamespace(states={}, mesh=model.mesh, values=dict, **cost)
-
-    monkeypatch.setattr(limits, "solve_again", solved)
-    monkeypatch.setattr(limits, "_path", lambda scene: solved(Scene(), {}, None))
-    if levels is None:
-        with pytest.raises(StepFailed, match="lost"):
-            limits._solve(Scene(), 4)
-    else:
-        assert len(limits._solve(Scene(), 4)["levels"]) == levels

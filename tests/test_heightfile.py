@@ -7,7 +7,6 @@ import pytest
 import scipy.io
 
 from tests.test_topography import grid, wave
-from variational.roughness import missing
 from variational.roughness.heightfile import _matrix, _text, scan
 from variational.roughness.missing import filled
 from variational.roughness.selfaffine import SelfAffine
@@ -29,22 +28,6 @@ def test_plain_files(tmp_path, name):
 @pytest.fixture
 def other():
     return pytest.importorskip("SurfaceTopography", reason="pip install fingerpad[topography]")
-
-
-def test_bad_files(tmp_path):
-    (tmp_path / "heights.txt").write_text("1 2 3 4\n" * 4)
-    np.save(tmp_path / "line.npy", np.zeros(9))
-    np.save(tmp_path / "high.npy", np.eye(9) * 1e200)
-    small = (1e-3, 1e-3)
-    for name, given, message in (
-        ("heights.txt", {"unit": "m"}, "has no size; give 'size' or 'pixel'"),
-        ("heights.txt", {"unit": "m", "size": small, "pixel": small}, "give 'size' or 'pixel', one of them"),
-        ("heights.txt", {"size": small}, "holds numbers without a unit; give 'unit'"),
-        ("line.npy", {"unit": "m", "size": small}, r"line.npy: heights have shape \(9,\)"),
-        ("high.npy", {"unit": "m", "size": small}, r"heights over 1e\+200 m, at most 1 m is allowed"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            scan(tmp_path / name, **given)
 
 
 def test_lengths_that_are_exchanged(tmp_path):
@@ -83,14 +66,6 @@ def test_unfilled_value_is_refused(name, value, pixels, tmp_path):
         assert scan(path, **PLAIN, missing=text).missing == pixels
     if value == 32767:
         assert np.ptp(scan(path, **PLAIN, missing="nan").map.heights) > 0.03
-
-
-@pytest.mark.parametrize("width", [1, 3, 20])
-def test_deep_grooves_are_no_marks(width):
-    """Walls are steep and 1000 interquartile ranges deep, but the floor has heights of its own."""
-    h = 0.1 * np.random.default_rng(1).normal(size=(64, 64))
-    h[30 : 30 + width] -= 135.0
-    assert missing.mark(h) is None
 
 
 def test_missing_heights_are_those_of_a_plane():
@@ -204,11 +179,6 @@ def test_text_with_units_in_its_header(encoding, other, tmp_path):
     assert scan(path, size=(90e-6, 100e-6)).map.pixel == pytest.approx((2.5e-6, 2.5e-6))
     with pytest.raises(ValueError, match="has no size; give 'size' or 'pixel'"):
         scan(path)
-
-
-def points() -> str:
-    """Return a text of 4 x 3 points of which the heights are from 0 to 3."""
-    return "\n".join(f"{0.002 * i:g} {0.003 * j:g} {i}" for i in range(4) for j in range(3))
 
 
 def test_without_the_optional_package(monkeypatch, tmp_path):

@@ -284,13 +284,3 @@ def test_mean_from_steps_that_are_too_long_is_told(tmp_path):
     assert abs(means[0] - means[1]) < long.loads[2].over_time.mean_change["f_t"]
     assert long.loads[2].extremes["f_t"].max == pytest.approx(long.loads[1].end.f_t, rel=1e-9), "where it began"
     assert long.to_dict()["loads"][2]["over_time"]["mean_change"]["f_t"] > 0
-
-
-def test_first_touch_has_no_estimated_errors():
-    """A finger that slides as it is pressed has no normal contact, of which errors could be estimated."""
-    found = result(
-        PRESS | {"bone_x": 1e-4}, {"name": "charge", "voltage": 50.0}, output=FINGER["output"] | {"errors": True}
-    )
-    assert found.charged is None and found.full_slip is not None
-    estimated = found.record["accuracy"]["quantities"]
-    assert estimated and not any(key.startswith("normal_") for key in estimated)

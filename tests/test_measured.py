@@ -7,7 +7,7 @@ from benchmarks.harness import DOCS, kept
 from benchmarks.measured import __main__ as command
 from benchmarks.measured import forms, page, rows
 from benchmarks.measured.verdict import HIT, MISS, PART, by_factor, by_form, by_share
-from benchmarks.runs import FORCES, VOLTAGES
+from benchmarks.runs import VOLTAGES
 
 
 @pytest.fixture(scope="module")
@@ -65,47 +65,6 @@ def test_pressures_find_their_own_curves(form):
     assert found.parameter == pytest.approx(1.2, rel=1e-4) and found.misfit < 1e-4
     other = forms.ellipse if form is forms.paraboloid else forms.paraboloid
     assert 0.005 < forms.of_largest(other, x, pressure).misfit < 0.1
-
-
-@pytest.fixture(scope="module")
-def grid():
-    return rows.grid(kept("paper").numbers, kept("models").numbers)
-
-
-def areas(grid, **changed):
-    """Return the grid with the gross areas of whole fingers over those of the uncharged press, by state."""
-    plain = grid.full_finger["charged_0_gross_area"]
-    of = {f"{state}_gross_area": plain * np.asarray(factor) for state, factor in changed.items()}
-    return grid._replace(full_finger=dict(grid.full_finger) | of)
-
-
-@pytest.mark.parametrize(
-    ("key", "changed", "verdict"),
-    [
-        ("area_before", {"charged_200": 1.02}, HIT),
-        ("area_before", {"charged_200": 1.04}, MISS),
-        ("area_after", {"full_slip_0": 1.0, "full_slip_200": 0.96}, HIT),
-        ("area_after", {"full_slip_0": 0.9, "full_slip_200": 1.0}, MISS),
-        ("area_shear", {"full_slip_0": 0.98}, MISS),
-        ("apparent_sliding", {"full_slip_0": 0.96}, HIT),
-    ],
-)
-def test_apparent_areas_are_those_of_the_whole_finger(grid, key, changed, verdict):
-    """They change from 3 % on: before slip they should not, in sliding they should fall."""
-    assert rows.numbers(areas(grid, **changed), kept("measured").numbers["runs"])[key][1] == verdict
-
-
-@pytest.mark.parametrize(
-    ("power", "verdicts"),
-    [(0.0, [HIT, MISS, MISS, MISS]), (-0.3, [MISS, HIT, HIT, PART]), (0.3, [MISS, MISS, HIT, PART])],
-)
-def test_friction_over_the_load(grid, power, verdicts):
-    """Independent of the load, falling, a power of the load, and five times higher: by µ of the runs at 0 V."""
-    f_t = np.array(grid.fine["full_slip_f_t"])
-    f_t[:, 0] = 0.25 * np.array(FORCES) ** (1 + power)
-    found = rows.numbers(grid._replace(fine=dict(grid.fine) | {"full_slip_f_t": f_t}), kept("measured").numbers["runs"])
-    keys = ("friction_load", "friction_acrylic", "friction_power", "friction_occluded")
-    assert [found[key][1] for key in keys] == verdicts
 
 
 def test_kept_rows_are_those_of_the_other_pages(judged):

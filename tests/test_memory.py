@@ -23,7 +23,6 @@ from variational.element import ELEMENTS
 FINE = {"contact": 10e-6, "receptor": 10e-6, "touching_half_arc": 1.0e-3}
 COARSE = {"contact": 30e-6, "receptor": 60e-6, "interface": 120e-6, "growth": 0.5, "touching_half_arc": 2.0e-3}
 EVEN = {"contact": 100e-6, "receptor": 100e-6, "interface": 150e-6, "coarsest": 150e-6, "touching_half_arc": 1.0e-3}
-STEEP = {"contact": 100e-6, "receptor": 100e-6, "interface": 100e-6, "growth": 1.0, "touching_half_arc": 1.0e-3}
 
 
 @pytest.mark.parametrize(

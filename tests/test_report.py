@@ -198,11 +198,6 @@ def test_report_that_fails_does_not_cost_the_run(tmp_path, monkeypatch, capsys):
     assert "no report of" in capsys.readouterr().err
 
 
-def data(page: str) -> dict:
-    """Return what the charts of a page are drawn from."""
-    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)[1])
-
-
 @pytest.mark.parametrize("model", ["full", "cylinders"])
 def test_cautions_are_findings(folder, model):
     """The page is to be used with care where a limit of validity is reached."""
