@@ -8,6 +8,7 @@ import pytest
 
 from fingerpad import cli
 from fingerpad.cli.params import page
+from fingerpad.scene import Scene
 from fingerpad.scene.keys import every
 from tests.pages import ROOT, alike, blocks, printed, sentences, words
 
@@ -143,8 +144,8 @@ def test_every_equation_of_the_paper_has_a_place():
 
 def test_page_is_the_generated_one():
     """If not: fingerpad params --markdown > docs/scene.md."""
-    assert text("docs/scene.md") == page(list(every())) + "\n"
+    assert text("docs/scene.md") == page(list(every(Scene))) + "\n"
 
 
 def test_every_key_has_a_meaning():
-    assert [key.name for key in every() if not key.meaning] == []
+    assert [key.name for key in every(Scene) if not key.meaning] == []
