@@ -29,7 +29,7 @@ def test_mutants(folder):
 def test_what_is_broken_is_found(folder, monkeypatch, broken, value):
     """Without one of the guards there is a mutant that shows it."""
     monkeypatch.setattr(broken, value)
-    assert any(fault(mutant(SEED, k), folder)[0] for k in range(200))
+    assert any(fault(mutant(SEED, k), folder)[0] for k in range(400))
 
 
 # -- files -------------------------------------------------------------------------------------------------
