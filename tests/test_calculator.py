@@ -17,7 +17,7 @@ import fingerpad as fp
 from fingerpad.calculator import fields
 from fingerpad.calculator.page import page
 from fingerpad.cli import main
-from fingerpad.reduced import cylinders, known
+from fingerpad.reduced import cylinder_errors, cylinders
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.reading import put
 from tests.browser import asked
@@ -271,7 +271,7 @@ def test_command_writes_the_page(tmp_path, capsys, whole):
 
 
 # -- The calculator's ±, band and solid line are where full runs are, and nowhere else ---
-BANDS = known.KNOWN_ERROR["full_slip"]
+BANDS = cylinder_errors.KNOWN_ERROR["full_slip"]
 # Sets values into fields; returns what the page shows of its error.
 SHOWN = """
 function shown(values) {

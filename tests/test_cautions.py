@@ -90,6 +90,7 @@ def test_body_with_a_thick_insulator():
     assert RISES in caution
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("values", "words"),
     [({"contact": {"eps_n": 1e11}}, DEEP), ({"roughness": {"young": 3e4}}, "beyond zero separation")],
@@ -101,7 +102,13 @@ def test_run(values, words):
     assert sum(words in text for text in fp.run(scene).cautions) == 1
 
 
-@pytest.mark.parametrize("young", [1e5, 1e4])
+@pytest.mark.parametrize(
+    "young",
+    [
+        1e5,
+        1e4,
+    ],
+)
 def test_cylinders_and_tables(young, capsys):
     """Of clamped closures, whose friction is one number."""
     found = cylinders.solve(fp.Scene(roughness={"young": young}))

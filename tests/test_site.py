@@ -60,6 +60,7 @@ def within(path: Path, links: set[str]) -> Iterator[tuple[Path, str]]:
             yield (path.parent / unquote(parts.path)).resolve() if parts.path else path, unquote(parts.fragment)
 
 
+@pytest.mark.long
 def test_site(site):
     """Built whole and without a warning; links and anchors exist; nothing comes from a network. One build for all."""
     pages = {path: Page(path.read_text(encoding="utf-8")) for path in site.rglob("*.html")}

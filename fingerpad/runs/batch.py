@@ -87,8 +87,8 @@ def times_left(took: Sequence[float], left: int, jobs: int) -> tuple[float, floa
 
 def _said(summary: Summary) -> str:
     """Return what became of a run that did not fail, in words; of a whole finger where the force is on it."""
-    found = summary["finger"]["states"].get("full_slip", {}) if "force" in summary["parameters"] else {}
-    mu_app = found.get("mu_app") if "force" in summary["parameters"] else summary.get("full_slip_mu_app")
+    found = summary["finger"]["states"].get("full_slip", {}) if "force" in summary.get("parameters", {}) else {}
+    mu_app = found.get("mu_app") if "force" in summary.get("parameters", {}) else summary.get("full_slip_mu_app")
     return "done" if mu_app is None else f"done, µ_app {mu_app:.4f}"
 
 
