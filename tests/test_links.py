@@ -14,7 +14,6 @@ from fingerpad.io.checkpoint import Checkpoint
 from fingerpad.io.files import Table, lock_file, replace
 from fingerpad.io.place import Place, PlaceError, Serial
 from fingerpad.scene import SceneError
-from fingerpad.slices.traces import folder_of
 
 
 @pytest.fixture
@@ -59,7 +58,6 @@ def test_link_under_the_name_of_a_result_is_refused(out, victim, name, target):
 @pytest.mark.parametrize(
     ("name", "start"),
     [
-        ("charged", lambda out: folder_of(out, "charged")),
         ("full", lambda out: fp.sweep(out=out, voltage=[100], quiet=True)),
         ("full", lambda out: main(["compare", "--out", str(out), "--model", "full", "--quiet"]) and None),
     ],
