@@ -16,6 +16,7 @@ def found():
     return kept("assumptions").numbers
 
 
+@pytest.mark.slow
 def test_printed_options_give_the_scene(monkeypatch):
     """As the command line reads them; whether errors are estimated is left to it."""
     monkeypatch.chdir(ROOT)

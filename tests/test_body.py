@@ -293,6 +293,7 @@ def test_load_that_fails_keeps_what_was_reached():
     assert body.slide(until_full_slip=True).state.f_t == pytest.approx(MU_F * body.state.f_contact, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_step_that_fails_keeps_the_last_state():
     """Pressed through itself a ridge has no equilibrium: the failure names the step, the states before are kept."""
     body = ridge(roughness=None).press(FORCE)

@@ -14,6 +14,7 @@ from fingerpad.scene.reading import override
 from tests.commands import COARSE, refused
 
 
+@pytest.mark.slow
 def test_check(tmp_path, capsys):
     """Loads in order, what is left out with its reason, and a picture."""
     argv = ["check", "--set", "voltage=0", "--out", str(tmp_path)]

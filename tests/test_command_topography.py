@@ -96,6 +96,7 @@ def test_height_map_and_its_numbers_are_refused():
 REMARK = "m, above half of geometry.ridge_wavelength, 0.000483 m: ridges or the finger's form may count as roughness"
 
 
+@pytest.mark.slow
 def test_roughness_as_long_as_ridges_is_told(tmp_path, monkeypatch, capsys):
     """By commands, in a sweep, and among a result's cautions."""
     monkeypatch.setattr("fingerpad.cli.check._picture", lambda *given: "")

@@ -131,6 +131,7 @@ def together(table, tmp_path, monkeypatch):
     return together
 
 
+@pytest.mark.slow
 def test_runs_of_other_screens_are_refused(together, capsys):
     """The last of them won, without a word."""
     said = refused(capsys, *together({"electric": {"d_i": 1e-6}}, {"electric": {"d_i": 5e-6}}))

@@ -59,6 +59,7 @@ def test_without_it_they_would_be(tmp_path, clean):
     assert done.stdout == "True ['found']\n77 77.0\n"
 
 
+@pytest.mark.slow
 def test_nothing_is_taken_from_the_home_folder(tmp_path, clean):
     """Its files were written for other programs; the control shows that these libraries read them."""
     place, home = tmp_path / "place", tmp_path / "home"

@@ -26,6 +26,7 @@ def test_mutants(folder):
     ("broken", "value"),
     [("fingerpad.scene.reading._MOST_DEPTH", 10**6), ("fingerpad.model.feasibility.refuse_sizes", lambda *given: None)],
 )
+@pytest.mark.slow
 def test_what_is_broken_is_found(folder, monkeypatch, broken, value):
     """Without one of the guards there is a mutant that shows it."""
     monkeypatch.setattr(broken, value)
@@ -33,6 +34,7 @@ def test_what_is_broken_is_found(folder, monkeypatch, broken, value):
 
 
 # -- files -------------------------------------------------------------------------------------------------
+@pytest.mark.slow
 def test_files(folder):
     """Each kind as it is, and mutants of them: there is nothing wrong, some are read and some refused."""
     kinds = {ending: content for ending, content in fuzz_files.whole() if len(content) > 60}

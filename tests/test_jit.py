@@ -104,6 +104,7 @@ def test_stopped_compile_loses_nothing(others, monkeypatch, capfd):
     assert integral() == 2.5 and capfd.readouterr().err == ""
 
 
+@pytest.mark.slow
 def test_two_processes_compile_a_form_once(others):
     """The second waits, says so, and takes what the first has compiled."""
     first, second = others.start(), others.start()

@@ -319,6 +319,7 @@ def slid() -> Simulation:
     return simulation
 
 
+@pytest.mark.slow
 @pytest.mark.mpi
 def test_finger_of_own_laws_reaches_full_slip(slid):
     """f_T is the sum of the limits of its points. Tolerance: forces left at nodes, roundoff of the limit."""
@@ -328,6 +329,7 @@ def test_finger_of_own_laws_reaches_full_slip(slid):
     assert state.f_contact - state.f_electrostatic == pytest.approx(1.0, abs=slid.finger.force_error)
 
 
+@pytest.mark.slow
 @pytest.mark.mpi
 def test_friction_of_own_law_is_below_coulombs(slid):
     """It levels off with the pressure."""
@@ -335,11 +337,13 @@ def test_friction_of_own_law_is_below_coulombs(slid):
     assert 0 < loads.f_limit.sum() < 0.95 * 0.4 * loads.f_contact.sum()
 
 
+@pytest.mark.slow
 @pytest.mark.mpi
 def test_air_gaps_are_the_closures(slid):
     assert (slid.finger.coupling.d_eq == 2e-6).all()
 
 
+@pytest.mark.slow
 @pytest.mark.mpi
 def test_dermis_is_the_given_material(slid):
     group = next(group for group in slid.finger.problem.laws if tags.DERMIS in group)
@@ -347,6 +351,7 @@ def test_dermis_is_the_given_material(slid):
     assert isinstance(slid.finger.problem.laws[group], Mine)
 
 
+@pytest.mark.slow
 @pytest.mark.mpi
 def test_energies_of_own_laws_balance(slid):
     """What friction spends is positive, and steps that do not jump release little of it."""

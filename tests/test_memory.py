@@ -32,6 +32,7 @@ EVEN = {"contact": 100e-6, "receptor": 100e-6, "interface": 150e-6, "coarsest": 
         ({"ridge_profile": (1.0, -0.6), "ridge_count": 15}, FINE, True, True),
     ],
 )
+@pytest.mark.slow
 def test_triangles_are_bounded_before_meshing(finger, size, receptors, half):
     """By a third of them or more: of meshes fine at the crests, at the sites, everywhere and nowhere."""
     finger, size = Fingertip(**finger), MeshSize(**size)
@@ -72,6 +73,7 @@ def test_memory_of_runs(number, gigabytes):
     assert 0.995 * gigabytes < memory(number) / 1e9 < gigabytes / 0.8
 
 
+@pytest.mark.slow
 def test_mesh_that_needs_too_much_memory_is_refused_when_it_is_made():
     """The bound lets it pass; on every rank, by the triangles that it has."""
     scene = from_data({"mesh": COARSE})

@@ -313,6 +313,7 @@ def test_other_file_is_refused_and_not_run(place, text):
     assert os.listdir(place.parent) == ["mine.msh"]
 
 
+@pytest.mark.slow
 def test_page_runs(tmp_path, monkeypatch):
     """The example of the documentation runs as written."""
     page = Path(__file__).parents[1] / "docs" / "mesh.md"

@@ -107,6 +107,7 @@ def test_step_shows_the_time_left_of_the_path(capsys, monkeypatch):
     assert out.endswith("  20 to 60 s\n") and "-0" not in out
 
 
+@pytest.mark.slow
 def test_run_in_quiet_prints_the_result_alone(tmp_path, write, capsys):
     """No step, no phase; the result as a table, once."""
     assert main(["run", str(write(PRESS + MESH)), "--out", str(tmp_path / "out"), "--quiet"]) == 0
