@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fingerpad.io.result import Cost, Result
+from fingerpad.io.answer import Cost
+from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS
 from fingerpad.reduced.model import Model
 from fingerpad.scene import Scene, SceneError
