@@ -1,6 +1,7 @@
 """The energy balance closes on smooth paths, each of its terms is a derivative, and a jump leaves what it releases."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -156,6 +157,14 @@ def released_by_pull_in() -> float:
     return spring.WIDTH * (springs[0] + phi[0] - springs[1] - phi[1])
 
 
+@cache
+def pulled_in(steps: int) -> list[Balance]:
+    """Return the balances of a bone that is lowered by 2 um, in whose course the skin jumps to the screen."""
+    walk = Walk(spring.charged())  # its gap is the spring's too
+    walk.to(Control(), spring.VOLTAGE)
+    return [walk.to(Control(0.0, -2e-6 * part), spring.VOLTAGE) for part in np.arange(1, steps + 1) / steps]
+
+
 @pytest.mark.mpi
 @pytest.mark.parametrize("steps", [8, 16, 32])
 def test_energy_released_by_pull_in(steps):
@@ -171,13 +180,6 @@ def test_energy_released_by_pull_in(steps):
     assert released[jump] > 0
     assert released[jump] == pytest.approx(expected, abs=balances[jump].released_error + 0.01 * expected)
     assert np.abs(np.delete(released, jump)).sum() < 0.02 * expected
-
-
-def pulled_in(steps: int) -> list[Balance]:
-    """Return the balances of a bone that is lowered by 2 um, in whose course the skin jumps to the screen."""
-    walk = Walk(spring.charged())  # its gap is the spring's too
-    walk.to(Control(), spring.VOLTAGE)
-    return [walk.to(Control(0.0, -2e-6 * part), spring.VOLTAGE) for part in np.arange(1, steps + 1) / steps]
 
 
 def test_error_of_what_is_released_falls_with_the_step():

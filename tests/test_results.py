@@ -70,7 +70,9 @@ def test_charged_while_it_slides(tmp_path, titles):
     charge = {"name": "charge while sliding", "f_ext": 1.0, "voltage": 100.0, "bone_x": 0.6e-3}
     summary = run(from_data(LEAN | {"history": [PRESS, SLIDE, charge]}), tmp_path, MPI.COMM_WORLD, pictures=True)
     rows = rows_of(tmp_path)
-    last = rows[-1]
+    last, seconds = rows[-1], [float(row["processor_seconds"]) for row in rows]
+    assert "accuracy" not in summary and "full_slip_mu_app_error" not in summary, "none were estimated"
+    assert 0 < seconds[0] < seconds[-1] <= summary["processor_seconds"] and seconds == sorted(seconds)
     assert summary["full_slip"] is True
     assert summary["full_slip_step"] == len(rows) and summary["full_slip_load"] == "charge while sliding"
     assert summary["full_slip_mu_app"] == float(last["mu_app"]) > 0.5

@@ -111,6 +111,14 @@ class StateRecorder:
         if state.slip_held and self._begun is not None:
             self.states["full_slip"] = self._begun
 
+    def kept(self) -> dict[str, Any]:
+        """Return what another process needs to go on with the path."""
+        return {"states": self.states, "begun": self._begun}
+
+    def resume(self, kept: Mapping[str, Any]) -> None:
+        """Go on from what another process kept."""
+        self.states, self._begun = kept["states"], kept["begun"]
+
     def keep(self, name: str) -> None:
         """Keep the present state; collective."""
         direction = 1 if self._simulation.finger.solver.reaction[0] <= 0 else -1

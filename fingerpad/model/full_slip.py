@@ -29,7 +29,8 @@ class FullSlip:
             speed: of the bone (m/s); 0 where it takes no time.
         """
         path, solver = self._finger.continuation, self._finger.solver
-        before, x = solver.reaction[0], solver.control.x
+        begun = path.begun()
+        before, x = begun.reaction[0], begun.control.x
         path.run(Target(load, bone_x=x + direction * SLIDE_ON, duration=SLIDE_ON / speed if speed else 0.0))
         return path.slip[1] and self._unchanged(before, solver.reaction[0])
 

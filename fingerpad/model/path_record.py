@@ -35,6 +35,18 @@ class PathRecord:
         self.profiles: dict[int, Profile] = {}
         self.ends: dict[str, End] = {}
 
+    def prune(self, loads: Sequence[str]) -> None:
+        """Drop the skin of steps that nothing will show, whatever follows; rank 0 alone has one.
+
+        Args:
+            loads: names of the loads in order.
+        """
+        last, rows = self.states[-1], self.states
+        shown = [*states.named(rows, loads).values(), *(end.state for end in self.ends.values()), last]
+        shown += [row for row in (states.partial_slip(rows), states.nearest_to_half(rows)) if row]
+        steps = {state.step for state in shown} | {last.slip_began}
+        self.profiles = {step: profile for step, profile in self.profiles.items() if step in steps}
+
     def named(self, final: Mapping[str, View], loads: Sequence[str]) -> dict[str, ContactState]:
         """Return the named states with their stability and, on every rank, their skin; collective.
 

@@ -1,6 +1,5 @@
 """The stability of accepted states of a finger, examined once each."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,10 +36,10 @@ class Checked:
 class StabilityChecks(dict[int, Checked]):
     """Stability by step."""
 
-    def __init__(self, finger: Finger, examine: Callable[[StabilityCheck], Stability] = StabilityCheck.check) -> None:
-        """Take the finger, and how its present state is examined."""
+    def __init__(self, finger: Finger) -> None:
+        """Take the finger."""
         super().__init__()
-        self._finger, self._check, self._examine = finger, StabilityCheck(finger.solver), examine
+        self._finger, self._check = finger, StabilityCheck(finger.solver)
 
     def check(self, load: str) -> Checked:
         """Return the stability of the present state; collective.
@@ -57,7 +56,7 @@ class StabilityChecks(dict[int, Checked]):
             known = gain[np.isfinite(gain)]
             largest = float(known.max()) if len(known) and finger.voltage != 0 else 0.0
             try:
-                self[step] = Checked(self._examine(self._check), largest)
+                self[step] = Checked(self._check.check(), largest)
             except NotConverged as failure:
                 raise StepFailed(f"step {step} ({load}): its stability cannot be examined: {failure}") from failure
         return self[step]
