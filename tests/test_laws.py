@@ -18,7 +18,7 @@ from fingerpad.reduced import cylinders
 from fingerpad.scene import CONTACT, Scene, SceneError, from_data, law_keys, load
 from fingerpad.scene import materials as scene_materials
 from fingerpad.scene.keys import docstrings
-from fingerpad.scene.law_keys import digest
+from fingerpad.scene.law_code import digest
 from fingerpad.scene.laws import LAYERS, used
 from fingerpad.scene.materials import CLOSURES, FRICTION_LAWS, MATERIALS
 from fingerpad.scene.reading import flat

@@ -13,6 +13,7 @@ from typing import Any
 from fingerpad.io.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import STATES, LoadResult
+from fingerpad.scene import Scene
 from fingerpad.scene.keys import Key, every
 from fingerpad.slices.finger import WholeFinger
 
@@ -160,4 +161,4 @@ def printed(value: Any) -> str:
 
 def described(key: str) -> Key | None:
     """Return what is known of a dotted key of a scene; None of a table."""
-    return next((each for each in every() if each.name == re.sub(r"\[\d+\]", "[]", key)), None)
+    return next((each for each in every(Scene) if each.name == re.sub(r"\[\d+\]", "[]", key)), None)
