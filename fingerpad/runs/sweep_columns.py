@@ -27,7 +27,7 @@ _ENDS = {"min": "least", "max": "largest", "mean": "mean"}
 
 def row(result: Result) -> dict[str, Any]:
     """Return the values of a point in SI units by column, and its failure."""
-    if result.scene.force is not None:
+    if result.whole:
         return (_newtons(result.finger) if result.finger is not None else {}) | {"failure": result.failure}
     values, keys = result.values(), (*SWEPT, *(each.name for each in result.outputs))
     names = [f"{state}_{key}" for state in STATES for key in keys]
