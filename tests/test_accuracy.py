@@ -13,13 +13,14 @@ from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.accuracy.rigid_screen import ORDER
 from fingerpad.accuracy.solves import Solve, State
 from fingerpad.io.interrupt import Interrupted
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.touching import by_rule
 from fingerpad.richardson import MORE, ONCE, plus_minus
 from fingerpad.runs import attempt
 from fingerpad.runs.batch import key
 from fingerpad.scene import SceneError, from_data
 from tests.runs import run
+from tests.small_finger import NINE
 from variational.contact.penalty import Penalty
 from variational.solvers.continuation import StepFailed
 from variational.solvers.equations import Control
@@ -328,7 +329,7 @@ def test_starts_again_finer_where_the_path_is_lost(asked, start, helps, finer):
     failed.__cause__ = NotConverged("DIVERGED_LOCAL_MIN" if helps else "NOT_A_NUMBER", False)
     if asked and not helps:  # any loss of a mesh to start from may be its coarseness
         failed = Interrupted(signal.SIGTERM, 3)
-    restart = attempt._finer(model, failed)
+    restart = attempt._finer(model, failed, MPI.COMM_SELF)
     assert (restart and restart.model.mesh.contact) == finer
 
 
@@ -377,12 +378,7 @@ def test_coefficient_without_a_force_is_refused():
 
 
 # -- a small finger ----------------------------------------------------------------------------------------
-SMALL = {
-    "f_ext": 1.0,
-    "voltage": 100.0,
-    "geometry": {"ridge_count": 9},
-    "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
-}
+SMALL = NINE | {"f_ext": 1.0, "voltage": 100.0}
 
 
 def test_small_finger_tells_what_its_penalty_changes(tmp_path: Path):
