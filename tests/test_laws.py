@@ -3,6 +3,7 @@
 import json
 import re
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ import fingerpad as fp
 from fingerpad.model.simulation import Simulation
 from fingerpad.reduced import cylinders
 from fingerpad.scene import CONTACT, Scene, SceneError, from_data, law_keys, load
+from fingerpad.scene import materials as scene_materials
 from fingerpad.scene.keys import docstrings
 from fingerpad.scene.law_code import digest
 from fingerpad.scene.laws import LAYERS, used
@@ -258,6 +260,18 @@ def test_law_of_the_package_is_one_line_of_a_registry(kind, law, table, key, mon
     with pytest.raises(SceneError, match=f"{key} is '1 s'; its unit is not a unit of"):
         load(None, flat(table) | {key: "1 s"})
     cylinders.solve(scene, cylinders.given(1.5e-3, 15))
+
+
+def test_registries_of_the_recipes_are_there():
+    """Each row of CONTRIBUTING for a law names a folder and a registry, which this test's laws were added to."""
+    rows = (Path(__file__).parents[1] / "CONTRIBUTING.md").read_text(encoding="utf-8").splitlines()
+    names = {"friction law": "FRICTION_LAWS", "material": "MATERIALS", "model of roughness": "CLOSURES"}
+    for what, name in names.items():
+        row = next(row for row in rows if row.startswith(f"| {what} |"))
+        assert f"`{name}` in `fingerpad/scene/materials.py`" in row and hasattr(scene_materials, name)
+    assert "`FORMULATIONS` in `fingerpad/scene/parameters.py`" in next(
+        row for row in rows if row.startswith("| contact formulation |")
+    )
 
 
 # -- scenes apart ----------------------------------------------------------------------------------------------
