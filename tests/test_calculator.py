@@ -323,18 +323,3 @@ def test_known_point_has_its_errors(whole, tmp_path):
         assert error == pytest.approx(BANDS[band] * getattr(state, key) * per, abs=6e-3)
     assert "±" not in found["cells"]["d_eq"] and found["caption"] == "Section at the centre of the finger"
     assert found["voltage"]["bands"] == found["force"]["bands"] == 1
-
-
-def test_line_is_solid_up_to_the_last_run(whole, tmp_path):
-    """At 300 V it is dashed from 200 V on, exactly; below 5 N/m and above 150 N/m likewise."""
-    over, low, high = shown(whole, tmp_path, {"voltage": 300}, {"f_ext": 1}, {"f_ext": 300})
-    (first, last), (begin, end) = over["voltage"]["ends"]
-    assert (last - begin) / (end - begin) == pytest.approx(200 / 300, abs=1e-3) and first == begin
-    assert over["voltage"]["solid"] == 1 and over["force"]["solid"] == over["force"]["bands"] == 0
-    assert over["captions"][1].endswith("The curve is dashed, since its error is not known.")
-    for found, part in ((low, (5 - 1) / (150 - 1)), (high, 0.0)):
-        (first, _), (begin, end) = found["force"]["ends"]
-        assert (first - begin) / (end - begin) == pytest.approx(part, abs=1e-3)
-        assert found["voltage"]["solid"] == 0
-    (_, last), (begin, end) = high["force"]["ends"]
-    assert (last - begin) / (end - begin) == pytest.approx((150 - 5) / (300 - 5), abs=1e-3)

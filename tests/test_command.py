@@ -222,13 +222,6 @@ def test_full_disk_under_the_output_is_told(words, monkeypatch, capsys):
     assert capsys.readouterr().err == "fingerpad: the output cannot be written: No space left on device\n"
 
 
-def test_whole_numbers_stay_whole():
-    """Some keys take no others; a range has them where its step is whole, too."""
-    for text in ("55,57", "55:59:3", "-3"):
-        assert all(isinstance(value, int) for value in ranges.read("x", text))
-    assert [type(value) for value in ranges.read("x", "0:1:3")] == [float] * 3
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [

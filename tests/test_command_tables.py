@@ -1,9 +1,6 @@
 """Commands that print tables: closed form, microscale, keys, studies and models side by side."""
 
 import csv
-import errno
-import re
-from pathlib import Path
 
 import pytest
 
@@ -54,18 +51,6 @@ def test_bad_command_line(capsys, line, words):
     assert words in refused(capsys, *line.split())
 
 
-def test_file_that_cannot_be_written_is_named(capsys, tmp_path, monkeypatch):
-    """As on a disk that is full: in a sentence, after the table."""
-
-    def full(file, data):
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(Path, "write_bytes", full)
-    assert main(["estimate", "--csv", str(tmp_path / "mu.csv")]) == 2
-    said = capsys.readouterr()
-    assert "mu_app" in said.out and "mu.csv cannot be used: No space left on device" in said.err
-
-
 # -- microscale --------------------------------------------------------------------------------------------
 def test_real_area_is_the_bearing_area():
     """Half of the surface is above its mean, a sixth above one rms height (15.87 % of a Gaussian)."""
@@ -81,13 +66,6 @@ def test_microscale_table_is_the_closure():
         assert row["p_ext"] == pytest.approx(float(law.external_pressure(row["u_bar"], row["voltage"])), rel=1e-9)
         across = 8.854e-12 * row["voltage"] ** 2 / 2 / (scene.h_0 + row["d_eq"]) ** 2
         assert row["p_el"] == pytest.approx(across, rel=1e-9)
-
-
-def test_microscale_of_a_history(capsys):
-    """Its skin and screen, at voltages that are given: the default's is none of its own."""
-    file = "demos/scenes/sine_while_sliding.toml"
-    assert main(["microscale", file, "--voltage", "100", "--p", "61 kPa"]) == 0
-    assert re.search(r"^ +100 +61 ", capsys.readouterr().out, re.MULTILINE)
 
 
 # -- params ------------------------------------------------------------------------------------------------

@@ -17,7 +17,6 @@ from fingerpad.io.kept_drawing import finger_of
 from fingerpad.io.place import Place, PlaceError, Serial, full_scene
 from fingerpad.reduced import cylinders
 from fingerpad.reduced.models import find
-from fingerpad.report import run_page
 from fingerpad.report.page import picture
 from fingerpad.report.write import write
 from fingerpad.runs.context import RunContext
@@ -83,14 +82,6 @@ def test_summary_with_a_value_of_another_kind(answered, tmp_path, key, value):
             read(copy)
         except SceneError as error:
             assert str(copy)[-20:] in str(error) or "copy" in str(error)
-
-
-def test_program_s_error_in_a_report_is_not_hidden(answered, monkeypatch):
-    """It is named, and is the cause."""
-    monkeypatch.setattr(run_page, "page", lambda found: {}["nothing"])
-    with pytest.raises(SceneError, match="can be made of its files .KeyError: 'nothing'") as refusal:
-        write(answered)
-    assert isinstance(refusal.value.__cause__, KeyError)
 
 
 # -- pictures ------------------------------------------------------------------------------------------

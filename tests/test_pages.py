@@ -72,31 +72,6 @@ def test_page_is_older_where_its_code_computes_something_else(since):
     assert since("chart", MADE, old=OLD, new={}) == ["benchmarks/chart.py", "variational/x.py"]
 
 
-def test_what_only_draws_a_page_does_not_make_it_older(since):
-    """The function draw and private names that it alone uses, in turn; not those which compute use too."""
-    old = """
-_WIDTH = 4
-_MESH = 5
-def _both(): return 1
-def _picture(): return 2
-def _words(): return _picture()
-def shared(): return 3
-def compute(): return _both(), _MESH
-def draw(docs): return _words(), _both(), shared(), _WIDTH
-main(compute, draw)
-"""
-    page = "benchmarks/chart.py"
-    for value, older in ((1, [page]), (2, []), (3, [page])):
-        new = old.replace(f"return {value}", "return 9")
-        assert since("chart", MADE, old={page: old.encode()}, new={page: new.encode()}) == older
-    for name, older in (("_WIDTH", []), ("_MESH", [page])):
-        new = old.replace(f"{name} = ", f"{name} = 9")
-        assert since("chart", MADE, old={page: old.encode()}, new={page: new.encode()}) == older
-    new = old.replace("_words(), _both()", "_words()").replace("main(compute", "main(compute2")
-    assert since("chart", MADE, old={page: old.encode()}, new={page: new.encode()}) == [page]
-    assert since("chart", MADE, old={page: old.encode()}, new={page: new.replace("compute2", "compute").encode()}) == []
-
-
 def test_results_differ_by_their_numbers_alone():
     """Not by seconds; a key that only the present result has is new."""
     before = {"mu": 0.5, "seconds_path": 3.0, "steps": [{"a": 1}, {"a": float("nan")}]}

@@ -4,7 +4,6 @@ import importlib.util
 import json
 import re
 
-import pytest
 from petsc4py import PETSc
 
 from fingerpad.io.provenance import provenance
@@ -19,18 +18,6 @@ def test_versions():
     linked = PETSC_ALONE and versions.pop("mumps") is None  # into PETSc's own file, which names no version of it
     assert linked == PETSC_ALONE
     assert all(re.match(r"\d+\.\d+", version) for name, version in versions.items() if name != "source")
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        "OPENBLAS_CORETYPE",
-        "PETSC_OPTIONS",
-    ],
-)
-def test_environment(monkeypatch, name):
-    monkeypatch.setenv(name, "something")
-    assert provenance()["environment"][name] == "something"
 
 
 def test_nothing_else_of_the_environment(monkeypatch):

@@ -178,18 +178,6 @@ def test_bad_folder_is_refused_in_a_sentence(tmp_path, capsys, files, words):
     assert not (tmp_path / NAME).exists()
 
 
-def test_result_without_a_coefficient_is_read_back(tmp_path):
-    """As of a finger that slides while nothing presses it."""
-    solved(Scene(), find("cylinders"), RunContext(tmp_path))
-    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
-    summary["states"]["full_slip"]["mu_app"] = None
-    (tmp_path / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    (tmp_path / "result.nc").unlink()
-    read = Result.load(tmp_path)
-    assert math.isnan(read.full_slip.mu_app) and read.full_slip.f_t == summary["full_slip_f_t"]
-    assert write(tmp_path).exists() and read.to_dict()["full_slip_mu_app"] is None
-
-
 def test_report_that_fails_does_not_cost_the_run(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(run_page, "page", lambda result: 1 / 0)
     result = solved(Scene(), find("cylinders"), RunContext(tmp_path))

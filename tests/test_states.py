@@ -162,14 +162,6 @@ def test_there_and_back(pressed):
     assert states.named(pressed.rows)["full_slip"].f_t < 0
 
 
-def test_lift_after_the_slip(pressed):
-    """Unloading that sticks leaves the full slip at the load that it had."""
-    pressed.slide("slide", 0.4e-3)
-    pressed.still("lift", f_ext=0.5)
-    assert states.named(pressed.rows)["full_slip"].f_ext == 2.0
-    assert pressed.rows[-1].f_ext == 0.5
-
-
 def test_charging_while_it_slides(pressed):
     """Each voltage is a full slip of its own, which none of these was held; where it stays, the slip is held."""
     pressed.slide("slide", 0.4e-3)
@@ -178,13 +170,6 @@ def test_charging_while_it_slides(pressed):
     assert pressed.rows[-1].slip_began == pressed.rows[-1].step
     pressed.slide("slide on", 1.1e-3)
     assert pressed.names()["full_slip"] == ("charge while sliding", 200.0, 0.8)
-
-
-def test_voltage_that_goes_up_and_down(pressed):
-    """Charged by turns while it slides: no full slip is held, and uncharged is what was before the first voltage."""
-    for k, voltage in enumerate((80.0, 0.0, 80.0, 0.0), start=1):
-        pressed.slide(f"part {k}", 0.3e-3 * k, voltages=voltage)
-    assert pressed.names() == {"uncharged": ("press", 0.0, 0.0), "charged": ("press", 0.0, 0.0)}
 
 
 def test_all_points_slip_without_friction_before_the_bone_moves():

@@ -3,7 +3,6 @@
 import csv
 import html
 import itertools
-import json
 import re
 import shlex
 from pathlib import Path
@@ -11,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from fingerpad.cli import sweep as cli_sweep
-from fingerpad.report import parameters, source
+from fingerpad.report import parameters
 from fingerpad.report.write import NAME, write
 from fingerpad.runs.sweep import sweep
 from fingerpad.scene import Scene, from_data, override
@@ -82,15 +81,3 @@ def test_sweep_is_reproduced_by_what_its_report_says(tmp_path, axes):
     data, along = cli_sweep.study(tmp_path / "study.toml" if study else None, given["--set"], given["--over"])
     assert from_data(data).parameters() == scene.parameters()
     assert {key: tuple(values) for key, values in along.items()} == found.axes
-
-
-def test_sweep_is_reported_with_its_own_scene(tmp_path):
-    """In a folder of several studies: the last one's, whatever runs of others are there."""
-    other = tmp_path / "full" / "0" / "asked.json"
-    other.parent.mkdir(parents=True)
-    other.write_text(json.dumps(Scene(f_ext=4.0).parameters()), encoding="utf-8")
-    sweep(Scene(f_ext=20.0, friction=0.4), tmp_path, model="cylinders", voltage=[0, 100])
-    assert source.read(tmp_path).parameters["f_ext"] == 20
-    page = html.unescape(write(tmp_path).read_text("utf-8"))
-    command = "fingerpad sweep --set f_ext=20.0 --set friction=0.4 --model cylinders --over voltage=0.0,100.0"
-    assert command in page
