@@ -13,8 +13,8 @@ from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.accuracy.rigid_screen import ORDER
 from fingerpad.accuracy.solves import Solve, State
 from fingerpad.io.interrupt import Interrupted
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.touching import by_rule
 from fingerpad.richardson import MORE, ONCE, plus_minus
 from fingerpad.runs import attempt
 from fingerpad.runs.batch import key

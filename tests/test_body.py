@@ -7,7 +7,6 @@ import pytest
 from mpi4py import MPI
 
 import geometry
-from fingerpad.model import balance
 from fingerpad.model.body import Body
 from geometry import tags
 from geometry.mesh import load
@@ -222,7 +221,7 @@ def test_lifted_body_bears_nothing():
 
 def test_energy_of_a_lifted_body_is_checked(monkeypatch):
     """The state is not among the accepted ones."""
-    monkeypatch.setattr(balance, "_AT_REST", -1.0)
+    monkeypatch.setattr("fingerpad.model.state._AT_REST", -1.0)
     body = ridge(MPI.COMM_SELF).press(height=-20e-6)
     with pytest.raises(StepFailed, match=r"\(lift\): nothing loads the body"):
         body.lift(5e-6)

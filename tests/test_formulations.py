@@ -10,8 +10,8 @@ from ffcx.naming import compute_signature
 from mpi4py import MPI
 
 from fingerpad.cli.check import _model
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.touching import by_rule
 from fingerpad.scene import SceneError, from_data
 from fingerpad.scene.laws import used
 from geometry.bodies import block, ridge

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fingerpad.accuracy.solves import StateRecorder
-from fingerpad.model import balance, full_slip
+from fingerpad.model.stability import FullSlip
 from fingerpad.scene import from_data
 from tests.runs import followed, path_of
 from tests.small_finger import NINE, small
@@ -36,7 +36,7 @@ def test_lengths_by_ridge_are_the_length(path):
 
 def test_slip_that_is_never_steady_ends_with_the_slide(monkeypatch):
     """The bone never goes back to where the slide should have ended."""
-    monkeypatch.setattr(balance, "_STEADY", -1.0)
+    monkeypatch.setattr("fingerpad.model.state._STEADY", -1.0)
     scene, places = from_data(SCENE | {"slide_length": 0.9e-3}), []
     simulation = path_of(scene, lambda step, done: places.append(step.state.bone_x))
     simulation.run()
@@ -74,10 +74,8 @@ def test_slide_of_no_length_is_none():
 def test_time_goes_on_where_full_slip_is_not_steady_at_once(monkeypatch):
     """The slide goes on from where it is, and so does its time, at the speed of the bone."""
     steady = iter([False])
-    slides_on = full_slip.FullSlip.slides_on
-    monkeypatch.setattr(
-        full_slip.FullSlip, "slides_on", lambda self, *args: slides_on(self, *args) and next(steady, True)
-    )
+    slides_on = FullSlip.slides_on
+    monkeypatch.setattr(FullSlip, "slides_on", lambda self, *args: slides_on(self, *args) and next(steady, True))
     slide = {"name": "slide", "bone_x": 1e-3, "speed": 0.02, "until_full_slip": True}
     scene = small().replace(history=[{"name": "press", "f_ext": 1.0}, slide])
     simulation = followed(scene)
@@ -110,4 +108,4 @@ def test_force_of_full_slip_is_as_steady_as_its_gaps(formulation, change, steady
     finger = path_of(scene).finger
     finger.coupling.set_air_gaps(np.full(len(finger.ridges), 1.5e-6))
     finger.continuation = Slid(finger.solver, change)
-    assert full_slip.FullSlip(finger).slides_on("slide", 1) is steady
+    assert FullSlip(finger).slides_on("slide", 1) is steady

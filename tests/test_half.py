@@ -8,9 +8,9 @@ import ufl
 from mpi4py import MPI
 
 from fingerpad.model import simulation
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import by_rule
 from fingerpad.scene import from_data
 from tests.runs import followed
 from tests.test_demo import MESH, NINE

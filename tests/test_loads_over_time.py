@@ -14,10 +14,10 @@ from fingerpad.io.drawing import Drawing
 from fingerpad.io.over_time import NOTE, without_parts_of_jumps
 from fingerpad.io.result import Result
 from fingerpad.io.states import load_result
-from fingerpad.model.course import targets
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.schedule import targets
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import by_rule
 from fingerpad.report.run_page import page
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext

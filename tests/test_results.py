@@ -13,8 +13,9 @@ from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.io import console, drawing, writing
 from fingerpad.io.drawing import Profile
 from fingerpad.io.states import RESULTS, named
-from fingerpad.model import full_slip, report
-from fingerpad.model.balance import force_error
+from fingerpad.model import report
+from fingerpad.model.stability import FullSlip
+from fingerpad.model.state import force_error
 from fingerpad.scene import from_data
 from tests.measures import rows_of
 from tests.runs import followed, path_of, run
@@ -140,7 +141,7 @@ def test_probe_of_full_slip_leaves_no_trace(monkeypatch):
     for rows in (probed, plain):
         simulation = followed(scene)
         rows += [state.row() for state in simulation.states]
-        monkeypatch.setattr(full_slip.FullSlip, "_holds", lambda self: False)
+        monkeypatch.setattr(FullSlip, "_holds", lambda self: False)
     assert probed[-1]["slip_held"] and not plain[-1]["slip_held"]
     left = {"slip_held": None}
     assert [row | left for row in probed] == [row | left for row in plain]

@@ -15,8 +15,8 @@ from fingerpad.io.drawing import View
 from fingerpad.io.states import WORDS, before_sliding
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel
+from fingerpad.model.record import Viewer
 from fingerpad.model.simulation import RestartRequired, Simulation
-from fingerpad.model.viewer import Viewer
 from fingerpad.scene import Load
 from geometry.parameters import MeshSize
 from variational.contact.formulation import Formulation

@@ -12,7 +12,7 @@ from pydantic import BaseModel, WrapValidator
 
 from fingerpad.io.states import WORDS
 from fingerpad.reduced import cylinders
-from fingerpad.reduced.known import KNOWN_ERROR, KNOWN_FORCES, KNOWN_RUNS, KNOWN_VOLTAGES
+from fingerpad.reduced.cylinder_errors import KNOWN_ERROR, KNOWN_FORCES, KNOWN_RUNS, KNOWN_VOLTAGES
 from fingerpad.reduced.model import STATES
 from fingerpad.scene import Scene
 from fingerpad.scene.contradictions import LARGEST_GAP

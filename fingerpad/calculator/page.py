@@ -8,7 +8,7 @@ from importlib.resources import files
 from fingerpad.calculator.fields import data
 from fingerpad.installed import version
 from fingerpad.io.quantities import PER_LENGTH
-from fingerpad.reduced import cylinders, known
+from fingerpad.reduced import cylinder_errors, cylinders
 from fingerpad.scene import Scene
 from fingerpad.scene.materials import BEARING_AREA
 from fingerpad.scene.remarks import LEAKAGE
@@ -24,9 +24,9 @@ def page() -> str:
         for name in ("page.css", "closed_form.js", "plot.js", "page.js")
     )
     values = {
-        "error": f"{100 * known.KNOWN_ERROR['full_slip']['mu_app']:.1f} %",
-        "runs": str(known.KNOWN_RUNS),
-        "where": known.where(),
+        "error": f"{100 * cylinder_errors.KNOWN_ERROR['full_slip']['mu_app']:.1f} %",
+        "runs": str(cylinder_errors.KNOWN_RUNS),
+        "where": cylinder_errors.where(),
         "leakage": html.escape(LEAKAGE),
         "table": _table(),
         "defaults": _defaults(),

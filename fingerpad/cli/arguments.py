@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, NoReturn
 
 from fingerpad.cli import COMMANDS, ranges
 from fingerpad.io import terminal
-from fingerpad.model.check import check
+from fingerpad.model.feasibility import check
 from fingerpad.scene import Scene, from_data, load, override
 from fingerpad.scene.keys import every
 from fingerpad.scene.messages import SceneError, clip, ends

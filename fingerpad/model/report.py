@@ -14,9 +14,8 @@ from fingerpad.io.writing import Writer, ridge_rows, site_rows
 from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Step
 from fingerpad.model.options import Omission
-from fingerpad.model.path_record import PathRecord
+from fingerpad.model.record import PathRecord, Viewer
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.viewer import Viewer
 from variational.solvers import checkpoint
 from variational.state import ContactState
 

@@ -9,15 +9,13 @@ import numpy as np
 from mpi4py import MPI
 
 from fingerpad.io.states import FIRST_TOUCH, SLIDE_ON
-from fingerpad.model.balance import refuse_strained
 from fingerpad.model.contact_zone import ContactZone, FingerExceeded
-from fingerpad.model.course import targets
 from fingerpad.model.finger import Finger, Step
-from fingerpad.model.full_slip import FullSlip
-from fingerpad.model.half import HalfFinger
+from fingerpad.model.half_finger import HalfFinger
 from fingerpad.model.options import FingerModel
-from fingerpad.model.stability import Checked, StabilityChecks
-from fingerpad.model.state import step_record
+from fingerpad.model.schedule import targets
+from fingerpad.model.stability import Checked, FullSlip, StabilityChecks
+from fingerpad.model.state import refuse_strained, step_record
 from fingerpad.scene import Load
 from variational.quantities import RidgeLoads
 from variational.solvers import checkpoint

@@ -20,13 +20,13 @@ from fingerpad.io.result import Result
 from fingerpad.io.states import long_steps
 from fingerpad.io.writing import Writer
 from fingerpad.model import cautions
-from fingerpad.model.balance import broken, force_error
 from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Finger, Step, meshed
 from fingerpad.model.hints import finer_mesh_may_help, hint
 from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Report
 from fingerpad.model.simulation import RestartRequired, Simulation
+from fingerpad.model.state import broken, force_error
 from fingerpad.scene import Scene
 from fingerpad.scene.laws import coefficient, used
 from fingerpad.scene.reading import DEFAULT_MODEL

@@ -19,8 +19,8 @@ from fingerpad.io.quantities import Output, checked
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
 from fingerpad.model.cost import Clock
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.touching import by_rule
 from fingerpad.runs.attempt import Attempt, Restarts, Session
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene, SceneError
