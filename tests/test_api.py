@@ -11,7 +11,7 @@ from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad import runs
-from fingerpad.io.result import Cost
+from fingerpad.io.answer import Cost
 from fingerpad.io.states import STATES
 from fingerpad.model.hints import finer_mesh_may_help
 from fingerpad.runs import attempt, full, sweep

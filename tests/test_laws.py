@@ -288,7 +288,7 @@ def test_registries_of_the_recipes_are_there():
     for what, name in names.items():
         row = next(row for row in rows if row.startswith(f"| {what} |"))
         assert f"`{name}` in `fingerpad/scene/materials.py`" in row and hasattr(scene_materials, name)
-    assert "`variational/contact/formulations.py`" in next(
+    assert "`FORMULATIONS` in `fingerpad/scene/parameters.py`" in next(
         row for row in rows if row.startswith("| contact formulation |")
     )
 

@@ -219,7 +219,7 @@ def test_jobs_are_no_ranks_of_a_launcher(monkeypatch):
 
 
 def test_crash_says_its_last_words():
-    end = run_module("fingerpad.runs.batch", ["no scene.json", "nowhere", "5", "full"], 5.0)
+    end = run_module("fingerpad.runs.one", ["no scene.json", "nowhere", "5", "full"], 5.0)
     assert end.reason == "CRASH_1"
     assert "no scene.json" in end.message
 
