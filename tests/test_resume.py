@@ -15,7 +15,7 @@ from mpi4py import MPI
 
 import fingerpad as fp
 from fingerpad.cli import run as command
-from fingerpad.io.checkpoint import Checkpoint
+from fingerpad.io.checkpoint import Checkpoint, CheckpointError
 from fingerpad.io.drawing import Drawing
 from fingerpad.io.writing import Writer
 from fingerpad.runs.batch import key, sweep
