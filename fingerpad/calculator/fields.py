@@ -19,8 +19,8 @@ from fingerpad.scene.contradictions import LARGEST_GAP
 from fingerpad.scene.law_keys import keys_of
 from fingerpad.scene.laws import skin_modulus
 from fingerpad.slices import traces
-from geometry.bounds import Range
 from geometry.parameters import Fingertip, MeshSize
+from geometry.units import Range
 from variational.attraction.insulator import VACUUM_PERMITTIVITY
 from variational.contact.friction import Coulomb
 
