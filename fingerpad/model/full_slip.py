@@ -2,21 +2,23 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fingerpad.io.states import SLIDE_ON, full_slip
 from fingerpad.model.balance import steady
-from fingerpad.model.finger import Finger
 from variational.solvers.continuation import Target
 from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.model.finger import Finger
 
 
 class FullSlip:
     """Slides a finger on at full slip and compares the forces."""
 
-    def __init__(self, finger: Finger) -> None:
+    def __init__(self, finger: "Finger") -> None:
         """Take the finger."""
         self._finger = finger
 

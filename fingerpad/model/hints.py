@@ -1,8 +1,12 @@
 """What to try when a run stops, in the words of a scene's keys."""
 
+from typing import TYPE_CHECKING
+
 from fingerpad.io.interrupt import Interrupted
-from variational.solvers.continuation import StepFailed
 from variational.solvers.failure import NotConverged
+
+if TYPE_CHECKING:
+    from variational.solvers.continuation import StepFailed
 
 _HINTS = {
     "NOT_A_NUMBER": "report it with the scene; until then try parameters nearer to the defaults",
@@ -19,7 +23,7 @@ _INVERTED = (
 _OTHERWISE = "try a smaller mesh.contact, which lets the edge of the contact move, or another voltage or f_ext"
 
 
-def hint(error: StepFailed) -> str:
+def hint(error: "StepFailed") -> str:
     """Return what to try against a load that could not be reached, empty if the error names it itself."""
     cause = error.__cause__
     if not isinstance(cause, NotConverged):
@@ -29,7 +33,7 @@ def hint(error: StepFailed) -> str:
     return next((words for name, words in _HINTS.items() if cause.reason.startswith(name)), _OTHERWISE)
 
 
-def finer_mesh_may_help(error: StepFailed, coarse_start: bool) -> bool:
+def finer_mesh_may_help(error: "StepFailed", coarse_start: bool) -> bool:
     """Return whether a load that could not be reached may be with a smaller ``mesh.contact``.
 
     Args:

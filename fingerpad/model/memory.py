@@ -4,12 +4,16 @@ A run takes :data:`PROGRAM` bytes and :data:`PER_UNKNOWN` for each unknown of it
 More ranks take some 0.2 GB each, and refining to an accuracy, which holds two meshes at a time, takes more as well.
 """
 
+from typing import TYPE_CHECKING
+
 from fingerpad.io.pace import about
-from fingerpad.model.options import FingerModel, ModelOptions
-from fingerpad.scene import Numerics
 from geometry.parameters import Fingertip, MeshSize
 from geometry.profiles import GeometryError
 from geometry.sizing import least_triangles
+
+if TYPE_CHECKING:
+    from fingerpad.model.options import FingerModel, ModelOptions
+    from fingerpad.scene import Numerics
 
 PROGRAM = 0.23e9
 """Bytes of the program itself."""
@@ -41,7 +45,7 @@ def memory(number: float) -> float:
     return PROGRAM + PER_UNKNOWN * number
 
 
-def refuse_mesh(points: int, triangles: int, model: FingerModel) -> None:
+def refuse_mesh(points: int, triangles: int, model: "FingerModel") -> None:
     """Refuse a mesh that needs more memory than is allowed.
 
     Args:
@@ -56,7 +60,7 @@ def refuse_mesh(points: int, triangles: int, model: FingerModel) -> None:
             model.mesh)  # fmt: skip
 
 
-def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: Numerics, needed: ModelOptions) -> None:
+def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: "Numerics", needed: "ModelOptions") -> None:
     """Refuse element sizes whose mesh would need more memory than is allowed, by a lower bound, before it is made.
 
     Args:
@@ -73,7 +77,7 @@ def refuse_sizes(finger: Fingertip, size: MeshSize, numerics: Numerics, needed: 
             size)  # fmt: skip
 
 
-def _refuse(has: str, triangles: int, number: int, numerics: Numerics, finger: Fingertip, size: MeshSize) -> None:
+def _refuse(has: str, triangles: int, number: int, numerics: "Numerics", finger: Fingertip, size: MeshSize) -> None:
     allowed = f"numerics.memory allows {numerics.memory / 1e9:g} GB"
     if numerics.memory <= PROGRAM:
         raise GeometryError(f"{allowed}, and the program takes {PROGRAM / 1e9:g} GB without a mesh; raise it")

@@ -2,16 +2,18 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from mpi4py import MPI
 
 from fingerpad.io import states
 from fingerpad.io.drawing import Drawing, End, Profile, View
-from fingerpad.model.stability import Checked
 from fingerpad.scene import Load
 from variational.state import ContactState
+
+if TYPE_CHECKING:
+    from fingerpad.model.stability import Checked
 
 
 class PathRecord:
@@ -23,7 +25,7 @@ class PathRecord:
         ends: the finger at the end of each load, by load, on rank 0.
     """
 
-    def __init__(self, comm: MPI.Comm, checks: Mapping[int, Checked]) -> None:
+    def __init__(self, comm: MPI.Comm, checks: Mapping[int, "Checked"]) -> None:
         """Keep nothing yet.
 
         Args:
@@ -67,7 +69,7 @@ class PathRecord:
                 found[name] = replace(found[name], stable=verdict, lambda_min=least, gain=check.gain)
         return found
 
-    def _check(self, state: ContactState) -> Checked | None:
+    def _check(self, state: ContactState) -> "Checked | None":
         """Return the stability of a state, or of another one of the same full slip; None where none was examined."""
         same = [other.step for other in self.states if other.slip_began == state.slip_began > 0]
         return next((self._checks[k] for k in (state.step, *same) if k in self._checks), None)

@@ -12,9 +12,8 @@ from fingerpad.io.states import FIRST_TOUCH, SLIDE_ON
 from fingerpad.model.balance import refuse_strained
 from fingerpad.model.contact_zone import ContactZone, FingerExceeded
 from fingerpad.model.course import targets
-from fingerpad.model.finger import Finger, Step
+from fingerpad.model.finger import Finger, HalfFinger, Step
 from fingerpad.model.full_slip import FullSlip
-from fingerpad.model.half import HalfFinger
 from fingerpad.model.options import FingerModel
 from fingerpad.model.stability import Checked, StabilityChecks
 from fingerpad.model.state import step_record

@@ -1,13 +1,16 @@
 """The stability of accepted states of a finger, examined once each."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fingerpad.model.finger import Finger
 from variational.solvers.continuation import StepFailed
 from variational.solvers.failure import NotConverged
 from variational.solvers.stability import Stability, StabilityCheck
+
+if TYPE_CHECKING:
+    from fingerpad.model.finger import Finger
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,7 @@ class Checked:
 class StabilityChecks(dict[int, Checked]):
     """Stability by step."""
 
-    def __init__(self, finger: Finger) -> None:
+    def __init__(self, finger: "Finger") -> None:
         """Take the finger."""
         super().__init__()
         self._finger, self._check = finger, StabilityCheck(finger.solver)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 from fingerpad.model.balance import BALANCED
 from variational.energy import Balance
 from variational.quantities import RidgeLoads
-from variational.solvers.continuation import Attempt, Continuation
 from variational.state import ContactState, RidgeStates, StepRecord
+
+if TYPE_CHECKING:
+    from variational.solvers.continuation import Attempt, Continuation
 
 
 def contact_state(
-    path: Continuation,
+    path: "Continuation",
     loads: RidgeLoads,
     ridges: list[int],
     d_eq: NDArray[np.float64],
@@ -56,7 +58,7 @@ def contact_state(
     )  # fmt: skip
 
 
-def step_record(path: Continuation, energy: Balance, imbalance: float, attempt: Attempt) -> StepRecord:
+def step_record(path: "Continuation", energy: Balance, imbalance: float, attempt: "Attempt") -> StepRecord:
     """Return energies and work of the step to the present state; collective.
 
     Args:

@@ -11,9 +11,12 @@ fingers costs a restart: :mod:`fingerpad.model.contact_zone` checks each accepte
 """
 
 import math
+from typing import TYPE_CHECKING
 
-from fingerpad.scene import Scene
 from geometry.parameters import Fingertip
+
+if TYPE_CHECKING:
+    from fingerpad.scene import Scene
 
 _RIDGES, _FORCE, _FRICTION = 10, 75.0, 0.25  # on either side, at a force (N/m) and a friction coefficient
 _WIDENS, _ROLLS = 0.27, 0.3  # powers of the force and of a larger friction coefficient
@@ -21,7 +24,7 @@ _LEAST = 2  # ridges on either side
 _PRESSURE = 30e3  # Pa, mean contact pressure of ridges, at which a friction law other than Coulomb's is evaluated
 
 
-def by_rule(scene: Scene) -> Scene:
+def by_rule(scene: "Scene") -> "Scene":
     """Return the scene with a ``mesh.touching_half_arc``, by the rule of thumb where it gives none."""
     if scene.mesh.touching_half_arc is not None:
         return scene

@@ -1,16 +1,19 @@
 """A state of the whole finger as tables and pictures show it, whatever mesh and half of it the model has."""
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fingerpad.io.drawing import Profile, View
 from fingerpad.model import symmetry
-from fingerpad.model.finger import Finger, Step
 from variational.output import Snapshot, gather_mesh
 from variational.receptors import Receptors
 from variational.state import Sites
+
+if TYPE_CHECKING:
+    from fingerpad.model.finger import Finger, Step
 
 Array = NDArray[np.float64]
 _PROFILE = ("x", "y", "p_n", "t_t", "p_el", "area_x", "area_y")
@@ -19,7 +22,7 @@ _PROFILE = ("x", "y", "p_n", "t_t", "p_el", "area_x", "area_y")
 class Viewer:
     """Collects the states of a finger for tables and pictures."""
 
-    def __init__(self, finger: Finger) -> None:
+    def __init__(self, finger: "Finger") -> None:
         """Find the receptor sites, if they are part of the model."""
         self._finger = finger
         profiles = finger.profiles
@@ -28,12 +31,12 @@ class Viewer:
             sites[:, 0] = np.abs(sites[:, 0])
         self._sites = Receptors(finger.problem, sites) if finger.options.receptors else None
 
-    def view(self, step: Step) -> View:
+    def view(self, step: "Step") -> View:
         """Return all that is shown of the present state, that of the step; collective."""
         profile, (snapshot, merkel) = self.profile(step), self.picture()
         return View(replace(step.state, sites=self.sites()), self._finger.size, profile, snapshot, merkel)
 
-    def profile(self, step: Step) -> Profile | None:
+    def profile(self, step: "Step") -> Profile | None:
         """Return the skin of a step, the present one, on rank 0, None elsewhere; collective."""
         surface, skin = self._finger.problem.surface, self._finger.continuation.surface_state
         values = surface.gather(np.stack([getattr(skin, name) for name in _PROFILE]))
