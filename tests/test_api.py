@@ -13,9 +13,9 @@ import fingerpad as fp
 from fingerpad import runs
 from fingerpad.io.answer import Cost
 from fingerpad.io.states import STATES
-from fingerpad.model.hints import finer_mesh_may_help
-from fingerpad.runs import attempt, full, sweep
+from fingerpad.runs import attempt, full, restarts, sweep
 from fingerpad.runs.processes import End
+from fingerpad.runs.restarts import finer_mesh_may_help
 from fingerpad.scene import from_data
 from tests.runs import no_pictures
 from variational.solvers.continuation import StepFailed
@@ -207,7 +207,7 @@ def test_a_run_that_smaller_elements_do_not_help_fails(monkeypatch):
         raise StepFailed("no equilibrium") from NotConverged("DIVERGED_LOCAL_MIN", False)
 
     monkeypatch.setattr(attempt.Simulation, "run", lost)
-    monkeypatch.setattr(attempt, "FINEST", 15e-6)
+    monkeypatch.setattr(restarts, "FINEST", 15e-6)
     with pytest.warns(UserWarning, match="no equilibrium"):
         found = fp.run(from_data({key: SMALL[key] for key in ("geometry", "mesh", "output")}))
     assert found.failure.startswith("no equilibrium") and not found.steps
