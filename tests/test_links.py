@@ -14,7 +14,6 @@ from fingerpad.io.checkpoint import Checkpoint
 from fingerpad.io.files import Table, lock_file, replace
 from fingerpad.io.place import Place, PlaceError, Serial
 from fingerpad.scene import SceneError
-from fingerpad.slices.traces import folder_of
 
 
 @pytest.fixture
@@ -67,7 +66,6 @@ def test_folder_may_be_reached_by_a_link(out, tmp_path):
 @pytest.mark.parametrize(
     ("name", "start"),
     [
-        ("charged", lambda out: folder_of(out, "charged")),
         ("full", lambda out: fp.sweep(out=out, voltage=[100], quiet=True)),
         ("full", lambda out: main(["compare", "--out", str(out), "--model", "full", "--quiet"]) and None),
     ],
