@@ -207,6 +207,7 @@ def slid(law, way: float, formulation: Formulation = EPS) -> Body:
     return made
 
 
+@pytest.mark.slow
 @pytest.mark.mpi
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize(

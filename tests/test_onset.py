@@ -21,6 +21,7 @@ def charged(contact, step_scale=1.0) -> Body:
     return Body(RIDGE, SKIN, **skin, step_scale=step_scale).press(FORCE).charge(VOLTAGE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("contact", "way"),
     [(SPRINGS, 1), (Nitsche(10.0), -1), (AugmentedLagrangian(1.5e12, 5e10, 5e-9), 1)],
