@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from fingerpad.calculator import fields
+from fingerpad.calculator import page as fields
 from fingerpad.calculator.page import page
 from fingerpad.reduced import cylinders, known
 from fingerpad.scene import Scene

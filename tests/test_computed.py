@@ -8,9 +8,8 @@ import pytest
 import fingerpad as fp
 from fingerpad.cli import main
 from fingerpad.io.result import Result
-from fingerpad.measurements import one_scene
 from fingerpad.measurements.compare import beside
-from fingerpad.measurements.computed import computed
+from fingerpad.measurements.computed import computed, refuse_mixed
 from fingerpad.measurements.table import read
 from fingerpad.runs.solve import run
 from fingerpad.scene import Scene, SceneError
@@ -105,7 +104,7 @@ def total(force, area):
 def test_sites_that_are_left_out_change_no_value(table):
     runs = fingers(0.3, 0.3)
     runs[1] = replace(runs[1], scene=runs[1].scene.replace(output={"receptors": False}))
-    one_scene.refuse_mixed(runs)
+    refuse_mixed(runs)
 
 
 def test_smaller_forces_are_those_of_the_traces(table):
@@ -190,13 +189,13 @@ def test_runs_of_other_models_are_refused(tmp_path):
     """The model is no key of a scene."""
     runs = [Result(Scene(), model, None, None, None, folder=tmp_path / model) for model in ("full", "cylinders")]
     with pytest.raises(SceneError, match="model is 'full' in .*full and 'cylinders' in .*cylinders; give runs"):
-        one_scene.refuse_mixed(runs)
+        refuse_mixed(runs)
 
 
 def test_runs_of_other_laws_are_refused():
     runs = [Result(Scene(friction=Derjaguin(0.3, tau)), "full", None, None, None) for tau in (1e3, 2e3)]
     with pytest.raises(SceneError, match="friction.tau_0 is 1000 in a run and 2000 in a run"):
-        one_scene.refuse_mixed(runs)
+        refuse_mixed(runs)
 
 
 def test_forces_on_the_finger_may_differ():
@@ -205,9 +204,9 @@ def test_forces_on_the_finger_may_differ():
     def under(force, **changes):
         return Result(Scene(force=force, **changes), "full", None, None, None)
 
-    one_scene.refuse_mixed([under(0.3, voltage=100), under(0.5, voltage=150), Result(Scene(), "full", *[None] * 3)])
+    refuse_mixed([under(0.3, voltage=100), under(0.5, voltage=150), Result(Scene(), "full", *[None] * 3)])
     with pytest.raises(SceneError, match=r"friction is 0\.25 in a run and 0\.3 in a run"):
-        one_scene.refuse_mixed([under(0.3), under(0.5, friction=0.3)])
+        refuse_mixed([under(0.3), under(0.5, friction=0.3)])
 
 
 def test_histories_may_differ_in_force_and_voltage():
@@ -217,11 +216,11 @@ def test_histories_may_differ_in_force_and_voltage():
         loads = [{"name": "press"} | press, {"name": "on", "voltage": volts}, {"name": "off", "bone_x": way}]
         return Result(Scene(history=loads), "full", None, None, None)
 
-    one_scene.refuse_mixed([history({"f_ext": 20}, 100, 1e-3), history({"bone_height": -1e-3}, 200, 1e-3)])
+    refuse_mixed([history({"f_ext": 20}, 100, 1e-3), history({"bone_height": -1e-3}, 200, 1e-3)])
     with pytest.raises(SceneError, match=r"history\[2\].bone_x is 0.001 in a run and 0.002 in a run"):
-        one_scene.refuse_mixed([history({"f_ext": 20}, 100, 1e-3), history({"f_ext": 20}, 100, 2e-3)])
+        refuse_mixed([history({"f_ext": 20}, 100, 1e-3), history({"f_ext": 20}, 100, 2e-3)])
     with pytest.raises(SceneError, match="history is not given in a run and a list of 3 in a run"):
-        one_scene.refuse_mixed([Result(Scene(), "full", None, None, None), history({"f_ext": 20}, 100, 1e-3)])
+        refuse_mixed([Result(Scene(), "full", None, None, None), history({"f_ext": 20}, 100, 1e-3)])
 
 
 def test_two_values_at_one_place_are_refused(table):

@@ -6,10 +6,9 @@ from pathlib import Path
 
 import fingerpad.startup  # noqa: F401
 from fingerpad.io import petsc_options
-from fingerpad.io.abort import all_together, no_room
 from fingerpad.io.checkpoint import Checkpoint
 from fingerpad.io.console import Console
-from fingerpad.io.interrupt import Interrupt
+from fingerpad.io.interrupt import Interrupt, all_together, no_room
 from fingerpad.io.provenance import provenance
 from fingerpad.io.quantities import checked
 from fingerpad.io.result import Result
