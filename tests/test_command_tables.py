@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from fingerpad.cli import estimate, main, microscale, sweep, tables
+from fingerpad.cli import estimate, main, microscale, sweep
 from fingerpad.io import style
+from fingerpad.io.quantities import Output
 from fingerpad.io.result import Result
 from fingerpad.reduced import cylinders
 from fingerpad.runs.sweep import sweep as run_sweep
@@ -23,7 +24,7 @@ def test_estimate_is_the_closed_form(tmp_path, capsys):
     file = tmp_path / "mu.csv"
     assert main(["estimate", "--f-ext", "50,75", "--voltage", "0:100:2", "--csv", str(file)]) == 0
     out = capsys.readouterr().out
-    assert "Known error: mu_app and friction within 2.4 %, attraction within 5.0 %, contact within 6.3 % of 44" in out
+    assert "Known error: µ_app and f_T within 2.4 %, f_el within 5.0 %, L_R within 6.3 % of 44" in out
     assert out.count(LEAKAGE) == 1
     with file.open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
@@ -35,7 +36,7 @@ def test_estimate_is_the_closed_form(tmp_path, capsys):
 
 def test_zeros_have_no_sign():
     """As of friction that is roundoff, or of a friction coefficient of 0."""
-    assert [tables.Column("f_t", "friction", digits=digits).cell(-0.0) for digits in (".4g", ".3f")] == ["0", "0.000"]
+    assert [Output("f_t", "N/m", digits=digits).shown(-0.0) for digits in (0, 3)] == ["0", "0.000"]
 
 
 def test_estimate_says_where_its_error_is_not_known(capsys):
@@ -116,7 +117,7 @@ def test_file_that_cannot_be_written_is_named(capsys, tmp_path, monkeypatch):
     monkeypatch.setattr(Path, "write_bytes", full)
     assert main(["estimate", "--csv", str(tmp_path / "mu.csv")]) == 2
     said = capsys.readouterr()
-    assert "mu_app" in said.out and "mu.csv cannot be used: No space left on device" in said.err
+    assert "µ_app" in said.out and "mu.csv cannot be used: No space left on device" in said.err
 
 
 def test_file_in_a_folder_that_takes_none_is_named(capsys, tmp_path, monkeypatch):
@@ -153,7 +154,7 @@ def test_microscale_of_a_history(capsys):
     """Its skin and screen, at voltages that are given: the default's is none of its own."""
     file = "demos/scenes/sine_while_sliding.toml"
     assert main(["microscale", file, "--voltage", "100", "--p", "61 kPa"]) == 0
-    assert re.search(r"^ +100 +61 ", capsys.readouterr().out, re.MULTILINE)
+    assert re.search(r"^ *100\.0 +61\.00 ", capsys.readouterr().out, re.MULTILINE)
 
 
 # -- params ------------------------------------------------------------------------------------------------

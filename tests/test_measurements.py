@@ -1,6 +1,7 @@
 """Tables of measurements beside computed values: what is read, compared, and refused in one sentence."""
 
 import csv
+import json
 import re
 import shutil
 
@@ -223,6 +224,13 @@ def at(known, force, voltage):
     return known.at(np.array(force), np.array(voltage))[0]
 
 
+def swept(folder, table):
+    """Write the folder of a sweep with this table."""
+    (folder / "table.csv").write_text(table)
+    asked = {"model": "cylinders", "parameters": Scene().parameters()}
+    (folder / "sweep.json").write_text(json.dumps(asked), encoding="utf-8")
+
+
 def test_computed_values_are_those_of_the_sweep(folder):
     """At its points to roundoff; between them a power law of the force, and linear in U²; not beyond."""
     with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
@@ -252,16 +260,15 @@ def test_sign_of_a_voltage_does_not_count(folder, tmp_path):
 
 def test_failed_run_leaves_the_uncharged_state_of_another(tmp_path):
     """All voltages of a force have the same uncharged state; here the first and the last run have none."""
-    table = tmp_path / "table.csv"
     rows = "25,0,,lost\n25,50,1e-3,\n25,100,1e-3,\n25,200,,lost\n"
-    table.write_text(f"f_ext,voltage,uncharged_contact_length,failure\n{rows}")
+    swept(tmp_path, f"f_ext,voltage,uncharged_contact_length,failure\n{rows}")
     assert at(computed(tmp_path, asked("contact length", "uncharged")), [25.0], [0.0])[0] == 1e-3
 
 
 def test_missing_points_are_not_compared(tmp_path):
     """A failed run leaves its neighbours as they are."""
     rows = "25,0,0.2,\n75,0,0.2,\n25,100,,lost\n75,100,0.3,\n"
-    (tmp_path / "table.csv").write_text(f"f_ext,voltage,full_slip_mu_app,failure\n{rows}")
+    swept(tmp_path, f"f_ext,voltage,full_slip_mu_app,failure\n{rows}")
     found = at(computed(tmp_path, asked()), [25.0, 25.0, 75.0, 50.0], [0.0, 100.0, 100.0, 100.0])
     assert list(np.isnan(found)) == [False, True, False, True]
 
@@ -281,7 +288,7 @@ def test_misfit_is_printed_and_drawn(folder, table, tmp_path, capsys):
     assert "Misfit: computed over measured 0.5 (geometric mean of 3), at most a factor of 2.\n" in out
     assert "scaled by one factor (2): at most a factor of 1.\n" in out
     assert "±" not in out and "Within the spread: 3 of 3." in out and "no value is computed there: 1 of 4 rows." in out
-    assert re.search(r"^ +75 +0 +0\.5 +0\.75 +0\.25 +-0\.25 +-50$", out, re.MULTILINE)
+    assert re.search(r"^ *75\.000 +0\.0 +0\.5000 +0\.7500 +0\.2500 +-0\.2500 +-50\.0$", out, re.MULTILINE)
     assert (tmp_path / "out.png").stat().st_size > 10_000
 
 
@@ -341,8 +348,8 @@ def test_errors_of_a_sweep_count_with_the_spread(folder, table, tmp_path, capsys
     file = table("force (N/m), voltage (V), friction (1), spread (1)\n" + lines)
     assert main(["compare-data", str(file), "--sweep", str(place)]) == 0
     out = capsys.readouterr().out
-    assert re.search(r"^ +25 +86.6 +0.33 +0.011 +0.375 +0.035 +0.045 +13.6$", out, re.MULTILINE)
-    assert re.search(r"^ +25 +200 +0.51 +0.02 +0.5 +– +-0.01 +-1.96$", out, re.MULTILINE)
+    assert re.search(r"^ *25.000 +86.6 +0.3300 +0.0110 +0.3750 +0.0350 +0.0450 +13.6$", out, re.MULTILINE)
+    assert re.search(r"^ *25.000 +200.0 +0.5100 +0.0200 +0.5000 +– +-0.0100 +-2.0$", out, re.MULTILINE)
     assert "±: estimated discretisation error of the computed value, of the mesh alone.\n" in out
     assert "Within the spread plus the error of the computed value: 3 of 4.\n" in out
 

@@ -29,6 +29,8 @@ def folder(tmp_path_factory):
     failed = fp.Result(results[0].scene, "full", None, None, None, failure="no equilibrium")
     done = Sweep({KEY: (40.0, 80.0, 120.0)}, (*results, failed), place)
     done.to_csv(place / "table.csv")
+    asked = {"parameters": results[0].scene.parameters(), "model": "full"}
+    (place / "sweep.json").write_text(json.dumps(asked), encoding="utf-8")
     assert not done.save()
     return done
 
