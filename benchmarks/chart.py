@@ -22,7 +22,7 @@ from benchmarks.errors import STATES, parted
 from benchmarks.limits import Limit
 from benchmarks.runs import finished
 from fingerpad.io import style
-from fingerpad.model.touching import by_rule
+from fingerpad.model.feasibility import by_rule
 from fingerpad.scene import Scene, load
 
 _LIMIT = 10800.0  # s of processor time for one run

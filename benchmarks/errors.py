@@ -22,7 +22,7 @@ from benchmarks.runs import Array, Run, finished
 from fingerpad.accuracy.rigid_screen import ORDER
 from fingerpad.io import style
 from fingerpad.io.states import WORDS
-from fingerpad.model.touching import by_rule
+from fingerpad.model.feasibility import by_rule
 from fingerpad.richardson import plus_minus
 from fingerpad.scene import Scene, load
 

@@ -32,8 +32,7 @@ from fingerpad.cli import refuse
 from fingerpad.cli.arguments import Parser, scene_of
 from fingerpad.io.files import check_folder
 from fingerpad.model import options
-from fingerpad.model.memory import refuse_sizes
-from fingerpad.model.touching import by_rule
+from fingerpad.model.feasibility import by_rule, refuse_sizes
 from fingerpad.reduced.cylinders import tip_radius
 from fingerpad.scene import Scene, SceneError
 from tests import fuzz_files

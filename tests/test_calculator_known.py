@@ -7,12 +7,12 @@ import pytest
 
 from fingerpad.calculator import page as fields
 from fingerpad.calculator.page import page
-from fingerpad.reduced import cylinders, known
+from fingerpad.reduced import cylinder_errors, cylinders
 from fingerpad.scene import Scene
 from tests.browser import asked
 from tests.commands import kept
 
-BANDS = known.KNOWN_ERROR["full_slip"]
+BANDS = cylinder_errors.KNOWN_ERROR["full_slip"]
 # Sets values into fields; returns what the page shows of its error.
 SHOWN = """
 function shown(values) {

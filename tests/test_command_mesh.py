@@ -7,10 +7,9 @@ from mpi4py import MPI
 
 from fingerpad.cli import main
 from fingerpad.io.pace import between
+from fingerpad.model.feasibility import by_rule, memory, unknowns
 from fingerpad.model.finger import meshed
-from fingerpad.model.memory import memory, unknowns
 from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.touching import by_rule
 from fingerpad.scene import Scene, load
 from fingerpad.scene.reading import override
 from tests.commands import COARSE, refused

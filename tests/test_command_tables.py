@@ -167,7 +167,7 @@ def test_params_as_a_scene_is_the_default(tmp_path, capsys):
 
 def test_every_key_is_listed():
     """Those that a scene writes down are among them, with a meaning, a unit where it has one, and a range."""
-    found = {key.name: key for key in keys.every()}
+    found = {key.name: key for key in keys.every(Scene)}
     named = {key for key in _flat(Scene().parameters())}
     assert named <= set(found)
     assert (found["roughness.h_rms"].unit, found["roughness.h_rms"].default) == ("m", 3.1e-6)

@@ -13,16 +13,14 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import by_rule
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene, from_data
 from geometry import tags
 from geometry.bodies import ridge
 from geometry.mesh import load
-from tests.small_finger import small
+from tests.runs import followed
+from tests.small_finger import NINE, small
 from variational.body import Body
 from variational.contact.penalty import Penalty
 from variational.materials.ogden import Ogden
@@ -38,7 +36,6 @@ from variational.solvers.timing import Timings
 
 H_0, EPS_0, FOLD_VOLTAGE = 0.514e-6, 8.854e-12, 200.0
 CENTRE = 2e-6  # m
-MESH = {"contact": 30e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3}
 Array = NDArray[np.float64]
 
 
@@ -229,6 +226,7 @@ def test_last_solve_is_exact_where_a_ridge_lets_go_late():
     assert [stop.part for stop in stub.stops[-2:]] == [0.0, 0.0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-3])
 def test_small_loads_are_as_exact_as_asked_for(tolerance):
     """Volt by volt: each load leaves the forces nearly in balance, and yet moves the air gaps by a thousand tolerances.
@@ -240,8 +238,7 @@ def test_small_loads_are_as_exact_as_asked_for(tolerance):
     pulls = []
     for each in (tolerance, 1e-6):
         scene = small().replace(history=loads, numerics={"coupling_tolerance": each})
-        path = Simulation(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_SELF)
-        path.run()
+        path = followed(scene, comm=MPI.COMM_SELF)
         pulls.append([state.f_electrostatic for state in path.states if state.load.endswith("V")])
     assert pulls[0] == pytest.approx(pulls[1], rel=3 * tolerance)
     assert pulls[1][-1] > 1.05 * pulls[1][0]
@@ -303,13 +300,15 @@ def finger(scene: Scene) -> tuple[Array, Array]:
     return made.charged.p_c[touching], made.charged.d_eq[touching]
 
 
+@pytest.mark.slow
 def test_scene_chooses_the_length():
     """By default each air gap is the closure's at the pressure over the length under pressure; by gap it is larger.
 
     Tolerance: the loop's, which ends with an iteration or two to spare. A longer length by a twentieth opens the gap by
     some 2 %.
     """
-    scene = from_data({"geometry": {"ridge_count": 9}, "mesh": MESH, "output": {"receptors": False, "errors": False}})
+    mesh = NINE["mesh"] | {"contact": 30e-6}
+    scene = from_data(NINE | {"mesh": mesh, "output": {"receptors": False, "errors": False}})
     for length, least, most in (("pressure", 1 - 1e-6, 1 + 1e-6), ("gap", 1.02, 2.0)):
         p_c, d_eq = finger(scene.replace(contact={"length": length}))
         ratio = d_eq / scene.closure()(p_c).d_eq

@@ -155,13 +155,9 @@ def layer_at(body, points):
     return np.array([layer[cells.links(k)[0]] for k in range(len(points))])
 
 
-def test_cells_at_the_merkel_sites(finger_mesh, profiles):
-    """On a mesh of any size they are viable epidermis: each intermediate ridge has a node on its tip."""
+def test_cells_at_the_sites(finger_mesh, profiles):
+    """On a mesh of any size: each intermediate ridge has a node on its tip, each papilla on its top."""
     np.testing.assert_array_equal(layer_at(finger_mesh, profiles.merkel_sites()), tags.VIABLE_EPIDERMIS)
-
-
-def test_cells_at_the_meissner_sites(finger_mesh, profiles):
-    """On a mesh of any size they are dermis: each papilla has a node on its top."""
     np.testing.assert_array_equal(layer_at(finger_mesh, profiles.meissner_sites()), tags.DERMIS)
 
 

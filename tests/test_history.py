@@ -8,12 +8,10 @@ import ufl
 from dolfinx import fem
 from mpi4py import MPI
 
-from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import by_rule
 from fingerpad.scene import Scene
 from geometry.bodies import ridge
 from geometry.mesh import load
+from tests.runs import path_of
 from tests.test_contact import MU_F, over
 from tests.test_loads_over_time import PRESS, SLIDE, scene
 from variational import compat
@@ -146,6 +144,7 @@ def test_two_of_one_name(body):
         history.add(SkinField("a", None))
 
 
+@pytest.mark.slow
 def test_mirrored(monkeypatch):
     """On the whole finger the strain is the half's and its mirror image: even along, odd across."""
     plain, owns = Problem.__init__, dict[int, Own]()
@@ -156,7 +155,7 @@ def test_mirrored(monkeypatch):
 
     monkeypatch.setattr(Problem, "__init__", init)
     asked: Scene = scene(PRESS | {"f_ext": 0.5}, SLIDE)
-    made = Simulation(FingerModel(by_rule(asked), plan(asked)), MPI.COMM_WORLD)
+    made = path_of(asked)
     pressed = dict[str, np.ndarray]()
 
     def on_load():

@@ -9,21 +9,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 import ufl
-from mpi4py import MPI
 
 import fingerpad as fp
-from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.options import plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.reduced import cylinders
 from fingerpad.scene import CONTACT, Scene, SceneError, from_data, law_keys, load
 from fingerpad.scene import materials as scene_materials
 from fingerpad.scene.keys import docstrings
-from fingerpad.scene.law_keys import digest
+from fingerpad.scene.law_code import digest
 from fingerpad.scene.laws import LAYERS, used
 from fingerpad.scene.materials import CLOSURES, FRICTION_LAWS, MATERIALS
 from fingerpad.scene.reading import flat
 from fingerpad.scene.schema import schema
 from geometry import tags
+from tests.runs import followed
+from tests.small_finger import NINE
 from variational.coefficients import parameter
 from variational.contact.formulation import Springs
 from variational.contact.friction import CONE_ROUNDOFF, Coulomb, Derjaguin, Friction
@@ -340,12 +341,10 @@ def test_names_of_what_is_left_out():
 
 
 # -- all at once -----------------------------------------------------------------------------------------------
-SMALL = {
+SMALL = NINE | {
     "f_ext": 1.0,
     "voltage": 100.0,
     "slide_length": 1e-3,
-    "geometry": {"ridge_count": 9},
-    "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
     "output": {"errors": False, "receptors": False},
 }
 
@@ -354,8 +353,7 @@ SMALL = {
 def slid() -> Simulation:
     """A small finger with a closure, a dermis and a friction law of one's own, pressed, charged and slid."""
     scene = from_data(SMALL | OWN)
-    simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
-    simulation.run()
+    simulation = followed(scene)
     return simulation
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fingerpad.model import touching
+from fingerpad.model import feasibility
 from fingerpad.reduced import cylinders
 from fingerpad.scene import Scene, SceneError, laws
 from tests.test_laws import DERJAGUIN, OWN, Held
@@ -52,5 +52,5 @@ def test_cylinders_take_no_mesh(tmp_path):
 
 def test_rule_of_thumb_takes_a_law():
     """More friction rolls the finger further, by the coefficient at a ridge's pressure."""
-    plain, rough = (touching.by_rule(Scene(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
+    plain, rough = (feasibility.by_rule(Scene(friction=law)) for law in (Coulomb(0.25), Derjaguin(0.25, 2e4)))
     assert rough.mesh.touching_half_arc > plain.mesh.touching_half_arc

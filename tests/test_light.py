@@ -17,7 +17,7 @@ LIGHT = (
     "fingerpad.runs.context",
     "fingerpad.calculator.page",
     "fingerpad.model.options",
-    "fingerpad.model.memory",
+    "fingerpad.model.feasibility",
     "fingerpad.io.place",
     "fingerpad.cli",
     "fingerpad.cli.arguments",
@@ -38,7 +38,7 @@ LIGHT = (
 )
 WORK = """
 import fingerpad as fp
-from fingerpad.model.check import check
+from fingerpad.model.feasibility import check
 from fingerpad.scene import scene
 found = scene.load(None, {"voltage": 100.0})
 check(found)

@@ -4,6 +4,7 @@ import json
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import fingerpad as fp
@@ -97,7 +98,7 @@ def test_writers_take_the_place_of_a_link(out, victim):
     Table(out / "a.csv", {"x": 1}).close()
     style.save(style.figure(1.0), out / "a.png")
     replace(out / "a.html", "page")
-    Checkpoint(out, {}, {}).write(1, [], {})
+    Checkpoint(out, {}, {}).write({"x": np.zeros(1)})
     assert not any((out / name).is_symlink() for name in ("a.csv", "a.png", "a.html", "checkpoint"))
     assert json.loads((out / "checkpoint" / "head.json").read_text())["format"] == 1
 

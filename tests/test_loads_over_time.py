@@ -14,10 +14,10 @@ from fingerpad.io.drawing import Drawing
 from fingerpad.io.over_time import NOTE, without_parts_of_jumps
 from fingerpad.io.result import Result
 from fingerpad.io.states import load_result
-from fingerpad.model.course import targets
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
+from fingerpad.model.schedule import targets
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import by_rule
 from fingerpad.report.run_page import page
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
@@ -25,6 +25,7 @@ from fingerpad.scene import Load, Scene, from_data
 from fingerpad.scene.waveform import SAMPLES
 from variational.state import ContactState
 
+pytestmark = pytest.mark.slow
 SMALL = tomllib.loads((Path(__file__).parents[1] / "demos/scenes/small_finger.toml").read_text(encoding="utf-8"))
 FINGER = {
     "geometry": SMALL["geometry"],

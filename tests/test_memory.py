@@ -7,8 +7,7 @@ from dolfinx import fem
 from mpi4py import MPI
 
 from fingerpad.accuracy.refinement import Refinement
-from fingerpad.model import memory
-from fingerpad.model.check import check
+from fingerpad.model.feasibility import check, memory, unknowns
 from fingerpad.model.finger import meshed
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.scene import Numerics, SceneError, from_data
@@ -70,20 +69,20 @@ def test_unknowns_are_counted(element):
     spaces += [fem.functionspace(mesh, ("Lagrange", 1))] if kind.mixed else []
     number = sum(space.dofmap.index_map.size_global * space.dofmap.index_map_bs for space in spaces)
     points, triangles = (mesh.topology.index_map(d).size_global for d in (0, 2))
-    assert memory.unknowns(points, triangles, element) == number
+    assert unknowns(points, triangles, element) == number
 
 
-@pytest.mark.parametrize(("unknowns", "gigabytes"), [(27258, 0.354), (73208, 0.561), (186302, 1.171), (873366, 5.729)])
-def test_memory_of_runs(unknowns, gigabytes):
+@pytest.mark.parametrize(("number", "gigabytes"), [(27258, 0.354), (73208, 0.561), (186302, 1.171), (873366, 5.729)])
+def test_memory_of_runs(number, gigabytes):
     """Measured, in GB, of runs with quadratic elements: never more than by the constant, and a fifth less at most."""
-    assert 0.995 * gigabytes < memory.memory(unknowns) / 1e9 < gigabytes / 0.8
+    assert 0.995 * gigabytes < memory(number) / 1e9 < gigabytes / 0.8
 
 
 def test_mesh_that_needs_too_much_memory_is_refused_when_it_is_made():
     """The bound lets it pass; on every rank, by the triangles that it has."""
     scene = from_data({"mesh": COARSE})
     triangles = least_triangles(scene.geometry, scene.mesh)
-    allowed = memory.memory(memory.unknowns(int(0.6 * triangles), int(1.2 * triangles), "P2"))
+    allowed = memory(unknowns(int(0.6 * triangles), int(1.2 * triangles), "P2"))
     scene = from_data({"mesh": COARSE, "numerics": {"memory": allowed}})
     check(scene)
     words = r"the mesh has [\d ]+ triangles and [\d ]+ unknowns, which need about .* GB; numerics.memory allows "

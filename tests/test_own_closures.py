@@ -1,7 +1,5 @@
 """Closures of one's own: what a run asks of them, and what is refused."""
 
-import csv
-
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -9,6 +7,7 @@ from mpi4py import MPI
 from fingerpad.runs import full
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import from_data
+from tests.measures import rows_of
 from tests.test_laws import SMALL, Held
 from variational.roughness.bam import BearingArea
 from variational.roughness.closure import AirGap, check
@@ -64,6 +63,7 @@ def test_closures_of_the_package_are_closures():
     assert Held().state(1e4, 200.0) == ""
 
 
+@pytest.mark.slow
 def test_notes_are_of_the_pressures_that_the_closure_gets(tmp_path):
     """Held air gaps make the forces the same whatever the length of Eq. 4 is; below them the skin is longer."""
     history = [{"name": "press", "f_ext": 1.0}, {"name": "charge", "voltage": 100.0}]
@@ -72,8 +72,7 @@ def test_notes_are_of_the_pressures_that_the_closure_gets(tmp_path):
     for length in ("pressure", "gap"):
         scene = from_data(data | {"contact": {"length": length}}).replace(roughness=Telling())
         full.run(scene, RunContext(tmp_path / length, MPI.COMM_SELF))
-        with (tmp_path / length / "ridges.csv").open(encoding="utf-8") as file:
-            rows = [row for row in csv.DictReader(file) if float(row["p_c"]) > 0]
+        rows = [row for row in rows_of(tmp_path / length, "ridges") if float(row["p_c"]) > 0]
         told[length] = np.array([[float(row["p_c"]), float(row["state"])] for row in rows])
     np.testing.assert_array_equal(told["pressure"][:, 0], told["pressure"][:, 1])
     np.testing.assert_array_equal(told["gap"][:, 0], told["pressure"][:, 0])

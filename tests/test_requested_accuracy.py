@@ -2,17 +2,10 @@
 
 import pytest
 
-from benchmarks import accuracy, harness
+from benchmarks import accuracy
 from benchmarks.accuracy import WHOLE, Case
 from benchmarks.limits import Limit
-from fingerpad.runs.batch import key
 from fingerpad.scene import Scene, start
-
-
-def test_the_same_scenes_are_drawn_each_time():
-    first, again = accuracy.drawn(), accuracy.drawn()
-    assert first == again
-    assert len({key(scene) for scene in first.values()}) == accuracy.COUNT
 
 
 def test_request_starts_from_the_sizes_of_any_scene():
@@ -23,12 +16,6 @@ def test_request_starts_from_the_sizes_of_any_scene():
         sizes = start(request)
         assert {name: getattr(scene.mesh, name) for name in sizes} == sizes
         assert scene.accuracy is not None
-
-
-def test_every_loop_has_a_scene_of_its_own():
-    loops = accuracy.loops()
-    assert len({key(scene) for scene, _ in loops.values()}) == len(loops) == 25
-    assert {plain for _, plain in loops.values()} == {"default scene", *accuracy.drawn()}
 
 
 def summary(**quantities):
@@ -107,8 +94,3 @@ def test_study_of_one_parameter_leaves_out_its_finest_run():
     assert [(c.scene, c.once) for c in found] == [("sites (µm): 20", True), ("sites (µm): 10", False)]
     assert [c.error for c in found] == pytest.approx([1.0, 0.5], rel=1e-9)
     assert [c.estimate for c in found] == pytest.approx([1.0, 0.5], rel=1e-9)
-
-
-def test_page_has_its_verdict():
-    text = (harness.DOCS / "accuracy.md").read_text(encoding="utf-8")
-    assert "µ_app 1 %, contact length 3 % in 10 of 10 scenes" in text

@@ -1,6 +1,5 @@
 """What a run says of itself: of which state, under which loads, on which mesh, and nothing of a state it rejects."""
 
-import csv
 import json
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,29 +13,20 @@ from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.io import console, drawing, writing
 from fingerpad.io.drawing import Profile
 from fingerpad.io.states import RESULTS, named
-from fingerpad.model import full_slip, report
-from fingerpad.model.balance import force_error
-from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.simulation import Simulation
+from fingerpad.model import report
+from fingerpad.model.stability import FullSlip
+from fingerpad.model.state import force_error
 from fingerpad.scene import from_data
-from tests.runs import run
+from tests.measures import rows_of
+from tests.runs import followed, path_of, run
+from tests.small_finger import NINE
 from variational.contact.friction import CONE_ROUNDOFF
 from variational.solvers.iteration import PREFIX
 from variational.solvers.newton import Solver
 
 MU_0 = 0.25
-SMALL = {
-    "geometry": {"ridge_count": 9},
-    "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
-}
-LEAN = SMALL | {"output": {"errors": False, "receptors": False}}
+LEAN = NINE | {"output": {"errors": False, "receptors": False}}
 PRESS, SLIDE = {"name": "press", "f_ext": 1.0}, {"name": "slide", "bone_x": 1e-3, "until_full_slip": True}
-
-
-def rows_of(folder: Path, name: str = "steps") -> list[dict[str, str]]:
-    """Return a table of a run."""
-    with (folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def kept_titles(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
@@ -70,7 +60,9 @@ def test_charged_while_it_slides(tmp_path, titles):
     charge = {"name": "charge while sliding", "f_ext": 1.0, "voltage": 100.0, "bone_x": 0.6e-3}
     summary = run(from_data(LEAN | {"history": [PRESS, SLIDE, charge]}), tmp_path, MPI.COMM_WORLD, pictures=True)
     rows = rows_of(tmp_path)
-    last = rows[-1]
+    last, seconds = rows[-1], [float(row["processor_seconds"]) for row in rows]
+    assert "accuracy" not in summary and "full_slip_mu_app_error" not in summary, "none were estimated"
+    assert 0 < seconds[0] < seconds[-1] <= summary["processor_seconds"] and seconds == sorted(seconds)
     assert summary["full_slip"] is True
     assert summary["full_slip_step"] == len(rows) and summary["full_slip_load"] == "charge while sliding"
     assert summary["full_slip_mu_app"] == float(last["mu_app"]) > 0.5
@@ -130,7 +122,7 @@ def test_errors_are_estimated_of_the_headline(more, load):
     """The states kept for it are the last full slip that was held and normal contact, not those of another load."""
     numerics = LEAN.get("numerics", {}) | {"step_scale": 0.5}
     scene = from_data(LEAN | {"history": [PRESS, SLIDE, *more], "numerics": numerics})
-    simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD, lambda step, done: keeper.record(step))
+    simulation = path_of(scene, lambda step, done: keeper.record(step))
     keeper = StateRecorder(simulation)
     simulation.run()
     found, kept = named(simulation.states), keeper.solve().states
@@ -147,10 +139,9 @@ def test_probe_of_full_slip_leaves_no_trace(monkeypatch):
     scene = from_data(LEAN | {"history": [PRESS, CHARGE, *slides]})
     probed, plain = [], []
     for rows in (probed, plain):
-        simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
-        simulation.run()
+        simulation = followed(scene)
         rows += [state.row() for state in simulation.states]
-        monkeypatch.setattr(full_slip.FullSlip, "_holds", lambda self: False)
+        monkeypatch.setattr(FullSlip, "_holds", lambda self: False)
     assert probed[-1]["slip_held"] and not plain[-1]["slip_held"]
     left = {"slip_held": None}
     assert [row | left for row in probed] == [row | left for row in plain]
@@ -239,7 +230,7 @@ def test_rejected_state_leaves_the_one_before(tmp_path, monkeypatch):
 def refined(tmp_path_factory) -> tuple[Path, dict, dict[str, str]]:
     """A small finger with an accuracy: its folder, the summary on disk and the titles of its pictures."""
     folder = tmp_path_factory.mktemp("refined")
-    scene = from_data(SMALL | {"f_ext": 1.0, "voltage": 100.0, "accuracy": {"mu_app": 0.2}})
+    scene = from_data(NINE | {"f_ext": 1.0, "voltage": 100.0, "accuracy": {"mu_app": 0.2}})
     with pytest.MonkeyPatch.context() as monkeypatch:
         titles = kept_titles(monkeypatch)
         run(scene, folder, MPI.COMM_WORLD, pictures=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from fingerpad.model.check import check
+from fingerpad.model.feasibility import check
 from fingerpad.scene import Load, Scene, SceneError
 from fingerpad.scene import scene as scenes
 from fingerpad.scene.reading import model_of

@@ -127,6 +127,7 @@ def test_layer_that_cannot_be_factorised_is_given_up(pressed, monkeypatch):
     assert total(f.array_r[layer._rows]) <= 1e-9 * first
 
 
+@pytest.mark.slow
 def test_equilibrium_is_the_same_without_the_layer(body):
     """With it fewer factorisations lead there. Tolerance: the solve's, 1e-9 N/m over the tangent's stiffness."""
     states, factorisations = [], []

@@ -16,7 +16,7 @@ from fingerpad.reduced.models import find
 from fingerpad.report import run_page
 from fingerpad.runs import solve
 from fingerpad.runs.context import RunContext
-from fingerpad.scene import SceneError
+from fingerpad.scene import SceneError, load
 from fingerpad.slices import traces
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.slices.traces import history, points
@@ -135,7 +135,7 @@ def test_force_that_was_interrupted_goes_on(tmp_path, last):
 def test_report_of_a_force_repeats_it(traced):
     """With the force that was given and the scene's own keys."""
     page = html.unescape(run_page.page(traced))
-    assert "0.002 N on the whole finger." in page
+    assert "0.002 N on the whole finger, 100 V. Loads at its centre" in page
     command = page.partition("<code>fingerpad run ")[2].partition("</code>")[0]
     assert "--set force=0.002 " in command and "f_ext=" not in command
 
@@ -266,6 +266,9 @@ def test_force_is_exclusive(tmp_path, other, words):
         fp.Scene(force="0.5 N", **other)
     assert fp.Scene(force=0.5).replace(f_ext=20.0) == fp.Scene(f_ext=20.0)
     assert fp.Scene(f_ext=20.0).replace(force=0.5) == fp.Scene(force=0.5)
+    file = tmp_path / "scene.toml"
+    file.write_text("f_ext = 20", encoding="utf-8")
+    assert load(file, {"force": "0.5 N"}) == fp.Scene(force=0.5)
     assert "f_ext" not in fp.Scene(force=0.5).parameters() and "force" not in fp.Scene().parameters()
 
 

@@ -2,28 +2,20 @@
 
 import numpy as np
 import pytest
-from mpi4py import MPI
 
 from fingerpad.accuracy.solves import StateRecorder
-from fingerpad.model import balance, full_slip
-from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.simulation import Simulation
-from fingerpad.model.touching import by_rule
+from fingerpad.model.stability import FullSlip
 from fingerpad.scene import from_data
-from tests.small_finger import small
+from tests.runs import followed, path_of
+from tests.small_finger import NINE, small
 
-SCENE = {
-    "f_ext": 1.0,
-    "voltage": 100.0,
-    "geometry": {"ridge_count": 9},
-    "mesh": {"contact": 40e-6, "receptor": 100e-6, "interface": 200e-6, "growth": 1.0, "touching_half_arc": 1.0e-3},
-}
+SCENE = NINE | {"f_ext": 1.0, "voltage": 100.0}
 
 
 @pytest.fixture(scope="module")
 def path():
     scene = from_data(SCENE)
-    simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD, lambda step, done: keeper.record(step))
+    simulation = path_of(scene, lambda step, done: keeper.record(step))
     keeper = StateRecorder(simulation)
     simulation.run()
     return keeper.solve()
@@ -42,11 +34,9 @@ def test_lengths_by_ridge_are_the_length(path):
 
 def test_slip_that_is_never_steady_ends_with_the_slide(monkeypatch):
     """The bone never goes back to where the slide should have ended."""
-    monkeypatch.setattr(balance, "_STEADY", -1.0)
+    monkeypatch.setattr("fingerpad.model.state._STEADY", -1.0)
     scene, places = from_data(SCENE | {"slide_length": 0.9e-3}), []
-    simulation = Simulation(
-        FingerModel(scene, plan(scene)), MPI.COMM_WORLD, lambda step, done: places.append(step.state.bone_x)
-    )
+    simulation = path_of(scene, lambda step, done: places.append(step.state.bone_x))
     simulation.run()
     assert not any(state.slip_held for state in simulation.states)
     assert places == sorted(places)
@@ -58,8 +48,7 @@ def test_slide_goes_on_the_way_it_came(end):
     """Full slip is first found at the slide's end or before it; the bone moves on by 0.2 mm and does not turn round."""
     press, slide = {"name": "press", "f_ext": 1.0}, {"name": "slide", "bone_x": end, "until_full_slip": True}
     scene = small().replace(history=[press, slide])
-    simulation = Simulation(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_WORLD)
-    simulation.run()
+    simulation = followed(scene)
     slid = [state for state in simulation.states if state.load == "slide"]
     first = next(state.bone_x for state in slid if state.all_slip)
     assert abs(first) <= abs(end)
@@ -74,8 +63,7 @@ def test_slide_of_no_length_is_none():
     press, back = {"name": "press", "f_ext": 1.0}, {"name": "back", "bone_x": -5e-3, "until_full_slip": True}
     stay = {"name": "stay", "bone_x_by": 0.0, "until_full_slip": True}
     scene = small().replace(history=[press, back, stay])
-    simulation = Simulation(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_WORLD)
-    simulation.run()
+    simulation = followed(scene)
     last = [state for state in simulation.states if state.load == "back"][-1]
     assert all(state.bone_x == last.bone_x for state in simulation.states if state.load == "stay")
     assert last.slip_held and last.f_t < 0
@@ -84,14 +72,11 @@ def test_slide_of_no_length_is_none():
 def test_time_goes_on_where_full_slip_is_not_steady_at_once(monkeypatch):
     """The slide goes on from where it is, and so does its time, at the speed of the bone."""
     steady = iter([False])
-    slides_on = full_slip.FullSlip.slides_on
-    monkeypatch.setattr(
-        full_slip.FullSlip, "slides_on", lambda self, *args: slides_on(self, *args) and next(steady, True)
-    )
+    slides_on = FullSlip.slides_on
+    monkeypatch.setattr(FullSlip, "slides_on", lambda self, *args: slides_on(self, *args) and next(steady, True))
     slide = {"name": "slide", "bone_x": 1e-3, "speed": 0.02, "until_full_slip": True}
     scene = small().replace(history=[{"name": "press", "f_ext": 1.0}, slide])
-    simulation = Simulation(FingerModel(by_rule(scene), plan(scene)), MPI.COMM_WORLD)
-    simulation.run()
+    simulation = followed(scene)
     slid = [state for state in simulation.states if state.load == "slide"]
     assert [state.time for state in slid] == pytest.approx([state.bone_x / 0.02 for state in slid], rel=1e-9)
     assert next(steady, None) is None
@@ -115,7 +100,7 @@ class Slid:
 def test_force_of_full_slip_is_as_steady_as_its_gaps(formulation, change, steady):
     """5 nm left of an air gap and insulators of some 2 um: 5e-3 of the attraction, 1e-6 where none are left."""
     scene = from_data(SCENE | {"contact": {"formulation": formulation}})
-    finger = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD).finger
+    finger = path_of(scene).finger
     finger.coupling.set_air_gaps(np.full(len(finger.ridges), 1.5e-6))
     finger.continuation = Slid(finger.solver, change)
-    assert full_slip.FullSlip(finger).slides_on("slide", 1) is steady
+    assert FullSlip(finger).slides_on("slide", 1) is steady

@@ -11,7 +11,7 @@ import pytest
 import fingerpad as fp
 from fingerpad.io.result import Result
 from fingerpad.scene import Scene, SceneError, load
-from fingerpad.scene.law_keys import digest
+from fingerpad.scene.law_code import digest
 from fingerpad.scene.laws import used
 from tests.small_finger import small
 from variational.roughness.bam import BearingArea

@@ -1,6 +1,5 @@
 """Where omitted ridges may touch the run starts again with them, and is the run that had them all along."""
 
-import csv
 from dataclasses import replace
 
 import numpy as np
@@ -9,11 +8,11 @@ from mpi4py import MPI
 
 from fingerpad.model import options
 from fingerpad.model.contact_zone import FingerExceeded, Wider, more
-from fingerpad.model.options import FingerModel, plan
 from fingerpad.model.simulation import Simulation
 from fingerpad.runs import full as run_module
 from fingerpad.scene import from_data
-from tests.runs import run
+from tests.measures import rows_of
+from tests.runs import path_of, run
 from variational.solvers.stability import Stability, StabilityCheck
 
 MESH = {"contact": 30e-6, "receptor": 80e-6, "interface": 150e-6, "growth": 0.8}
@@ -30,8 +29,7 @@ def press(folder, half_arc: float) -> dict:
 
 def columns(folder, name: str) -> list[dict[str, str]]:
     """Return a table's rows, without a word of what they took."""
-    with (folder / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-        return [{k: v for k, v in row.items() if k != "processor_seconds"} for row in csv.DictReader(file)]
+    return [{k: v for k, v in row.items() if k != "processor_seconds"} for row in rows_of(folder, name)]
 
 
 @pytest.fixture(scope="module")
@@ -77,7 +75,7 @@ def test_how_many_are_added(last, after):
 def brought_near(half_arc: float, clearance: float) -> Simulation:
     """Return a finger that touches nowhere, rolled onto its side so that ridge 6 is lowest, at a height (m)."""
     scene = from_data({"mesh": MESH | {"touching_half_arc": half_arc}, "geometry": {"ridge_count": 15}})
-    simulation = Simulation(FingerModel(scene, plan(scene)), MPI.COMM_WORLD)
+    simulation = path_of(scene)
     problem, (tip, before) = (
         simulation.finger.problem,
         simulation.finger.profiles.point(np.array([6.0, 5.99]) * WAVELENGTH, 0.0),

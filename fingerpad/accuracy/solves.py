@@ -15,8 +15,8 @@ from fingerpad.io.drawing import View
 from fingerpad.io.states import WORDS, before_sliding
 from fingerpad.model.finger import Step
 from fingerpad.model.options import FingerModel
+from fingerpad.model.record import Viewer
 from fingerpad.model.simulation import RestartRequired, Simulation
-from fingerpad.model.viewer import Viewer
 from fingerpad.scene import Load
 from geometry.parameters import MeshSize
 from variational.contact.formulation import Formulation
@@ -110,6 +110,14 @@ class StateRecorder:
             self._begun = self._state(1 if state.f_t >= 0 else -1)
         if state.slip_held and self._begun is not None:
             self.states["full_slip"] = self._begun
+
+    def kept(self) -> dict[str, Any]:
+        """Return what another process needs to go on with the path."""
+        return {"states": self.states, "begun": self._begun}
+
+    def resume(self, kept: Mapping[str, Any]) -> None:
+        """Go on from what another process kept."""
+        self.states, self._begun = kept["states"], kept["begun"]
 
     def keep(self, name: str) -> None:
         """Keep the present state; collective."""

@@ -18,7 +18,7 @@ from pydantic import BaseModel, WrapValidator
 from fingerpad.installed import version
 from fingerpad.io.quantities import PER_LENGTH
 from fingerpad.io.states import WORDS
-from fingerpad.reduced import cylinders, known
+from fingerpad.reduced import cylinder_errors, cylinders
 from fingerpad.reduced.model import STATES
 from fingerpad.scene import Scene
 from fingerpad.scene.contradictions import LARGEST_GAP
@@ -116,7 +116,7 @@ def _in_unit(value: float, per: float) -> float:
 
 def data() -> dict[str, Any]:
     """Return all numbers that the page has from Python, ready for JSON; SI units but for those of the fields."""
-    scene, error = Scene(), known.KNOWN_ERROR["full_slip"]
+    scene, error = Scene(), cylinder_errors.KNOWN_ERROR["full_slip"]
     nodes, weights = (each.tolist() for each in leggauss(scene.slices.count))
     return {
         "fields": [asdict(field) for field in (*fields(), *contact())],
@@ -133,8 +133,8 @@ def data() -> dict[str, Any]:
         "slices": {"radius": scene.slices.radius, "length": scene.slices.length, "nodes": nodes, "weights": weights},
         "traces": traces.CONSTANTS,
         "words": {state: WORDS[state] for state in STATES},
-        "known": {"error": error, "runs": known.KNOWN_RUNS}
-        | {"forces": known.KNOWN_FORCES, "voltages": known.KNOWN_VOLTAGES},
+        "known": {"error": error, "runs": cylinder_errors.KNOWN_RUNS}
+        | {"forces": cylinder_errors.KNOWN_FORCES, "voltages": cylinder_errors.KNOWN_VOLTAGES},
     }
 
 
@@ -146,9 +146,9 @@ def page() -> str:
         for name in ("page.css", "closed_form.js", "plot.js", "page.js")
     )
     values = {
-        "error": f"{100 * known.KNOWN_ERROR['full_slip']['mu_app']:.1f} %",
-        "runs": str(known.KNOWN_RUNS),
-        "where": known.where(),
+        "error": f"{100 * cylinder_errors.KNOWN_ERROR['full_slip']['mu_app']:.1f} %",
+        "runs": str(cylinder_errors.KNOWN_RUNS),
+        "where": cylinder_errors.where(),
         "leakage": html.escape(LEAKAGE),
         "table": _table(),
         "defaults": _defaults(),

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, NoReturn
 
 from fingerpad.cli import COMMANDS, ranges
 from fingerpad.io import terminal
-from fingerpad.model.check import check
+from fingerpad.model.feasibility import check
 from fingerpad.scene import Scene, from_data, load, override
 from fingerpad.scene.keys import every
 from fingerpad.scene.messages import SceneError, clip, ends
@@ -80,14 +80,14 @@ class Parser(argparse.ArgumentParser):
 
     def add_ranges(self, *keys: str) -> None:
         """Add an option for several values of each of these keys, which :func:`several` reads."""
-        for key in every():
+        for key in every(Scene):
             if key.name in keys:
                 what = f"{key.meaning.partition('. ')[0].rstrip('.')}; several as 0,100 or 0:200:5, also with a unit"
                 self.add_argument(f"--{key.name.replace('_', '-')}", metavar="RANGE", help=what)
 
     def add_table(self, table: str) -> None:
         """Add an option for each optional key of a table of a scene."""
-        for key in every():
+        for key in every(Scene):
             if key.name.startswith(f"{table}.") and not key.required:
                 pair: dict[str, Any] = {"nargs": 2, "metavar": ("X", "Y")} if key.allowed.startswith("list") else {}
                 self.add_argument(f"--{key.name.removeprefix(table)[1:]}", **pair, help=key.meaning)
@@ -254,7 +254,7 @@ def _instead(word: str, options: Iterable[str], petsc: bool) -> str:
 
 def _key(name: str) -> str | None:
     """Return the key of a scene that a name may have been meant for, with its table or without."""
-    whole = [key.name for key in every() if "[" not in key.name]
+    whole = [key.name for key in every(Scene) if "[" not in key.name]
     names = {key.rpartition(".")[2]: key for key in reversed(whole)} | {key: key for key in whole}
     near = get_close_matches(name, names, n=1, cutoff=0.8)
     return names[near[0]] if near else None

@@ -10,7 +10,7 @@ from fingerpad.cli.arguments import Parser, echo, scene_of, several
 from fingerpad.io.quantities import FINGER, PER_LENGTH, QUANTITIES
 from fingerpad.io.result import Result
 from fingerpad.model.cautions import on_states
-from fingerpad.reduced import cylinders, known
+from fingerpad.reduced import cylinder_errors, cylinders
 from fingerpad.runs.context import RunContext
 from fingerpad.runs.solve import solved
 from fingerpad.scene import Scene
@@ -114,15 +114,15 @@ def _row(found: Result) -> dict[str, Any]:
 
 def _known(scene: Scene, rows: Sequence[Mapping[str, Any]]) -> list[str]:
     """Return what is known of the error of these rows."""
-    bands = known.KNOWN_ERROR["full_slip"]
+    bands = cylinder_errors.KNOWN_ERROR["full_slip"]
     mu, length, pull = (f"within {100 * bands[key]:.1f} %" for key in ("mu_app", "contact_length", "f_electrostatic"))
-    runs = f"{known.KNOWN_RUNS} full runs at {known.where()}"
+    runs = f"{cylinder_errors.KNOWN_RUNS} full runs at {cylinder_errors.where()}"
     of = "" if "force" not in rows[0] else " of the section"
     said = [f"Known error{of}: µ_app and f_T {mu}, f_el {pull}, L_R {length} of {runs}."]
-    beyond = sum(known.outside(row["f_ext"], row["voltage"]) for row in rows if "f_ext" in row)
+    beyond = sum(cylinder_errors.outside(row["f_ext"], row["voltage"]) for row in rows if "f_ext" in row)
     if beyond:
         said.append(f"{beyond} of {len(rows)} points are outside of that; their error is not known.")
-    if keys := known.changed(scene):
+    if keys := cylinder_errors.changed(scene):
         said.append(f"Those runs have the default {', '.join(keys)}; here the error is not known.")
     return said
 

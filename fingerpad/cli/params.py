@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from fingerpad.cli.arguments import Parser, echo
+from fingerpad.scene import Scene
 from fingerpad.scene.keys import Key, every
 from fingerpad.scene.messages import SceneError, clip
 from fingerpad.scene.schema import schema
@@ -47,7 +48,7 @@ def main(argv: Sequence[str]) -> int:
     if args.schema:
         echo(json.dumps(schema(), indent=1, ensure_ascii=False))
         return 0
-    found = [key for key in every() if args.filter.lower() in key.name.lower()]
+    found = [key for key in every(Scene) if args.filter.lower() in key.name.lower()]
     if not found:
         raise SceneError(f"no key of a scene has {clip(args.filter)} in its name; fingerpad params lists all of them")
     echo(toml(found) if args.toml else page(found) if args.markdown else table(found))

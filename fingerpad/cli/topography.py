@@ -13,7 +13,8 @@ from fingerpad.cli.arguments import PICTURE, Parser, echo, path
 from fingerpad.io.style import plain
 from fingerpad.scene import Scene, from_data, override
 from fingerpad.scene.materials import Topography
-from fingerpad.scene.messages import SceneError, clip, first_error
+from fingerpad.scene.messages import SceneError, clip
+from fingerpad.scene.refusals import first_error
 from fingerpad.scene.remarks import missing_waves, ridges_as_roughness
 from variational.roughness.heightfile import Found, scan
 from variational.roughness.spectrum import HURST, Fit, power_spectrum, roughness_table

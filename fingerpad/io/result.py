@@ -95,6 +95,11 @@ class Result:
         return {name: state for name in STATES if (state := getattr(self, name)) is not None}
 
     @property
+    def whole(self) -> bool:
+        """Whether the scene has a force on the whole finger; the named states are then those of its centre."""
+        return self.scene.force is not None
+
+    @property
     def last(self) -> ContactState | None:
         """The last accepted state; without a loading path the last named state."""
         return self.steps[-1] if self.steps else (self.full_slip or self.charged or self.uncharged)

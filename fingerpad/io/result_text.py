@@ -15,7 +15,7 @@ def text(result: Result) -> str:
 
     The whole finger follows; it comes first where the scene has a force on it.
     """
-    whole, shown = result.scene.force is not None and result.finger is not None, result.named
+    whole, shown = result.whole and result.finger is not None, result.named
     lines = ["Result" if result.finger is None else _SECTION]
     lines[0] += f" (model '{result.model}')" if result.model != DEFAULT_MODEL else ""
     if shown:

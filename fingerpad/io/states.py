@@ -122,6 +122,16 @@ def partial_slip(rows: Sequence[ContactState]) -> ContactState | None:
     """
     found = named(rows)
     last = found.get("full_slip", rows[-1]).step
+    return nearest_to_half(rows, last)
+
+
+def nearest_to_half(rows: Sequence[ContactState], last: float = math.inf) -> ContactState | None:
+    """Return the state of sliding without full slip, up to a step, of which the slipping part is nearest to one half.
+
+    Args:
+        rows: states of a history.
+        last: number of the step.
+    """
     way = rows[len(before_sliding(rows)) :]
     some = [row for row in way if row.step <= last and not row.slip_began]
     return min(some, key=lambda row: abs(row.slipping - 0.5)) if some else None

@@ -17,6 +17,8 @@ from variational.output import Fields
 from variational.problem import Problem
 from variational.state import ContactState
 
+_LOG = "run.log"
+
 
 class Writer:
     """Writes into a folder, or nothing where there is none.
@@ -37,6 +39,7 @@ class Writer:
         self.folder = None if place is None else place.folder
         self._tables: dict[str, Table] = {}
         self._fields: Fields | None = None
+        self._earlier: Mapping[str, str] = {}  # tables and log of an earlier run
         self.log = logging.Logger("fingerpad", logging.INFO)  # of this run alone, apart from those of the caller
         self.log.handlers = [logging.handlers.MemoryHandler(1000, logging.CRITICAL, flushOnClose=False)]
 
@@ -48,9 +51,25 @@ class Writer:
             self._taken = True
             self._place.take()
             if self._comm.rank == 0:
-                _send(self.log, _LogFile(self._place.folder / "run.log", mode="x", encoding="utf-8"))
+                for name, text in self._earlier.items():
+                    if name != _LOG:
+                        self._tables[name] = Table(self._place.folder / f"{name}.csv", text)
+                file = _LogFile(self._place.folder / _LOG, mode="x", encoding="utf-8")
+                file.stream.write(self._earlier.get(_LOG, ""))
+                _send(self.log, file)
         if self._fields is None:
             self._fields = Fields(problem, self._place.folder)
+
+    def kept(self) -> dict[str, str]:
+        """Return the text of the log and of all tables but that of the fields, on rank 0."""
+        if self._place is None or self._comm.rank != 0:
+            return {}
+        tables = {name: table.text() for name, table in self._tables.items() if name != "fields"}
+        return tables | {_LOG: (self._place.folder / _LOG).read_text(encoding="utf-8")}
+
+    def resume(self, tables: Mapping[str, str]) -> None:
+        """Begin, before :meth:`take`, with the log and the tables of an earlier run, as :meth:`kept`."""
+        self._earlier = tables
 
     def row(self, name: str, row: Mapping[str, Any]) -> None:
         """Append a row to a table, on rank 0."""

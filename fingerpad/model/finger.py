@@ -8,10 +8,10 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from fingerpad.model import balance, symmetry
-from fingerpad.model.memory import refuse_mesh, refuse_sizes
+from fingerpad.model import symmetry
+from fingerpad.model.feasibility import refuse_mesh, refuse_sizes
 from fingerpad.model.options import FingerModel
-from fingerpad.model.state import contact_state
+from fingerpad.model.state import contact_state, force_error, refuse_unbalanced
 from geometry import fingertip, mesh, meshfile, tags
 from geometry.profiles import Profiles
 from variational.attraction.electroadhesion import ELECTROSTATIC
@@ -74,9 +74,9 @@ class Finger:
 
     @property
     def force_error(self) -> float:
-        """What the solves' tolerance leaves of a sum of nodal forces (N/m), see :func:`balance.force_error`."""
+        """What the solves' tolerance leaves of a sum of nodal forces (N/m), see :mod:`fingerpad.model.state`."""
         left = max(self._tolerance, self.solver.floor)
-        return balance.force_error(self.unknowns, left, self.solver.force_scale)
+        return force_error(self.unknowns, left, self.solver.force_scale)
 
     def book(self) -> EnergyBook:
         """Return a book of energies that begins in the present state; collective."""
@@ -103,11 +103,11 @@ class Finger:
             load: name of the present load.
 
         Raises:
-            StepFailed: see :func:`balance.refuse_unbalanced`.
+            StepFailed: see :func:`fingerpad.model.state.refuse_unbalanced`.
         """
         left, scale = self.solver.imbalance(), self.solver.force_scale
         where = f"step {self.continuation.steps} ({load})"
-        balance.refuse_unbalanced(where, left, loads, self.solver.reaction, scale, self._tolerance, self.solver.floor)
+        refuse_unbalanced(where, left, loads, self.solver.reaction, scale, self._tolerance, self.solver.floor)
         return left
 
     def present(self, loads: RidgeLoads, load: str, number: int, attempt: Attempt | None = None) -> Step:

@@ -4,7 +4,7 @@ A :class:`FingerModel` reads the scene once. What meshes, solves, records and re
 
 What cannot change any number asked for is left out, and each omission comes with its reason. Nothing here is an
 approximation but what the finite elements make of it: the numbers stay those of the whole model. Ridges that are not
-expected to touch are another matter (:mod:`fingerpad.model.touching`).
+expected to touch are another matter (:mod:`fingerpad.model.feasibility`).
 """
 
 from collections.abc import Mapping
@@ -118,7 +118,7 @@ class FingerModel:
         """Read a scene.
 
         Args:
-            scene: a checked scene with a ``mesh.touching_half_arc``, see :func:`fingerpad.model.touching.by_rule`.
+            scene: a checked scene with a ``mesh.touching_half_arc``, see :func:`fingerpad.model.feasibility.by_rule`.
             options: the parts of the model, see :func:`plan`.
         """
         self.options = options

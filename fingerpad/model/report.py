@@ -14,9 +14,9 @@ from fingerpad.io.writing import Writer, ridge_rows, site_rows
 from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Step
 from fingerpad.model.options import Omission
-from fingerpad.model.path_record import PathRecord
+from fingerpad.model.record import PathRecord, Viewer
 from fingerpad.model.simulation import Simulation
-from fingerpad.model.viewer import Viewer
+from variational.solvers import checkpoint
 from variational.state import ContactState
 
 
@@ -31,6 +31,7 @@ class Report:
         self,
         simulation: Simulation,
         omitted: Sequence[Omission],
+        loads: Sequence[str],
         writer: Writer,
         console: Console,
         clock: Clock,
@@ -41,6 +42,7 @@ class Report:
         Args:
             simulation: set up, at its start.
             omitted: parts that its model leaves out.
+            loads: names of its loads in order.
             writer: writes into the folder.
             console: prints.
             clock: of the run.
@@ -52,6 +54,8 @@ class Report:
         self.record = PathRecord(finger.problem.mesh.comm, checks)
         self._viewer = Viewer(finger)
         self._written = self._logged = 0
+        self._ends: list[tuple[int, Any]] = []  # step and unknowns at the end of each load, whole on rank 0
+        self._loads = loads
         for omission in omitted:
             console.show(f"{omission}")
             writer.log.info("%s", omission)
@@ -106,11 +110,54 @@ class Report:
             last = done[-1].step if done else 0
             if self._written != last == self._simulation.finger.continuation.steps:
                 self._written = last
-                self._writer.fields(last, done[-1].load if done else "")
                 self._log_checks()
-                snapshot, merkel = self._viewer.picture()
-                if snapshot is not None:
-                    self.record.ends[done[-1].load] = End(done[-1], snapshot, merkel)
+                self._ends.append((last, checkpoint.unknowns(self._simulation.finger.continuation)))
+                self._end(done[-1])
+
+    def _end(self, state: ContactState) -> None:
+        """Write the present fields, those at the end of a load, and keep them for the pictures; collective."""
+        self._writer.fields(state.step, state.load)
+        snapshot, merkel = self._viewer.picture()
+        if snapshot is not None:
+            self.record.ends[state.load] = End(state, snapshot, merkel)
+
+    def kept(self) -> dict[str, Any]:
+        """Return what another process needs to go on with all tables and pictures, whole on rank 0."""
+        self.record.prune(self._loads)
+        return {
+            "states": self.record.states,
+            "profiles": self.record.profiles,
+            "ends": self._ends,
+            "logged": self._logged,
+            "tables": self._writer.kept(),
+        }
+
+    def resume(self, kept: Mapping[str, Any], places: Mapping[str, Any], done: float) -> None:
+        """Go on from what another process kept; collective.
+
+        Args:
+            kept: what it kept, on every rank.
+            places: of the unknowns at the ends of loads, see :func:`variational.solvers.checkpoint.take`.
+            done: part of the whole history that is done.
+        """
+        finger = self._simulation.finger
+        self._writer.resume(kept["tables"])
+        self._writer.take(finger.problem)
+        self.record.states, self._logged = kept["states"], kept["logged"]
+        self._ends, self._written = kept["ends"], kept["ends"][-1][0] if kept["ends"] else 0
+        if finger.problem.mesh.comm.rank == 0:
+            self.record.profiles = kept["profiles"]
+        by_step = {state.step: state for state in self.record.states}
+        now = finger.solver.x.array_r.copy()
+        mine = checkpoint.order(finger.continuation, dict(places))
+        for step, unknowns in self._ends:
+            finger.solver.x.array_w[:] = mine("unknowns", unknowns)
+            finger.solver.equations.to_fields(finger.solver.x)
+            self._end(by_step[step])
+        finger.solver.x.array_w[:] = now
+        finger.solver.equations.to_fields(finger.solver.x)
+        for state in self.record.states:
+            self._console.step(state, done)
 
     def _log_checks(self) -> None:
         for step, check in list(self._simulation.checks.items())[self._logged :]:

@@ -31,7 +31,7 @@ from fingerpad.io.place import difference
 from fingerpad.io.result import Cost, Result
 from fingerpad.io.states import WORDS
 from fingerpad.model.cautions import on_states
-from fingerpad.reduced import known
+from fingerpad.reduced import cylinder_errors
 from fingerpad.reduced.model import STATES, Model, Stopwatch, at_rest, at_slip, refuse_others
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import skin_modulus, used
@@ -220,9 +220,15 @@ def solve(scene: Scene, footprint: Footprint | None = None) -> Result:
     footprint = footprint or fitted(scene)
     found: dict[str, ContactState] = {}
     exact = "a closed form, without a mesh: no discretisation error but that of the contact length it is given"
-    errors = {} if footprint.charged else known.errors(scene)
-    notes = footprint.source, exact, known.in_words(errors), "the bone's height is not in this model", *leakage(scene)
-    cautions, states = [*remarks(scene), *([] if footprint.charged else known.cautions(scene))], {}
+    errors = {} if footprint.charged else cylinder_errors.errors(scene)
+    notes = (
+        footprint.source,
+        exact,
+        cylinder_errors.in_words(errors),
+        "the bone's height is not in this model",
+        *leakage(scene),
+    )
+    cautions, states = [*remarks(scene), *([] if footprint.charged else cylinder_errors.cautions(scene))], {}
     for state in STATES:
         n, length = np.array([footprint.ridges[state]]), np.array([footprint.length[state]])
         ((found[state], states[state]),) = _solved(scene, [scene.f_ext], length, n, state, footprint.charged)

@@ -15,8 +15,8 @@ MARKS = {trust.GOOD: "✓ holds", trust.CARE: "! care", trust.BAD: "✗ fails"}
 
 def conditions(result: Result) -> str:
     """Return force and voltage of a run in words."""
-    if result.scene.force is not None and result.finger is not None:
-        return f"{result.scene.force:.4g} N on the whole finger, {result.scene.voltage:.4g} V"
+    if result.whole and result.finger is not None:
+        return f"{result.finger.f_ext:.4g} N on the whole finger, {result.scene.voltage:.4g} V"
     last = result.full_slip or result.charged or result.last
     if last is None:
         return "a run without a result"
@@ -26,7 +26,7 @@ def conditions(result: Result) -> str:
 def head(result: Result) -> str:
     """Return the finding: the largest number of the page, and whether to rely on it."""
     slip, charged = result.full_slip, result.charged
-    whole = result.finger if result.scene.force is not None else None
+    whole = result.finger if result.whole else None
     if whole is not None and "full_slip" in whole.states:
         number = f"µ<sub>app</sub> = {html.text(whole.shown('full_slip', 'mu_app'))}"
         force = f"friction force {whole.shown('full_slip', 'f_t')} N"

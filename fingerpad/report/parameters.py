@@ -32,7 +32,7 @@ def all_of(parameters: Mapping[str, Any], varied: Container[str] = ()) -> str:
     """
     from fingerpad.scene.keys import every  # reads the docstrings of the models
 
-    keys, other, rows = {key.name: key for key in every()}, changed(parameters), []
+    keys, other, rows = {key.name: key for key in every(Scene)}, changed(parameters), []
     for name, value in flat(parameters).items():
         key = keys.get(re.sub(r"\[\d+\]", "[]", name))
         shown = "varied" if name in varied else _shown(value)

@@ -43,7 +43,7 @@ def page(result: Result) -> str:
     """Return the page of a run."""
     shown = frames(result)
     title = f"fingerpad: {conditions(result)}"
-    first = (_numbers, _newtons) if result.scene.force is None else (_newtons, _numbers)
+    first = (_numbers, _newtons) if not result.whole else (_newtons, _numbers)
     sections = [
         _asked(result),
         *(part(result) for part in first),
@@ -86,9 +86,9 @@ def _asked(result: Result) -> str:
         words += ["ends at full slip"] if load.until_full_slip else []
         reached = [end for end in result.loads if end.name == load.name]
         rows.append((load.name, ", ".join(words), _cell(reached)))
-    intro, force = "A fingertip on a charged screen, loaded in this order:", result.scene.force
-    if force is not None:
-        intro = f"{force:.4g} N on the whole finger. Loads at its centre, where f_ext is an estimate before the run:"
+    intro = "A fingertip on a charged screen, loaded in this order:"
+    if result.whole:
+        intro = f"{conditions(result)}. Loads at its centre, where f_ext is an estimate before the run:"
     return html.section(
         "asked",
         "What was asked",
@@ -113,7 +113,7 @@ def _numbers(result: Result) -> str:
     rows = [row for row in every if set(row[1:]) - {"–"}]
     slip = result.full_slip
     notes = []
-    if result.scene.force is not None:
+    if result.whole:
         notes.append("Each state of the section is under its own part of the force on the whole finger.")
     if any(state.error.known() for state in result.named.values()):
         notes.append(PLUS_MINUS)

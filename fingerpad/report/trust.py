@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from fingerpad.io.result import Result
 from fingerpad.io.states import called
-from fingerpad.reduced import known
+from fingerpad.reduced.cylinder_errors import in_words
 from fingerpad.reduced.models import follows_path
 from variational.state import ContactState
 
@@ -33,7 +33,7 @@ def findings(result: Result) -> list[Finding]:
     found = [_end(result)]
     found += _full_slip(result)
     if not follows_path(result.model):
-        words = f"The model is {result.model!r}, a cheaper one; {known.in_words(result.record.get('model_error', {}))}."
+        words = f"The model is {result.model!r}, a cheaper one; {in_words(result.record.get('model_error', {}))}."
         return [*found, Finding("model", CARE, words), *_cautions(result)]
     for examined in (_cautions, _mesh, _balance, _stability, _jumps, _restarts):
         found += examined(result)

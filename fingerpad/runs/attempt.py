@@ -1,7 +1,7 @@
 """One attempt at a run: the path of its loads on one mesh, and the errors of its states."""
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
@@ -9,6 +9,7 @@ from typing import Any
 from fingerpad.accuracy.refinement import Refinement, with_errors
 from fingerpad.accuracy.solves import StateRecorder
 from fingerpad.io import petsc_options
+from fingerpad.io.checkpoint import Checkpoint, CheckpointError
 from fingerpad.io.console import Console
 from fingerpad.io.interrupt import Interrupt, Interrupted
 from fingerpad.io.over_time import NOTE
@@ -19,14 +20,13 @@ from fingerpad.io.result import Result
 from fingerpad.io.states import long_steps
 from fingerpad.io.writing import Writer
 from fingerpad.model import cautions
-from fingerpad.model.balance import broken, force_error
 from fingerpad.model.cost import Clock
 from fingerpad.model.finger import Finger, Step, meshed
 from fingerpad.model.hints import finer_mesh_may_help, hint
-from fingerpad.model.journal import Journal
 from fingerpad.model.options import FingerModel
 from fingerpad.model.report import Report
 from fingerpad.model.simulation import RestartRequired, Simulation
+from fingerpad.model.state import broken, force_error
 from fingerpad.scene import Scene
 from fingerpad.scene.laws import coefficient, used
 from fingerpad.scene.reading import DEFAULT_MODEL
@@ -34,9 +34,12 @@ from fingerpad.scene.remarks import leakage, remarks
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.startup import MPI
 from geometry.profiles import GeometryError
+from variational.solvers.checkpoint import OtherBody
 from variational.solvers.continuation import StepFailed
 from variational.state import ContactState
 
+STEPS = 5
+"""Accepted steps from one checkpoint to the next, at most; there is one at the end of each load."""
 FINEST = 5e-6
 """Contact size (m) down to which a run starts again by itself where the path of its loads cannot be followed."""
 
@@ -55,6 +58,14 @@ class Restarts:
         self.table: list[dict[str, Any]] = []
         self.notes: list[str] = []
         self._seconds = 0.0
+
+    def kept(self) -> dict[str, Any]:
+        """Return what another process needs to go on."""
+        return {"table": self.table, "notes": self.notes, "seconds": self._seconds}
+
+    def resume(self, kept: Mapping[str, Any]) -> None:
+        """Go on from what another process kept."""
+        self.table, self.notes, self._seconds = kept["table"], kept["notes"], kept["seconds"]
 
     def record(self, restart: RestartRequired, states: Sequence[ContactState], finger: Finger, clock: Clock) -> None:
         """Record a restart; collective.
@@ -106,9 +117,10 @@ class Session:
     console: Console
     clock: Clock
     interrupt: Interrupt
-    journal: Journal | None
-    """Keeps what solves leave; None to keep nothing."""
     outputs: Sequence[Output]
+    restarts: Restarts
+    checkpoint: Checkpoint | None
+    """None to keep nothing."""
 
 
 class Attempt:
@@ -122,24 +134,30 @@ class Attempt:
     def __init__(self, model: FingerModel, session: Session) -> None:
         """Mesh the finger; collective."""
         self._model, self._outputs = model, session.outputs
-        self._comm, self._interrupt, self._journal = session.comm, session.interrupt, session.journal
+        self._comm, self._interrupt = session.comm, session.interrupt
+        self._checkpoint, self._restarts = session.checkpoint, session.restarts
         self._writer, self._console, self._clock = session.writer, session.console, session.clock
         self._console.phase("meshing the finger and setting up its equations")
         with self._clock.phase("setup"):
-            self.simulation = Simulation(model, self._comm, self._on_step, self._on_load, self._journal)
-        self.report = Report(self.simulation, model.omitted, self._writer, self._console, self._clock, self._outputs)
+            self.simulation = Simulation(model, self._comm, self._on_step, self._on_load)
+        loads = [load.name for load in model.loads]
+        writer, console, clock = self._writer, self._console, self._clock
+        self.report = Report(self.simulation, model.omitted, loads, writer, console, clock, self._outputs)
         self._recorder = StateRecorder(self.simulation) if model.options.errors else None
         self._refinement: Refinement | None = None
         self._ended: dict[str, str] = {}
+        self._has_kept = False  # whether there is a checkpoint
         self._solves = 0  # for the error estimate
+        self._steps, self._done = 0, 0.0  # accepted since the last checkpoint; part of the history that is done
 
     def _on_step(self, step: Step, done: float) -> None:
         petsc_options.refuse_unread()
         self.report.step(step, done)
         if self._recorder is not None:
             self._recorder.record(step)
-        if self._journal is not None:
-            self._journal.accepted(self._clock.present())
+        self._steps, self._done = self._steps + 1, done
+        if self._steps >= STEPS:
+            self._keep()
         self._interrupt.stop_if_asked(step.state.step, self._kept())
 
     def _kept(self) -> str:
@@ -147,15 +165,52 @@ class Attempt:
         if self._writer.folder is None:
             return ""
         steps = "every accepted step is in the folder of results"
-        if self._journal is None:
+        if self._checkpoint is None:
             return steps
         resumes = "fingerpad run --resume FOLDER goes on from there"
-        return f"{steps}, and {resumes if self._journal.parts else 'the same command starts again'}"
+        return f"{steps}, and {resumes if self._has_kept else 'the same command starts again'}"
 
     def _on_load(self) -> None:
         self.report.load_reached()
-        if self._journal is not None:
-            self._journal.keep(self._clock.present())
+        self._keep()
+
+    def _keep(self) -> None:
+        """Have the next solve use nothing but the accepted state, and keep that if there is a folder; collective."""
+        self.simulation.forget()
+        self._steps = 0
+        if self._checkpoint is None:
+            return
+        with self._clock.phase("output"):
+            recorder = None if self._recorder is None else self._recorder.kept()
+            state = {
+                "simulation": self.simulation.kept(),
+                "report": self.report.kept(),
+                "recorder": recorder,
+                "restarts": self._restarts.kept(),
+                "mesh": self._model.mesh.model_dump(),
+                "both_halves": self._model.options.both_halves,
+                "done": self._done,
+                "seconds": self._clock.present(),
+            }
+            if self._comm.rank == 0:
+                self._checkpoint.write(state)
+        self._has_kept = True
+
+    def resume(self, kept: dict[str, Any]) -> None:
+        """Go on from a checkpoint, as :func:`fingerpad.runs.full.read` gives it; collective.
+
+        Raises:
+            CheckpointError: it is of another mesh.
+        """
+        self._has_kept, self._done = True, kept["done"]
+        try:
+            self.simulation.resume(kept["simulation"], [*kept["report"]["states"]])
+        except OtherBody as error:
+            raise CheckpointError(f"the checkpoint is of another mesh: {error}") from error
+        places = kept["simulation"]["paths"]["finger"]["places"]
+        self.report.resume(kept["report"], places, self._done)
+        if self._recorder is not None:
+            self._recorder.resume(kept["recorder"])
 
     def _before_solve(self) -> None:
         """Stop if asked to, or tell how far the error estimate is."""

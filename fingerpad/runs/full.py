@@ -2,28 +2,37 @@
 
 import json
 import signal
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import fingerpad.startup  # noqa: F401
+from fingerpad.accuracy.solves import State
 from fingerpad.io import petsc_options
-from fingerpad.io.checkpoint import Checkpoint
+from fingerpad.io.checkpoint import Checkpoint, CheckpointError
 from fingerpad.io.console import Console
+from fingerpad.io.drawing import Profile
 from fingerpad.io.interrupt import Interrupt, all_together, no_room
 from fingerpad.io.provenance import provenance
-from fingerpad.io.quantities import checked
+from fingerpad.io.quantities import Output, checked
 from fingerpad.io.result import Result
 from fingerpad.io.writing import Writer
 from fingerpad.model.cost import Clock
-from fingerpad.model.journal import Journal
+from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
-from fingerpad.model.touching import by_rule
 from fingerpad.runs.attempt import Attempt, Restarts, Session
 from fingerpad.runs.context import RunContext
 from fingerpad.scene import Scene, SceneError
 from fingerpad.scene.laws import coefficient
 from fingerpad.scene.reading import DEFAULT_MODEL
 from fingerpad.startup import MPI
+from geometry.parameters import MeshSize
 from geometry.profiles import GeometryError
+from variational.solvers.equations import Control
+from variational.solvers.target import Progress
+from variational.solvers.timing import Counts
+from variational.solvers.transfer import SkinState, StateSnapshot
+from variational.state import ContactState, Errors, RidgeStates, StepRecord
 
 
 def run(scene: Scene, context: RunContext) -> Result:
@@ -56,39 +65,74 @@ def run(scene: Scene, context: RunContext) -> Result:
     petsc_options.check(comm, scene.numerics.element)
     try:
         with context.console() as console, context.place(scene, DEFAULT_MODEL) as place:
-            journal = None
-            if place is not None:
-                journal = Journal(comm, _checkpoint(scene, place.folder), context.resume)
-            writer, clock, interrupt = Writer(place, comm), Clock(comm), Interrupt(comm)
-            return _run(scene, Session(comm, writer, console, clock, interrupt, journal, outputs))
+            checkpoint = None if place is None else _checkpoint(scene, place.folder, outputs)
+            kept = read(checkpoint, comm) if context.resume and checkpoint is not None else None
+            writer = Writer(place, comm)
+            restarts = Restarts(writer.log, console)
+            session = Session(comm, writer, console, Clock(comm), Interrupt(comm), outputs, restarts, checkpoint)
+            return _run(scene, session, kept)
     except GeometryError as error:
         what = "the finger cannot be meshed" if scene.geometry.file is None else "mesh"
         raise SceneError(f"{what}: {error}") from error
 
 
-def _checkpoint(scene: Scene, folder: Path) -> Checkpoint:
+_KEPT = (
+    *(ContactState, RidgeStates, StepRecord, Errors, Profile, Control, Counts, Progress),
+    *(State, StateSnapshot, SkinState),
+)
+"""Classes of what a checkpoint holds."""
+
+
+def read(checkpoint: Checkpoint, comm: MPI.Comm) -> dict[str, Any]:
+    """Return what the last checkpoint holds, on every rank; collective.
+
+    Raises:
+        CheckpointError: a run cannot go on from there; on every rank.
+    """
+    kept: dict[str, Any] | CheckpointError | None = None
+    if comm.rank == 0:
+        try:
+            checkpoint.check()
+            kept = checkpoint.read(_KEPT)
+        except CheckpointError as error:
+            kept = error
+    kept = comm.bcast(kept)
+    if isinstance(kept, CheckpointError):
+        raise kept
+    assert kept is not None
+    return kept
+
+
+def _checkpoint(scene: Scene, folder: Path, outputs: Sequence[Output]) -> Checkpoint:
     """Return the checkpoint of a scene by the present program."""
     versions = provenance()["versions"]
-    return Checkpoint(folder, scene.parameters(), {"source": versions["source"], "dolfinx": versions["dolfinx"]})
+    names = ", ".join(each.name for each in outputs) or "none"
+    same = {"source": versions["source"], "dolfinx": versions["dolfinx"], "list of outputs": names}
+    return Checkpoint(folder, scene.parameters(), same)
 
 
-def _run(scene: Scene, session: Session) -> Result:
-    """Run a scene until nothing must be added to its model."""
+def _run(scene: Scene, session: Session, kept: dict[str, Any] | None) -> Result:
+    """Run a scene until nothing must be added to its model; go on from what an earlier run kept, if it did."""
     comm, writer, console = session.comm, session.writer, session.console
-    clock, journal = session.clock, session.journal
+    clock, restarts, checkpoint = session.clock, session.restarts, session.checkpoint
     writer.log.info("scene %s", json.dumps(scene.parameters()))
-    restarts = Restarts(writer.log, console)
-    if journal is not None:
-        clock.earlier(*journal.seconds)
-        if journal.parts:
-            writer.log.info("takes over what an earlier run solved, %d parts of its checkpoint", journal.parts)
-            console.show(f"fingerpad: going on with a run of {journal.seconds[0]:.0f} s; its steps are listed again")
     model = FingerModel(by_rule(scene), plan(scene))
+    if kept is not None:
+        clock.earlier(*kept["seconds"])
+        restarts.resume(kept["restarts"])
+        more = kept["both_halves"] and not model.options.both_halves
+        options = model.options.with_both_halves() if more else model.options
+        model = model.changed(mesh=MeshSize(**kept["mesh"]), options=options)
+        writer.log.info("goes on after step %d of an earlier run", len(kept["report"]["states"]))
+        console.show(f"fingerpad: going on with a run of {kept['seconds'][0]:.0f} s; its steps are listed again")
     try:
         with session.interrupt:
             while True:
                 attempt = Attempt(model, session)
                 _expect(scene, console)
+                if kept is not None:
+                    attempt.resume(kept)
+                    kept = None
                 restart = attempt.follow()
                 if restart is None:
                     break
@@ -98,8 +142,8 @@ def _run(scene: Scene, session: Session) -> Result:
             result = attempt.result(scene, restarts)
             console.show(f"\n{result}\n{_work(result)}")
             writer.close()
-            if journal is not None and not result.interrupted:
-                journal.end()
+            if checkpoint is not None and comm.rank == 0 and not result.interrupted:
+                checkpoint.delete()
             return result
     except BaseException as error:
         # On more ranks than this, or not: what waits for the others would never return.

@@ -13,6 +13,7 @@ from typing import Any
 from fingerpad.io.quantities import FINGER, FRICTION, QUANTITIES, SWEPT, Output, cell
 from fingerpad.io.result import Result
 from fingerpad.io.states import STATES, LoadResult
+from fingerpad.scene import Scene
 from fingerpad.scene.keys import Key, every
 from fingerpad.slices.finger import WholeFinger
 
@@ -26,7 +27,7 @@ _ENDS = {"min": "least", "max": "largest", "mean": "mean"}
 
 def row(result: Result) -> dict[str, Any]:
     """Return the values of a point in SI units by column, and its failure."""
-    if result.scene.force is not None:
+    if result.whole:
         return (_newtons(result.finger) if result.finger is not None else {}) | {"failure": result.failure}
     values, keys = result.values(), (*SWEPT, *(each.name for each in result.outputs))
     names = [f"{state}_{key}" for state in STATES for key in keys]
@@ -154,4 +155,4 @@ def printed(value: Any) -> str:
 
 def described(key: str) -> Key | None:
     """Return what is known of a dotted key of a scene; None of a table."""
-    return next((each for each in every() if each.name == re.sub(r"\[\d+\]", "[]", key)), None)
+    return next((each for each in every(Scene) if each.name == re.sub(r"\[\d+\]", "[]", key)), None)

@@ -61,7 +61,7 @@ class Sweep:
     @property
     def whole(self) -> bool:
         """Whether forces are those on the whole finger; results have their ``finger`` under it."""
-        return any(result.scene.force is not None for result in self.results)
+        return any(result.whole for result in self.results)
 
     @property
     def outputs(self) -> tuple[Output, ...]:

@@ -17,7 +17,6 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel, WrapValidator
 
 from fingerpad.scene.law_keys import LawKey, keys_of, range_of
-from fingerpad.scene.scene import Scene
 from geometry.bounds import Range
 
 
@@ -39,9 +38,9 @@ class Key:
     """Law that reads it, where that is not the default one."""
 
 
-def every() -> Iterator[Key]:
-    """Yield every key of a scene, tables in the order in which a scene has them."""
-    yield from _of(Scene, "", None)
+def every(scene: type[BaseModel]) -> Iterator[Key]:
+    """Yield every key of the model of a scene, tables in the order in which a scene has them."""
+    yield from _of(scene, "", None)
 
 
 def tables(model: type[BaseModel]) -> Iterator[type[BaseModel]]:
