@@ -128,7 +128,7 @@ def test_negative_voltages(capsys):
     """A range of them after an equals sign, and a number also without."""
     for words in (["--voltage=-200:200:3"], ["--voltage", "-200"]):
         assert main(["estimate", *words]) == 0
-        assert re.search(r"^ +75 +-200 ", capsys.readouterr().out, re.MULTILINE)
+        assert re.search(r"^ *75.00 +-200.0 ", capsys.readouterr().out, re.MULTILINE)
 
 
 def test_folder_that_is_read_only(tmp_path, monkeypatch, capsys):
