@@ -8,7 +8,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from geometry.bounds import within
+from geometry.units import within
 
 Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Outline = Annotated[Finite, within(1e-3, 0.1, "m")]

@@ -9,7 +9,7 @@ from fingerpad.io.result import Result
 from fingerpad.scene import SceneError, as_kept
 from fingerpad.slices.estimate import with_newtons
 from fingerpad.slices.traces import history
-from geometry.bounds import computed
+from geometry.units import computed
 from tests.small_finger import small
 from variational.state import ContactState
 

@@ -43,12 +43,10 @@ def clean(tmp_path_factory) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize("first", ["import fingerpad.startup", "import fingerpad.runs.full"])
-def test_nothing_is_taken_from_the_current_folder(tmp_path, clean, first):
-    """Neither by a program nor by a script of one's own."""
+def test_nothing_is_taken_from_the_current_folder(tmp_path, clean):
     for name, text in FOUND.items():
         (tmp_path / name).write_text(text.format(folder=tmp_path))
-    done = python(tmp_path, first + STATE)
+    done = python(tmp_path, "import fingerpad.runs.full" + STATE)
     assert (done.returncode, done.stdout) == (0, clean), done.stderr
     assert "UCX" not in done.stderr
 
@@ -61,6 +59,7 @@ def test_without_it_they_would_be(tmp_path, clean):
     assert done.stdout == "True ['found']\n77 77.0\n"
 
 
+@pytest.mark.slow
 def test_nothing_is_taken_from_the_home_folder(tmp_path, clean):
     """Its files were written for other programs; the control shows that these libraries read them."""
     place, home = tmp_path / "place", tmp_path / "home"
@@ -76,17 +75,6 @@ def test_nothing_is_taken_from_the_home_folder(tmp_path, clean):
     assert found[1].stdout == clean.replace(" 1.5\n", "\n"), found[1].stderr
 
 
-def test_pictures_are_the_same_with_a_style_in_the_home_folder(tmp_path):
-    """Of a matplotlibrc there; outside of the pictures it is obeyed."""
-    folder = tmp_path / ".config" / "matplotlib"
-    folder.mkdir(parents=True)
-    (folder / "matplotlibrc").write_text("lines.markersize: 77\ntext.usetex: True\n")
-    code = "import matplotlib; from fingerpad.io.style import look\n"
-    code += "r = matplotlib.rcParams; before = r['lines.markersize']\n"
-    code += "with look(): print(before, r['lines.markersize'], r['text.usetex'])\nprint(r['lines.markersize'])"
-    assert python(tmp_path, code, HOME=str(tmp_path)).stdout == "77.0 6.0 False\n77.0\n"
-
-
 def test_the_environment_and_the_command_line_are_obeyed(tmp_path):
     code = "from fingerpad.startup import start; start(['-c', 'line'])\nfrom petsc4py import PETSc\n"
     code += "o = PETSc.Options(); print(*(o.getString(name) for name in 'bc'))"
@@ -96,6 +84,6 @@ def test_the_environment_and_the_command_line_are_obeyed(tmp_path):
 def test_modules_of_the_current_folder_are_not_run(tmp_path):
     """Processes of a sweep are started with python3 -m, which looks there first."""
     (tmp_path / "numpy.py").write_text("raise SystemExit('found')")
-    run = "processes.run('fingerpad.runs.batch', ['no.json', '.', '9', 'full'], 9).message"
+    run = "processes.run('fingerpad.runs.one', ['no.json', '.', '9', 'full'], 9).message"
     code = f"from fingerpad.runs import processes; print({run})"
     assert "No such file or directory: 'no.json'" in python(tmp_path, code).stdout

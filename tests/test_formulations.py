@@ -14,12 +14,12 @@ from fingerpad.model.feasibility import by_rule
 from fingerpad.model.options import FingerModel, plan
 from fingerpad.scene import SceneError, from_data
 from fingerpad.scene.laws import used
+from fingerpad.scene.parameters import FORMULATIONS
 from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, TOLERANCE, WIDTH, confined_stress, over
 from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.formulation import Formulation, Springs
-from variational.contact.formulations import FORMULATIONS
 from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 from variational.solvers.continuation import Continuation, StepFailed, Target

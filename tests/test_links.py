@@ -14,7 +14,6 @@ from fingerpad.io.checkpoint import Checkpoint
 from fingerpad.io.files import Table, lock_file, replace
 from fingerpad.io.place import Place, PlaceError, Serial
 from fingerpad.scene import SceneError
-from fingerpad.slices.traces import folder_of
 
 
 @pytest.fixture
@@ -56,18 +55,9 @@ def test_link_under_the_name_of_a_result_is_refused(out, victim, name, target):
         Place(out, {}, Serial()).__enter__()
 
 
-def test_folder_may_be_reached_by_a_link(out, tmp_path):
-    """Of the user; and its other links are no concern of a run."""
-    (tmp_path / "link").symlink_to(out)
-    (out / "latest").symlink_to(tmp_path)
-    fp.run(model="cylinders", out=tmp_path / "link")
-    assert (out / "summary.json").exists()
-
-
 @pytest.mark.parametrize(
     ("name", "start"),
     [
-        ("charged", lambda out: folder_of(out, "charged")),
         ("full", lambda out: fp.sweep(out=out, voltage=[100], quiet=True)),
         ("full", lambda out: main(["compare", "--out", str(out), "--model", "full", "--quiet"]) and None),
     ],

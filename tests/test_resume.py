@@ -18,7 +18,6 @@ from fingerpad.cli import run as command
 from fingerpad.io.checkpoint import Checkpoint, CheckpointError
 from fingerpad.io.drawing import Drawing
 from fingerpad.io.writing import Writer
-from fingerpad.model.simulation import Simulation
 from fingerpad.runs.batch import key, sweep
 from fingerpad.scene import SceneError
 from tests.test_history import Own
@@ -92,6 +91,7 @@ def killed_at(monkeypatch):
 LONG = [pytest.param(name, marks=pytest.mark.long) for name in list(HISTORIES)[2:]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("history", [*list(HISTORIES)[:2], *LONG])
 def test_goes_on_to_the_last_bit(history, tmp_path, killed_at):
     """Killed twice on the way; the solves of earlier runs are not done again."""
@@ -169,6 +169,7 @@ def undisturbed(tmp_path_factory):
     return file, tables(folder / "run"), (folder / "run" / "summary.json").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "number"), [MOMENTS[0], *(pytest.param(*m, marks=pytest.mark.long) for m in MOMENTS[1:])]
 )
@@ -188,6 +189,7 @@ def test_kill_9(undisturbed, tmp_path, kind, number):
     assert lines((out / "summary.json").read_text(encoding="utf-8")) == lines(summary)
 
 
+@pytest.mark.slow
 @pytest.mark.mpi
 def test_on_another_number_of_ranks(tmp_path, killed_at):
     """Begun on one rank and finished on all; to 1e-8 the numbers of one rank."""
@@ -223,6 +225,7 @@ def refused(match: str, folder: Path, **more) -> None:
         fp.run(scene(**more), out=folder, resume=True)
 
 
+@pytest.mark.slow
 def test_refusals(cut_short, tmp_path_factory, capsys):
     """Of nothing to go on from, another scene, a damaged or foreign checkpoint; each in one sentence."""
     refused("has no checkpoint to go on from: its run has not come to one", tmp_path_factory.mktemp("empty"))
@@ -249,24 +252,6 @@ def test_refusals(cut_short, tmp_path_factory, capsys):
     refused("its run has reached its end", cut_short)
 
 
-@pytest.mark.parametrize("folder", [False, True])
-def test_run_that_stops_before_its_first_checkpoint(tmp_path, monkeypatch, folder):
-    """The failure promises no more than there is, and to go on is refused for what it is."""
-    accepted = Simulation._accepted
-
-    def stop(self, *given):
-        signal.raise_signal(signal.SIGTERM)
-        return accepted(self, *given)
-
-    monkeypatch.setattr(Simulation, "_accepted", stop)
-    with pytest.raises(SystemExit) as ended:
-        fp.run(scene(), out=tmp_path if folder else None)
-    kept = "; every accepted step is in the folder of results, and the same command starts again" if folder else ""
-    assert ended.value.result.failure == "stopped by SIGTERM after step 1" + kept
-    if folder:
-        refused("has no checkpoint to go on from: its run has not come to one", tmp_path)
-
-
 def test_refused_options(tmp_path):
     with pytest.raises(SceneError, match="only a full run in a folder can go on"):
         fp.run(resume=True)
@@ -287,6 +272,7 @@ def test_refused_options(tmp_path):
             command.main(["--resume", str(tmp_path)])
 
 
+@pytest.mark.slow
 def test_numbers_do_not_depend_on_the_folder(tmp_path, monkeypatch):
     """To the last bit on one rank: the solver forgets at the same places. Without a folder nothing is kept."""
     inside = fp.run(scene(), out=tmp_path)
@@ -300,6 +286,7 @@ def test_numbers_do_not_depend_on_the_folder(tmp_path, monkeypatch):
     assert str(rows[0]) == str(rows[1])
 
 
+@pytest.mark.slow
 def test_checkpoint_of_another_mesh(cut_short, monkeypatch):
     """As by another version of gmsh: the places are compared, not trusted."""
     read = Checkpoint.read
@@ -315,6 +302,7 @@ def test_checkpoint_of_another_mesh(cut_short, monkeypatch):
         fp.run(scene(), out=cut_short, resume=True)
 
 
+@pytest.mark.slow
 def test_full_disk_under_the_checkpoint(tmp_path, monkeypatch):
     """What is there stays whole, and the run goes on from it when there is room."""
     write = Checkpoint.write

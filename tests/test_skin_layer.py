@@ -7,7 +7,7 @@ from mpi4py import MPI
 from geometry.bodies import block, ridge
 from geometry.mesh import load
 from tests.test_contact import HEIGHT, MU_F, WIDTH, make
-from tests.test_solver import walk
+from tests.test_newton import walk
 from variational.solvers import skin_layer as module
 from variational.solvers.equations import OUTSIDE, Control
 

@@ -37,6 +37,12 @@ def traced(tmp_path_factory) -> fp.Result:
     return fp.Result.load(folder)
 
 
+@pytest.fixture(scope="module")
+def ran() -> fp.Result:
+    """The small finger under its f_ext."""
+    return fp.run(small(**SMALL))
+
+
 def test_force_is_the_one_asked_for(traced):
     """In each state, whose friction at full slip is Coulomb's of the sum. Tolerance: Newton's."""
     sums = {name: total.totals for name, total in traced.finger.states.items()}
@@ -159,17 +165,16 @@ def test_points_of_the_traces_are_of_one_kind():
         assert all(state.bone_x == 0 for state in found)
 
 
-def test_run_has_newtons_for_nothing():
+def test_run_has_newtons_for_nothing(ran):
     """The run's own states at the centre, and less beside it; F_ext over f_ext is no constant of 20 mm."""
-    result = fp.run(small(**SMALL))
-    finger = result.finger
+    finger = ran.finger
     assert set(finger.states) == {"uncharged", "charged", "full_slip"}
     slip = finger.states["full_slip"]
-    assert slip.centre <= result.full_slip.f_ext * (1 + 1e-9)
-    assert slip.mu_app > result.full_slip.mu_app
-    assert "Whole finger" in str(result)
-    turned = [replace(state, f_t=-1e-15) if state.load == "press" else state for state in result.steps]
-    again = with_newtons(replace(result, steps=tuple(turned), finger=None)).finger
+    assert slip.centre <= ran.full_slip.f_ext * (1 + 1e-9)
+    assert slip.mu_app > ran.full_slip.mu_app
+    assert "Whole finger" in str(ran)
+    turned = [replace(state, f_t=-1e-15) if state.load == "press" else state for state in ran.steps]
+    again = with_newtons(replace(ran, steps=tuple(turned), finger=None)).finger
     assert again.states["full_slip"].totals == slip.totals, "sideways roundoff leaves no state of the press out"
 
 
@@ -179,13 +184,12 @@ def test_estimate_by_another_law_has_the_friction_of_the_run():
     assert run.finger.traces["full_slip"].columns["f_t"][-1] == pytest.approx(run.full_slip.f_t, rel=1e-12)
 
 
-def test_run_that_was_never_charged_has_one_normal_contact():
+def test_run_that_was_never_charged_has_one_normal_contact(ran):
     """A run that ended before its voltage, and one at 0 V: one state, with one area, and no word of a charge."""
-    whole = fp.run(small(**SMALL))
-    still = whole.uncharged
+    still = ran.uncharged
     for voltage in (100.0, 0.0):
-        scene = whole.scene.replace(voltage=voltage)
-        cut = replace(whole, scene=scene, charged=replace(still, error=Errors(contact_length=1e-6)), full_slip=None)
+        scene = ran.scene.replace(voltage=voltage)
+        cut = replace(ran, scene=scene, charged=replace(still, error=Errors(contact_length=1e-6)), full_slip=None)
         found = with_newtons(replace(cut, finger=None))
         assert found.finger.values("charged") == found.finger.values("uncharged")
         assert found.finger.error["charged"] == found.finger.error["uncharged"]

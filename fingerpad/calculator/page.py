@@ -27,8 +27,8 @@ from fingerpad.scene.laws import skin_modulus
 from fingerpad.scene.materials import BEARING_AREA
 from fingerpad.scene.remarks import LEAKAGE
 from fingerpad.slices import traces
-from geometry.bounds import Range
 from geometry.parameters import Fingertip, MeshSize
+from geometry.units import Range
 from variational.attraction.insulator import VACUUM_PERMITTIVITY
 from variational.contact.friction import Coulomb
 

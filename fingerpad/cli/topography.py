@@ -62,7 +62,7 @@ def _scan(args: argparse.Namespace) -> Found:
     except OSError as error:
         raise SceneError(f"{clip(str(args.file), 80)} cannot be read: {error.strerror or error}") from None
     except ValidationError as error:
-        raise SceneError(f"--{first_error(error, Topography)}") from None
+        raise SceneError(f"--{first_error(error, Topography, ())}") from None
     except (ValueError, ImportError) as error:
         raise SceneError(re.sub(r"'(unit|size|pixel|missing)'", r"--\1", str(error))) from None
 

@@ -26,9 +26,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fingerpad.io.answer import Cost
 from fingerpad.io.files import read_object
 from fingerpad.io.place import difference
-from fingerpad.io.result import Cost, Result
+from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS
 from fingerpad.model.cautions import on_states
 from fingerpad.reduced import cylinder_errors

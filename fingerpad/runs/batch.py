@@ -3,18 +3,14 @@
 A scene's folder is named by a hash of all its parameters: run again, a sweep computes only what has changed, and runs
 that were cut short go on from their checkpoints. The hash does not depend on the program: after a change of the
 mechanics the folder must be deleted.
-
-    python3 -m fingerpad.runs.batch SCENE.json FOLDER LIMIT MODEL    one run, as the sweep starts it
 """
 
 import fcntl
 import hashlib
 import json
 import os
-import sys
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +20,7 @@ from fingerpad.io.files import below, lock_file, read_object, replace_json
 from fingerpad.io.pace import between
 from fingerpad.io.place import identity
 from fingerpad.io.terminal import watched
-from fingerpad.runs.processes import End, Pool, limit_processor_time, run
+from fingerpad.runs.processes import End, Pool, run
 from fingerpad.scene import Scene
 from fingerpad.scene.reading import DEFAULT_MODEL
 
@@ -87,8 +83,10 @@ def times_left(took: Sequence[float], left: int, jobs: int) -> tuple[float, floa
 
 def _said(summary: Summary) -> str:
     """Return what became of a run that did not fail, in words; of a whole finger where the force is on it."""
-    found = summary["finger"]["states"].get("full_slip", {}) if "force" in summary["parameters"] else {}
-    mu_app = found.get("mu_app") if "force" in summary["parameters"] else summary.get("full_slip_mu_app")
+    if "force" in summary.get("parameters", {}):
+        mu_app = summary["finger"]["states"].get("full_slip", {}).get("mu_app")
+    else:
+        mu_app = summary.get("full_slip_mu_app")
     return "done" if mu_app is None else f"done, µ_app {mu_app:.4f}"
 
 
@@ -133,7 +131,7 @@ def sweep(
             replace_json(place / "asked.json", scenes[name].parameters())
             start = time.monotonic()
             given = [str(place / "asked.json"), str(place), str(limit), model]
-            end = run("fingerpad.runs.batch", given, limit, scenes[name].law_folders())
+            end = run("fingerpad.runs.one", given, limit, scenes[name].law_folders())
             took.append(time.monotonic() - start)
             return end
 
@@ -157,31 +155,3 @@ def sweep(
         task = bar.add_task("scenes", total=len(missing))
         Pool[str, End](job, jobs).run(missing, done)
     return {name: kept(name) or broken[name] for name in scenes}
-
-
-def _one(scene: Path, folder: Path, model: str) -> None:
-    import fingerpad.startup  # noqa: F401  # before any other import of libraries
-    from fingerpad.io.checkpoint import CheckpointError
-    from fingerpad.io.place import PlaceError
-    from fingerpad.reduced.models import find
-    from fingerpad.runs.context import RunContext
-    from fingerpad.runs.solve import solved
-    from fingerpad.scene import SceneError, from_data
-
-    asked, way = from_data(json.loads(scene.read_text(encoding="utf-8"))), find(model)
-    context = RunContext(folder, lines=way.path, bar=way.path, report=False)
-    try:
-        try:
-            solved(asked, way, replace(context, resume=way.resumes))
-        except CheckpointError:  # nothing to go on from
-            solved(asked, way, context)
-    except PlaceError as error:  # another run is at it, or the disk is full: it may be gone the next time
-        print(error, file=sys.stderr)
-        sys.exit(os.EX_TEMPFAIL)
-    except SceneError as error:  # it would be the same the next time
-        replace_json(folder / "summary.json", {"failure": str(error)})
-
-
-if __name__ == "__main__":
-    limit_processor_time(float(sys.argv[3]))
-    _one(Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[4])

@@ -2,15 +2,17 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from numbers import Real
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fingerpad.scene.load_names import FINAL_STATES, first_clash
 from fingerpad.scene.messages import SceneError, clip, show
-from fingerpad.scene.parameters import Accuracy, Load, Output
 from fingerpad.scene.waveform import MOST, Waveform
 from variational.roughness.bam import BearingArea
+
+if TYPE_CHECKING:
+    from fingerpad.scene.parameters import Accuracy, Load, Output
 
 DEFAULT_HISTORY = ("f_ext", "voltage", "slide_length")
 """Keys of the default loads, which a history replaces."""
@@ -19,11 +21,11 @@ LARGEST_GAP = 1.0  # m, with which the attraction is as good as none
 
 
 def refuse_contradictions(
-    accuracy: Accuracy | None,
-    output: Output,
+    accuracy: "Accuracy | None",
+    output: "Output",
     friction: Any,
     roughness: Any,
-    history: Sequence[Load] | None,
+    history: Sequence["Load"] | None,
     given: Mapping[str, Any],
     step_scale: float,
 ) -> None:
@@ -51,7 +53,7 @@ def refuse_contradictions(
 
 
 def refuse_beside_force(
-    force: float | None, given: Mapping[str, Any], history: Sequence[Load] | None, file: str | None
+    force: float | None, given: Mapping[str, Any], history: Sequence["Load"] | None, file: str | None
 ) -> None:
     """Refuse a force on the whole finger beside another one, beside loads of one's own or a mesh of one's own.
 
@@ -79,7 +81,7 @@ def refuse_beside_force(
         )
 
 
-def _refuse_accuracy(accuracy: Accuracy | None, output: Output, friction: Any) -> None:
+def _refuse_accuracy(accuracy: "Accuracy | None", output: "Output", friction: Any) -> None:
     """Refuse an accuracy of receptor sites that are not there, and of friction that is zero."""
     if accuracy is None:
         return
@@ -109,7 +111,7 @@ def _refuse_endless_gap(roughness: Any) -> None:
         )
 
 
-def _refuse_history(history: Sequence[Load], given: Mapping[str, Any]) -> None:
+def _refuse_history(history: Sequence["Load"], given: Mapping[str, Any]) -> None:
     """Refuse a history beside keys of the default loads, without a first height, or with two loads of one name."""
     for name, value in given.items():
         raise ValueError(
@@ -130,7 +132,7 @@ def _refuse_history(history: Sequence[Load], given: Mapping[str, Any]) -> None:
         )
 
 
-def _refuse_names(history: Sequence[Load]) -> None:
+def _refuse_names(history: Sequence["Load"]) -> None:
     """Refuse a load whose files would be those of a state on the final mesh."""
     for k, load in enumerate(history):
         if first_clash([*FINAL_STATES, load.name]) is not None:
@@ -140,7 +142,7 @@ def _refuse_names(history: Sequence[Load]) -> None:
             )
 
 
-def _refuse_floating(history: Sequence[Load]) -> None:
+def _refuse_floating(history: Sequence["Load"]) -> None:
     """Refuse loads that leave the bone neither held nor pressed nor attracted."""
     f_ext: float | None = None
     voltage = 0.0
@@ -163,7 +165,7 @@ def _refuse_floating(history: Sequence[Load]) -> None:
             )
 
 
-def ways(history: Sequence[Load]) -> Iterator[tuple[str, Load, float | None]]:
+def ways(history: Sequence["Load"]) -> Iterator[tuple[str, "Load", float | None]]:
     """Yield the key of each load, the load, and how far the bone goes (m); None where the run decides that."""
     place: float | None = 0.0  # of the bone; None where a load before may have stopped early
     for k, load in enumerate(history):
@@ -177,7 +179,7 @@ def ways(history: Sequence[Load]) -> Iterator[tuple[str, Load, float | None]]:
             place = None if load.until_full_slip else aim
 
 
-def _refuse_times(history: Sequence[Load], step_scale: float) -> None:
+def _refuse_times(history: Sequence["Load"], step_scale: float) -> None:
     """Refuse waveforms whose length is not known before the run, or whose samples are too many or end too early."""
     for key, load, way in ways(history):
         if load.wave is None:

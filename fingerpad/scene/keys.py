@@ -17,7 +17,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel, WrapValidator
 
 from fingerpad.scene.law_keys import LawKey, keys_of, range_of
-from geometry.bounds import Range
+from geometry.units import Range
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, c
 
 from fingerpad.scene.law_code import digest, imported
 from fingerpad.scene.messages import LAW, SceneError, clip, show
-from geometry.bounds import Range
+from geometry.units import Range
 from variational.coefficients import said
 
 _OWN = re.compile(r"([A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*):([A-Za-z_<>][\w<>]*(?:\.[A-Za-z_<>][\w<>]*)*)", re.ASCII)

@@ -14,8 +14,8 @@ from fingerpad.scene.law_keys import Kind, LawKey, fail, inside, whole
 from fingerpad.scene.messages import show
 from fingerpad.scene.table import Finite, Part
 from geometry import tags
-from geometry.bounds import within
 from geometry.parameters import Fingertip
+from geometry.units import within
 from variational.attraction.insulator import insulator_thickness
 from variational.contact.friction import Coulomb, Derjaguin, Friction
 from variational.materials.material import Material

@@ -24,13 +24,16 @@ from fingerpad.scene.load_names import load_name
 from fingerpad.scene.messages import NUMBER, WAVE, show
 from fingerpad.scene.table import Finite, Part, Switch
 from fingerpad.scene.waveform import Volts, Waveform
-from geometry.bounds import within
 from geometry.parameters import Fingertip
+from geometry.units import within
 from variational import files
+from variational.contact.augmented import AugmentedLagrangian
 from variational.contact.formulation import Formulation
-from variational.contact.formulations import FORMULATIONS
+from variational.contact.nitsche import Nitsche
 from variational.contact.penalty import Penalty
 
+FORMULATIONS: dict[str, type[Formulation]] = {"penalty": Penalty, "nitsche": Nitsche, "augmented": AugmentedLagrangian}
+"""Contact formulations by their names, key ``contact.formulation``: a new one is an entry here."""
 CONTACT = LawKey(Kind(Formulation, "a Formulation", FORMULATIONS), Penalty(), flat="formulation")
 Asked = Annotated[Finite, within(1e-6, 0.5)]
 Way = Annotated[Finite, within(1e-9, 0.1, "m", zero=True, sides=2)]

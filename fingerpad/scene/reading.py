@@ -14,14 +14,13 @@ from pydantic import BaseModel
 
 from fingerpad.scene.law_keys import table
 from fingerpad.scene.messages import SceneError, clip, key_of, show
+from fingerpad.scene.table import MOST_BYTES
 from variational import files
 from variational.coefficients import Law
 from variational.roughness.closure import Closure
 
 DEFAULT_MODEL = "full"
 """Model of a run whose files name none, by :data:`fingerpad.reduced.models.MODELS`."""
-MOST_BYTES = 1_000_000
-"""Largest size of a scene, or of a table of voltages; the longest scene that comes along has 1000 bytes."""
 _MOST_DEPTH = 8  # of tables in lists in tables; a scene has 3
 _DEPTH = f"a scene has at most {_MOST_DEPTH} inside one another"
 _MOST_BITS = 1000  # of a whole number; floating point has 1024

@@ -7,10 +7,8 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from fingerpad.scene.keys import every
 from fingerpad.scene.messages import LAW, MOST_KEY, NUMBER, WAVE, clip, key_of, qualify, show
-from geometry.bounds import NO_QUANTITY, OUT_OF_RANGE
-from geometry.units import to_si
+from geometry.units import NO_QUANTITY, OUT_OF_RANGE, to_si
 
 _MOST_LIST = 150  # characters of a list of keys
 _NEAR = 0.6  # likeness, from 0 to 1, at which a key of the same table may have been meant,
@@ -35,8 +33,14 @@ _BOUNDS = {
 
 
 # -- errors --------------------------------------------------------------------------------------------
-def first_error(error: ValidationError, root: type[BaseModel]) -> str:
-    """Return the first error of a validation of ``root`` as a message."""
+def first_error(error: ValidationError, root: type[BaseModel], keys: Iterable[str]) -> str:
+    """Return the first error of a validation of ``root`` as a message.
+
+    Args:
+        error: of the validation.
+        root: model.
+        keys: names of all its keys, of which one may have been meant by an unknown key.
+    """
     first = error.errors(include_url=False)[0]
     kind, context = first["type"], first.get("ctx", {})
     loc = tuple(part for part in (*first["loc"], *context.get("at", ())) if part not in (NUMBER, WAVE))
@@ -54,7 +58,7 @@ def first_error(error: ValidationError, root: type[BaseModel]) -> str:
     if kind == "extra_forbidden":
         of = f" with the law {context['of']}" if "of" in context else ""
         own = context.get("keys") or tuple(getattr(_model_at(root, loc[:-1]), "model_fields", ()))
-        return f"{key} is not a key of {key_of(loc[:-1]) or 'a scene'}{of}; {_instead(root, loc, own)}"
+        return f"{key} is not a key of {key_of(loc[:-1]) or 'a scene'}{of}; {_instead(loc, own, keys)}"
     if kind == "missing":
         return f"{key} is missing; it must be given"
     if kind == "value_error":
@@ -114,18 +118,18 @@ def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
 
 
 # -- unknown keys --------------------------------------------------------------------------------------
-def _instead(root: type[BaseModel], loc: tuple[int | str, ...], own: Sequence[str]) -> str:
+def _instead(loc: tuple[int | str, ...], own: Sequence[str], every: Iterable[str]) -> str:
     """Return what may have been meant by an unknown key: the nearest key of all tables, or those of its own.
 
     Args:
-        root: model of the scene.
         loc: place of the key.
         own: keys that its table has.
+        every: names of the keys of all tables.
     """
     table, name = key_of(loc[:-1]), str(loc[-1])
     wanted = clip(name, MOST_KEY).lower().replace("-", "_")
     keys = [(table, key, _NEAR) for key in own]
-    names = [key.name.replace("[]", "[0]").split(".") for key in every(root)]
+    names = [name.replace("[]", "[0]").split(".") for name in every]
     tables = dict.fromkeys((".".join(name[:depth]), name[depth]) for name in names for depth in range(len(name)))
     keys += [(at, key, _ELSEWHERE) for at, key in tables if (at, key) != (table, wanted)]
     near = [

@@ -17,6 +17,7 @@ from fingerpad.scene.contradictions import (
     refuse_contradictions,
     refuse_thickness,
 )
+from fingerpad.scene.keys import every
 from fingerpad.scene.law_code import digest, folder_of, imported
 from fingerpad.scene.law_keys import Kept, kept
 from fingerpad.scene.materials import BEARING_AREA, FRICTION, LAYERS, ROUGHNESS, Electric, Materials
@@ -27,8 +28,8 @@ from fingerpad.scene.refusals import first_error
 from fingerpad.scene.slices import Slices, centre_force
 from fingerpad.scene.table import Finite, Part
 from fingerpad.scene.waveform import Volts
-from geometry.bounds import computed, within
 from geometry.parameters import MeshSize
+from geometry.units import computed, within
 from variational.contact.friction import Friction, law_of
 from variational.materials.material import Material
 from variational.roughness.closure import Closure
@@ -84,7 +85,7 @@ class Scene(Part):
         try:
             self.__pydantic_validator__.validate_python(with_coarse_start(given), self_instance=self)
         except ValidationError as error:
-            raise SceneError(first_error(error, Scene)) from None
+            raise SceneError(first_error(error, Scene, (key.name for key in every(Scene)))) from None
 
     output: Output = Output()
     slices: Slices = Slices()

@@ -15,8 +15,7 @@ from pydantic_core import core_schema
 from fingerpad.scene.keys import docstrings, tables
 from fingerpad.scene.law_keys import LawKey, keys_of, range_of
 from fingerpad.scene.scene import Scene
-from geometry.bounds import Range
-from geometry.units import QUANTITIES
+from geometry.units import QUANTITIES, Range
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 _NUMBER = r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?"

@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from fingerpad.scene.messages import show
 from fingerpad.scene.table import Finite, Part
-from geometry.bounds import within
+from geometry.units import within
 
 MOST = 1000
 # A finger of the default's width bears some 0.53 N where its centre bears 75 N/m; forces grow as F^0.77.

@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fingerpad.io.result import Cost, Result
+from fingerpad.io.answer import Cost
+from fingerpad.io.result import Result
 from fingerpad.io.states import WORDS
 from fingerpad.reduced.model import Model
 from fingerpad.scene import Scene, SceneError
@@ -22,7 +23,7 @@ from fingerpad.slices.finger import WholeFinger, in_order
 from fingerpad.slices.profile import Profile, profile
 from fingerpad.slices.total import BeyondTrace, Total, at_force
 from fingerpad.slices.trace import Trace, TraceError, trace
-from geometry.bounds import computed
+from geometry.units import computed
 from variational.state import ContactState, Errors
 
 Solve = Callable[[Scene, str], Result]

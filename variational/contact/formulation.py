@@ -18,14 +18,16 @@ The history variable of friction is the anchor s, see :mod:`~variational.contact
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from variational.coefficients import LawError, refuse_not_positive, said
 from variational.contact import return_mapping
-from variational.contact.friction import Friction
+
+if TYPE_CHECKING:
+    from variational.contact.friction import Friction
 
 Array = NDArray[np.float64]
 
@@ -83,7 +85,7 @@ class Contact:
         new_anchor: anchor that a step leaves when it is accepted (m).
     """
 
-    def __init__(self, skin: Skin, springs: Springs, friction: Friction | None, guess, ease=1.0) -> None:
+    def __init__(self, skin: Skin, springs: Springs, friction: "Friction | None", guess, ease=1.0) -> None:
         """Project the trial tractions.
 
         Args:
@@ -107,7 +109,7 @@ class Contact:
         self.traction = ufl.as_vector([self.t_t, self.p_n])
 
 
-def _limit(friction: Friction, p_n):
+def _limit(friction: "Friction", p_n):
     """Return the limit of friction (Pa) as the weak form has it.
 
     Raises:
@@ -195,7 +197,7 @@ class Formulation(ABC):
         """Return a length (m), smooth within a facet, that is negative where the augmented gap is."""
         return contact.gap
 
-    def error(self, state: SurfaceState, history: History, friction: Friction | None) -> float:
+    def error(self, state: SurfaceState, history: History, friction: "Friction | None") -> float:
         """Return the largest error (m) at this rank's points that :meth:`corrected` can lower; mostly none."""
         return 0.0
 

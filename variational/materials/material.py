@@ -202,3 +202,8 @@ def _hashable(solid: Material) -> bool:
 def _in_space(F, stretch):
     """Return the deformation gradient (3, 3) of one in the plane, (2, 2), and the stretch normal to it."""
     return ufl.as_matrix([[F[0, 0], F[0, 1], 0], [F[1, 0], F[1, 1], 0], [0, 0, stretch]])
+
+
+def bulk_modulus(shear_modulus, poisson):
+    """Return K = 2/D (Pa) of Eq. 2 for an initial shear modulus (Pa) and Poisson's ratio."""
+    return 2 * shear_modulus * (1 + poisson) / (3 * (1 - 2 * poisson))

@@ -13,8 +13,7 @@ from functools import cached_property
 
 from variational.coefficients import parameter
 from variational.lazy import ufl
-from variational.materials.material import MODULUS, POISSON, Material
-from variational.materials.ogden import bulk_modulus
+from variational.materials.material import MODULUS, POISSON, Material, bulk_modulus
 
 
 @dataclass(frozen=True)

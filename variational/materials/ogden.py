@@ -21,15 +21,10 @@ from functools import cached_property
 
 from variational.coefficients import OF_SCENE, parameter
 from variational.lazy import kinematics, ufl
-from variational.materials.material import MODULUS, POISSON, Material
+from variational.materials.material import MODULUS, POISSON, Material, bulk_modulus
 
 SERIES_BELOW = 0.01
 SERIES_TERMS = 9  # leaves 3e-14 in the tangent at a = 14.53, y = 0.01; seven would leave 2e-8
-
-
-def bulk_modulus(shear_modulus, poisson):
-    """Return K = 2/D (Pa) of Eq. 2 for an initial shear modulus (Pa) and Poisson's ratio."""
-    return 2 * shear_modulus * (1 + poisson) / (3 * (1 - 2 * poisson))
 
 
 def exponent(alpha, convention: str):

@@ -73,7 +73,7 @@ def test_notes_are_of_the_pressures_that_the_closure_gets(tmp_path):
         scene = from_data(data | {"contact": {"length": length}}).replace(roughness=Telling())
         full.run(scene, RunContext(tmp_path / length, MPI.COMM_SELF))
         rows = [row for row in rows_of(tmp_path / length, "ridges") if float(row["p_c"]) > 0]
-        told[length] = np.array([[float(row["p_c"]), float(row["state"])] for row in rows])
+        told[length] = np.array([[float(row["p_c"]), float(row["note"])] for row in rows])
     np.testing.assert_array_equal(told["pressure"][:, 0], told["pressure"][:, 1])
     np.testing.assert_array_equal(told["gap"][:, 0], told["pressure"][:, 0])
     assert (told["gap"][:, 1] < 0.98 * told["gap"][:, 0]).all()

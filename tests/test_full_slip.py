@@ -1,5 +1,7 @@
 """Full slip is steady: as steady as its gaps are closed, or the slide ends; and its lengths by ridge are its length."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -91,6 +93,9 @@ class Slid:
 
     def run(self, target):
         self.solver.reaction = self.solver.reaction * (1 + self.change)
+
+    def begun(self):
+        return SimpleNamespace(reaction=self.solver.reaction.copy(), control=self.solver.control)
 
 
 @pytest.mark.parametrize(
