@@ -252,6 +252,7 @@ def test_unloading_leaves_no_friction():
     assert found[-1] == (0.0, 0.0)
 
 
+@pytest.mark.slow
 def test_energy_balance_closes_with_the_square_of_the_step():
     """Over a cycle of press, charge, slide, back, discharge and lift, as test_energy.py has it for Coulomb's law.
 
