@@ -231,6 +231,7 @@ def test_press_by_height_and_by_force_agree():
     assert np.isnan(by_force.state.d_eq).all()
 
 
+@pytest.mark.slow
 def test_load_is_a_text_with_a_unit():
     """The texts are converted in decimals, so that the loads are the same numbers."""
     text = ridge(roughness=None).press("0.0044 N/mm").slide("1 µm").state

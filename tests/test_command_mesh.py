@@ -35,6 +35,7 @@ def test_method_for_comparison_is_named_before_a_run(tmp_path, monkeypatch, caps
     assert capsys.readouterr().out.count("contact by a method for comparison") == told
 
 
+@pytest.mark.slow
 def test_loads_that_were_never_tried_are_named(tmp_path, capsys):
     """There is no promise for them."""
     argv = ["check", "--out", str(tmp_path), *(word for text in COARSE for word in ("--set", text))]

@@ -47,6 +47,7 @@ def test_ctrl_c_ends_the_program_quietly(door, moment):
     assert (done.returncode, done.stderr) == (130, "")
 
 
+@pytest.mark.slow
 def test_ctrl_c_while_finite_elements_are_imported(tmp_path):
     """The run has not begun then."""
     done = python(DOORS["module"], "run", "--out", str(tmp_path / "new"), moment="dolfinx")
@@ -54,6 +55,7 @@ def test_ctrl_c_while_finite_elements_are_imported(tmp_path):
     assert not (tmp_path / "new").exists()
 
 
+@pytest.mark.slow
 def test_ctrl_c_that_is_ignored_stays_ignored():
     done = python(DOORS["module"], "params", "f_ext", moment="numpy", handler="SIG_IGN")
     assert (done.returncode, done.stderr) == (0, "") and "f_ext" in done.stdout

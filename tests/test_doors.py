@@ -47,6 +47,7 @@ def test_python_and_toml(write, text):
     assert outcome(lambda: Scene(**tomllib.loads(text))) == outcome(lambda: scenes.load(write(text)))
 
 
+@pytest.mark.slow
 def test_mutants(write, tmp_path):
     """Scenes as nobody should write them; of those that are TOML some are accepted, most refused."""
     path, refused, accepted = tmp_path / "scene.toml", 0, 0

@@ -14,6 +14,7 @@ def folder(tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_mutants(folder):
     """Some are ready, most are refused, and of neither kind is there anything wrong."""
     found = [fault(mutant(SEED, k), folder) for k in range(100)]

@@ -80,6 +80,7 @@ def wheel(tmp_path_factory) -> zipfile.ZipFile:
     return zipfile.ZipFile(next(folder.glob("fingerpad-*.whl")))
 
 
+@pytest.mark.slow
 def test_wheel_holds_the_library(wheel):
     """Each module of it, the marks of its types and the parts of its pages; nothing of tests, benchmarks and demos."""
     files = [file for top in LIBRARY for file in (ROOT / top).rglob("*") if file.is_file()]
@@ -89,6 +90,7 @@ def test_wheel_holds_the_library(wheel):
     assert listed == whole and marks < listed
 
 
+@pytest.mark.slow
 def test_wheel_holds_licence_and_command(wheel, project):
     """The licence's two texts, its short name, and the command."""
     info = f"fingerpad-{project['project']['version']}.dist-info"
@@ -98,6 +100,7 @@ def test_wheel_holds_licence_and_command(wheel, project):
     assert "fingerpad = fingerpad.__main__:main" in wheel.read(f"{info}/entry_points.txt").decode()
 
 
+@pytest.mark.slow
 def test_wheel_runs(wheel, tmp_path):
     """By itself, away from the checkout: nothing that it needs is left out of it."""
     wheel.extractall(tmp_path)

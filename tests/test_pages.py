@@ -12,6 +12,7 @@ from benchmarks.harness import DOCS, Made, kept
 BY = Made("0.1.0", "abc1234", "2026-11-22", "0123456789ab")
 
 
+@pytest.mark.slow
 def test_pages_in_git_are_those_of_the_kept_numbers(tmp_path, capsys):
     """Drawn anew, without a run, every page is the one in git."""
     for path in [*DOCS.glob("*.json"), *DOCS.glob("*.png")]:
@@ -108,6 +109,7 @@ def test_numbers_are_kept_as_they_are(tmp_path):
 
 
 # -- The picture that opens the README is drawn from the numbers in git ---
+@pytest.mark.slow
 def test_hero_is_drawn_from_kept_numbers(tmp_path):
     (tmp_path / "hero.json").write_bytes((DOCS / "hero.json").read_bytes())
     image = imread(hero.draw(tmp_path))

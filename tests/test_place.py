@@ -138,6 +138,7 @@ def test_a_crash_before_the_first_step_leaves_the_last_one(scene, folder, finish
     assert kept(folder) == finished
 
 
+@pytest.mark.slow
 def test_a_run_takes_the_folder(scene, folder, finished):
     """Every file of its own is one that the next run deletes, and none of the earlier run's is left."""
     summary = run(scene, folder, MPI.COMM_WORLD)

@@ -16,8 +16,7 @@ def test_each_module_is_imported_by_a_quick_test():
     """In a process of its own: what the files of the quick tests import, and what that imports.
 
     The program imports a command where it is given, and what draws where a picture is asked for; test_command does.
-    Reports and their pictures are of whole runs, which make check leaves out: test_report and test_kept_drawing.
-    The run of a process of its own is in test_entry.
+    Reports, their pictures and processes of sweeps are of whole runs, which make check leaves out: test_report.
     """
     packages = ("geometry", "variational", "fingerpad")
     files = [file.relative_to(ROOT) for package in packages for file in (ROOT / package).rglob("*.py")]

@@ -134,7 +134,7 @@ def test_venv_is_made_once(tmp_path, variables):
     """The wheel first, by its hash and alone; then the rest. Without a network nothing is left."""
     failed = call("venv", **variables, OFFLINE="yes")
     assert (failed.returncode, failed.stdout) == (1, "")
-    assert "could not be made: ERROR: no network; is there a network?" in failed.stderr
+    assert "could not be made: " in failed.stderr and "is there a network?" in failed.stderr
     assert not list((tmp_path / "cache" / "fingerpad").glob("pip-*/whole"))
     done = call("venv", **variables)
     place = Path(done.stdout.strip())
