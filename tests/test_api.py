@@ -11,9 +11,9 @@ import fingerpad as fp
 from fingerpad import runs
 from fingerpad.io.answer import Cost
 from fingerpad.io.states import STATES
-from fingerpad.model.hints import finer_mesh_may_help
 from fingerpad.runs import attempt, full
 from fingerpad.runs.processes import End
+from fingerpad.runs.restarts import finer_mesh_may_help
 from fingerpad.scene import from_data
 from tests.runs import no_pictures
 from variational.solvers.continuation import StepFailed
