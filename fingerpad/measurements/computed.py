@@ -36,7 +36,7 @@ _FREE = re.compile(  # keys in which runs may differ:
     r"|history\[\d+\]\.(bone_height|name)"  # the force by another control, and a word for it,
     r"|output\.(errors|each_load|receptors)|numerics\.memory"  # and what changes no value
 )
-_MOST = 50  # characters of a folder in a message
+_MAX_LENGTH = 50  # characters of a folder in a message
 
 
 class Computed:
@@ -250,7 +250,7 @@ def folder(run: Result) -> str:
     if run.folder is None:
         return "a run"
     name = min(str(run.folder), os.path.relpath(run.folder), key=len)
-    return clip(name if len(name) <= _MOST else "..." + name[3 - _MOST :], _MOST)
+    return clip(name if len(name) <= _MAX_LENGTH else "..." + name[3 - _MAX_LENGTH :], _MAX_LENGTH)
 
 
 def _conditions(run: Result) -> dict[str, Any]:
